@@ -1,0 +1,84 @@
+// The body cut into blocks: immutable after the cut.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kluft/core/vector.hpp"
+
+namespace kluft {
+
+enum class EdgeOrigin {
+    boundary,    ///< on the domain's outline or a hole of it
+    fracture,    ///< on a mapped fracture (also where a tessellation edge coincides)
+    tessellation ///< on an edge of the hexagon net
+};
+
+/// A directed edge of a block's outline; the block lies to its left.
+struct Edge {
+    int start = 0;      ///< vertex index
+    int end = 0;        ///< vertex index
+    int interface = -1; ///< index of the interface that the edge is a side of; -1 on the domain's outline
+    int boundary = -1;  ///< index of the boundary that the edge lies on; -1 inside the body or on an unnamed side
+};
+
+/// A polygonal block. `edges` holds its loops one after the other: the outline counter-clockwise, then its holes
+/// clockwise; loop i starts at edges[loop_starts[i]].
+struct Block {
+    std::vector<Edge> edges;
+    std::vector<int> loop_starts;
+    Vec2 centroid = Vec2::Zero();      ///< local coordinates (m)
+    double area = 0.0;                 ///< m2
+    double size = 0.0;                 ///< h = sqrt(area), m
+    Mat2 second_moment = Mat2::Zero(); ///< integral of (X - X_c)(X - X_c)^T over the block, m4
+    int material = 0;
+};
+
+/// An edge with a block on each side. `start` and `end` follow block a's edge, so that the normal to the right of
+/// the direction start -> end points from a to b.
+struct Interface {
+    int block_a = 0;
+    int edge_a = 0; ///< index into blocks[block_a].edges
+    int block_b = 0;
+    int edge_b = 0;
+    EdgeOrigin origin = EdgeOrigin::tessellation;
+    int fracture = -1;      ///< index of the mapped fracture it lies on; -1 for a tessellation edge
+    int interface_type = 0; ///< index into the scene's interface types
+};
+
+struct BoundaryEdge {
+    int block = 0;
+    int edge = 0;
+};
+
+struct Boundary {
+    std::string name;
+    std::vector<BoundaryEdge> edges;
+};
+
+struct BlockSystem {
+    Vec2 origin = Vec2::Zero(); ///< scene coordinates of the local origin (m)
+    std::vector<Vec2> vertices; ///< local coordinates = scene coordinates - origin (m)
+    std::vector<Block> blocks;
+    std::vector<Interface> interfaces;
+    std::vector<Boundary> boundaries; ///< in the order of GeometrySpec::boundaries
+    double spacing = 0.0;      ///< d: the tessellation's spacing or the reference spacing; else the mean block size (m)
+    Vec2 lower = Vec2::Zero(); ///< lower left corner of the body's box, local coordinates
+    Vec2 upper = Vec2::Zero();
+
+    [[nodiscard]] int n_blocks() const { return static_cast<int>(blocks.size()); }
+    [[nodiscard]] int n_interfaces() const { return static_cast<int>(interfaces.size()); }
+};
+
+/// Reference position of the start and the end of an edge, local coordinates (m).
+[[nodiscard]] inline const Vec2& edge_start(const BlockSystem& system, const Edge& edge) {
+    return system.vertices[edge.start];
+}
+[[nodiscard]] inline const Vec2& edge_end(const BlockSystem& system, const Edge& edge) {
+    return system.vertices[edge.end];
+}
+
+/// Area, centroid, size and second moment of a block from its edges (Green's theorem over the loops).
+void compute_block_moments(const std::vector<Vec2>& vertices, Block& block);
+
+} // namespace kluft

@@ -1,0 +1,45 @@
+// Stages of loading. Pressures, strains, stresses and displacements are positive in compression (inward).
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace kluft {
+
+enum class Platens {
+    smooth, ///< the motion normal to the platen is prescribed, the tangential one free
+    rough   ///< both are prescribed: the vertices stick to the platen
+};
+
+enum class PlatenControl { displacement, strain, stress };
+
+/// What moves a boundary in a stage. The opposite boundary is held by a fixed platen of the same kind.
+struct PlatenMotion {
+    PlatenControl control = PlatenControl::strain;
+    int boundary = 0;   ///< index into GeometrySpec::boundaries
+    double value = 0.0; ///< m (displacement), fraction of the body's length (strain) or Pa (stress), reached at the end
+                        ///< of the stage, counted from the stage's start for displacement and strain
+};
+
+struct Stage {
+    std::string name;
+    std::map<int, double> pressure; ///< boundary -> Pa at the end of the stage; others keep theirs
+    std::optional<PlatenMotion> motion;
+    Platens platens = Platens::smooth;
+    int steps = 1;
+};
+
+enum class Support {
+    none,
+    smooth, ///< no motion normal to the boundary
+    fixed   ///< no motion
+};
+
+struct LoadProgram {
+    std::vector<Support> supports; ///< one per boundary, holding in every stage
+    std::vector<Stage> stages;
+};
+
+} // namespace kluft

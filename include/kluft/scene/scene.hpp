@@ -1,0 +1,38 @@
+// A scene: everything that a scene file says, checked and in SI. Never changes after reading.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kluft/blocks/geometry_spec.hpp"
+#include "kluft/constitutive/material.hpp"
+#include "kluft/loading/load_program.hpp"
+#include "kluft/simulation/simulation_options.hpp"
+
+namespace kluft {
+
+/// What a run writes beside history.csv, cracks.csv, equilibria.csv and summary.json.
+struct OutputOptions {
+    int fields_every = 0; ///< load steps between two field files; 0: only the first and the last state of each stage
+    bool fields = true;   ///< write fields.pvd and fields/*.vtu
+    bool pictures = true; ///< write curve and blocks pictures
+    int checkpoint_every = 0; ///< load steps between two state.h5; 0: at the end of each stage and when the run ends
+};
+
+struct Scene {
+    std::string name; ///< the file's stem
+    std::string title;
+    Plane plane = Plane::strain;
+    double gravity_x = 0.0; ///< m/s2
+    double gravity_y = 0.0;
+    std::vector<Material> materials;
+    std::vector<InterfaceType> interface_types;
+    GeometrySpec geometry;
+    LoadProgram loads;
+    CrackOptions cracks;
+    SolverOptions solver;
+    OutputOptions output;
+    std::vector<std::string> warnings; ///< what the reader noticed and accepted
+};
+
+} // namespace kluft

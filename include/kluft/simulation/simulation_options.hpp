@@ -1,0 +1,41 @@
+// Options of a run: how cracks are updated and how a load step is solved.
+#pragma once
+
+namespace kluft {
+
+enum class CrackCriterion {
+    principal_stress,  ///< mean stress of the two adjacent blocks (default)
+    interface_traction ///< the interface's own normal and shear traction
+};
+
+enum class CrackUpdate {
+    event,          ///< the step is cut where the first potential crack fails (default)
+    critical_first, ///< those with f >= 0.95 f_max fail at the end of the step, then check again
+    all,            ///< all with f >= 1 fail at the end of the step, then check again
+    single          ///< the one with the largest f fails, then check again
+};
+
+struct CrackOptions {
+    CrackCriterion criterion = CrackCriterion::principal_stress;
+    CrackUpdate update = CrackUpdate::event;
+    int every = 1;                 ///< load steps between two checks
+    double event_tolerance = 2e-2; ///< of f at an event
+};
+
+enum class Tangent {
+    unsymmetric, ///< exact (UMFPACK)
+    symmetric    ///< a sliding point drops its shear stiffness (CHOLMOD)
+};
+
+struct SolverOptions {
+    double tolerance = 1e-5;       ///< of |R|/F_ref
+    double balance = 1e-3;         ///< largest share of the mass-like term in F_ref of a balanced step
+    double viscosity = 0.05;       ///< eta H^2/E of the mass-like term
+    int max_iterations = 20;       ///< open-close iterations per attempt
+    int max_cuts = 2;              ///< halvings of a step before relaxation
+    int max_unbalanced_steps = 10; ///< successive unbalanced steps that end a run
+    Tangent tangent = Tangent::unsymmetric;
+    bool repeatable = false; ///< one BLAS thread, so that whole runs are bit-identical for any thread count
+};
+
+} // namespace kluft

@@ -1,0 +1,41 @@
+// The state of a body: all that changes during a run, and only at commit. A checkpoint is a State.
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "kluft/contact/contact.hpp"
+
+namespace kluft {
+
+/// What has become of an interface.
+enum class InterfaceStatus : std::uint8_t {
+    potential_crack, ///< bonded
+    fracture,        ///< mapped as a fracture
+    tension_crack,   ///< a potential crack broken in tension, now a fracture
+    shear_crack      ///< a potential crack broken in shear, now a fracture
+};
+
+struct State {
+    int stage = 0;                            ///< stage in progress, from 0
+    int step_in_stage = 0;                    ///< load steps accepted in it
+    int step = 0;                             ///< load steps accepted in all
+    double load_factor = 0.0;                 ///< of the stage, 0..1
+    Eigen::VectorXd displacement;             ///< (u, D) per block, size 6 n_blocks, m; see kinematics/affine.hpp
+    Eigen::VectorXd stage_start_displacement; ///< the same at the start of the stage
+    Eigen::VectorXd
+        reference_displacement; ///< at the start of the first stage that moves a platen: zero of the strains
+    bool reference_set = false;
+    std::vector<InterfaceStatus> interfaces; ///< one per interface
+    std::vector<double> bond_shear; ///< shear traction at the two Gauss points of each bond, size 2 n_interfaces, Pa
+    std::vector<ContactMemory> contacts;   ///< of touching contact points, sorted by key
+    std::vector<double> boundary_pressure; ///< at the start of the stage, one per boundary, Pa
+    std::vector<double> boundary_axial;    ///< platen stress at the start of the stage, one per boundary, Pa
+    double unbalanced_ratio = 0.0;
+    int unbalanced_in_succession = 0;
+};
+
+} // namespace kluft

@@ -1,0 +1,38 @@
+// What a run tells the world: the one place where output hooks in.
+#pragma once
+
+#include <functional>
+
+#include "kluft/simulation/state.hpp"
+#include "kluft/simulation/step_record.hpp"
+
+namespace kluft {
+
+/// Where a run stands inside a load step, for a progress line.
+struct Progress {
+    int stage = 0;
+    int n_stages = 0;
+    int step = 0;    ///< load steps accepted in all
+    int n_steps = 0; ///< load steps of all stages
+    double load_factor = 0.0;
+    double axial_strain = 0.0;
+    double axial_stress = 0.0; ///< Pa
+    int cracks = 0;
+    int open_close_iterations = 0; ///< so far in the run
+};
+
+class StepObserver {
+public:
+    virtual ~StepObserver() = default;
+
+    /// Every equilibrium, also those just before an event and between crack passes.
+    virtual void equilibrium(const StepRecord& /*record*/) {}
+    virtual void crack(const CrackRecord& /*crack*/) {}
+    /// A load step was committed (step 0: the initial state). `fields` computes the fields on demand.
+    virtual void step(const StepRecord& /*record*/, const State& /*state*/,
+                      const std::function<FieldRecord()>& /*fields*/, bool /*last_of_stage*/) {}
+    /// Several times a step.
+    virtual void progress(const Progress& /*progress*/) {}
+};
+
+} // namespace kluft

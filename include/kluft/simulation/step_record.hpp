@@ -1,0 +1,68 @@
+// What a run reports of an equilibrium. Stresses and strains positive in compression.
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "kluft/contact/contact.hpp"
+#include "kluft/core/vector.hpp"
+
+namespace kluft {
+
+/// A row of history.csv or equilibria.csv; the members are its columns, in order. Pa and fractions.
+struct StepRecord {
+    int step = 0;  ///< through all stages
+    int stage = 0; ///< from 0
+    double load_factor = 0.0;
+    double axial_strain = 0.0;
+    double axial_stress = 0.0;
+    double lateral_strain = 0.0;
+    double lateral_stress = 0.0;
+    double differential_stress = 0.0;
+    double volumetric_strain = 0.0;
+    int cracks_tension = 0; ///< so far
+    int cracks_shear = 0;
+    int open = 0; ///< interfaces and contacts by state; an interface counts once, by its worst point
+    int sliding = 0;
+    int locked = 0;
+    int open_close_iterations = 0; ///< linear solves of this step, everything included
+    int crack_passes = 0;
+    double unbalanced_ratio = 0.0;
+    bool balanced = true;
+    double elapsed_s = 0.0;
+};
+
+enum class CrackMode { tension, shear };
+
+/// A row of cracks.csv.
+struct CrackRecord {
+    int step = 0;
+    int pass = 0;
+    int interface = 0;
+    double x = 0.0; ///< scene coordinates of the interface's middle before loading (m)
+    double y = 0.0;
+    CrackMode mode = CrackMode::tension;
+    double p1 = 0.0; ///< principal stresses at failure, positive in compression (Pa)
+    double p3 = 0.0;
+    double axial_strain = 0.0;
+};
+
+/// Fields at an equilibrium, for pictures and ParaView.
+struct FieldRecord {
+    std::vector<Vec2> displacement; ///< of each block's vertices, block after block in the order of Block::edges (m)
+    std::vector<Mat2> stress;       ///< Cauchy, positive in tension, one per block (Pa)
+    struct InterfaceFields {
+        bool bonded = false;
+        bool broken = false; ///< a potential crack that failed
+        CrackMode mode = CrackMode::tension;
+        ContactState state = ContactState::locked;
+        double normal_traction = 0.0; ///< mean, positive in tension (Pa)
+        double shear_traction = 0.0;  ///< mean (Pa)
+        double gap = 0.0;             ///< at the middle, positive when open (m)
+        double slip = 0.0;            ///< tangential relative displacement at the middle (m)
+    };
+    std::vector<InterfaceFields> interfaces; ///< one per interface of the block system
+};
+
+} // namespace kluft
