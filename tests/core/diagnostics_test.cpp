@@ -6,7 +6,7 @@ namespace kluft {
 namespace {
 
 TEST(InputError, CarriesEveryMessageAndJoinsThemByLines) {
-    const InputError error({"first", "second"});
+    const InputError error(std::vector<std::string>{"first", "second"});
     EXPECT_EQ(error.messages().size(), 2U);
     EXPECT_STREQ(error.what(), "first\nsecond");
 }
