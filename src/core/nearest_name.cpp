@@ -4,6 +4,8 @@
 #include <cctype>
 #include <cstddef>
 
+#include <fmt/format.h>
+
 namespace kluft {
 
 namespace {
@@ -62,7 +64,7 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
 
 std::string suggestion(std::string_view name, const std::vector<std::string>& candidates) {
     const std::string nearest = nearest_name(name, candidates);
-    return nearest.empty() ? std::string{} : "; did you mean '" + nearest + "'?";
+    return nearest.empty() ? std::string{} : fmt::format("; did you mean '{}'?", nearest);
 }
 
 std::string listed(const std::vector<std::string>& names) {

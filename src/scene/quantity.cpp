@@ -263,7 +263,7 @@ std::optional<long long> read_integer(std::string_view text) {
     return value;
 }
 
-double si_value(double plain, Measure measure) {
+double to_si(double plain, Measure measure) {
     return measure == Measure::angle ? plain * std::numbers::pi / 180.0 : plain;
 }
 
@@ -274,7 +274,7 @@ QuantityReading read_quantity(std::string_view text, Measure measure) {
     const auto number = read_number(text.substr(0, length));
     if (!number) return {std::nullopt, ", which is beyond the range of a number"};
     const std::string_view unit_text = trimmed(text.substr(length));
-    if (unit_text.empty()) return {si_value(*number, measure), {}};
+    if (unit_text.empty()) return {to_si(*number, measure), {}};
     const UnitReading unit = read_unit(unit_text);
     if (!unit.problem.empty()) return {std::nullopt, unit.problem};
     if (unit.dimension != dimension_of(measure))

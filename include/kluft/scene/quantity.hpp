@@ -30,7 +30,7 @@ struct QuantityReading {
 [[nodiscard]] QuantityReading read_quantity(std::string_view text, Measure measure);
 
 /// A plain number of the measure in SI: degrees become radians, the rest is unchanged.
-[[nodiscard]] double si_value(double plain, Measure measure);
+[[nodiscard]] double to_si(double plain, Measure measure);
 
 /// Every unit that is understood, for the documentation.
 [[nodiscard]] std::string known_units();
