@@ -134,13 +134,12 @@ private:
         if (!points) return {};
         if (points->size() > 3 && points->front() == points->back()) points->pop_back();
         if (!has_distinct_points(section, key, *points)) return {};
-        const auto crossing = crossing_sides(*points);
-        if (signed_area(*points) == 0.0)
-            context_.fail(section, key, "expected a polygon with an area, found none");
-        else if (crossing)
+        if (const auto crossing = crossing_sides(*points))
             context_.fail(section, key,
                           fmt::format("expected a simple polygon, found sides {} and {} (counted from 0) that cross",
                                       crossing->first, crossing->second));
+        else if (signed_area(*points) == 0.0)
+            context_.fail(section, key, "expected a polygon with an area, found none");
         else
             return *points;
         return {};

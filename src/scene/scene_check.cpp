@@ -50,7 +50,7 @@ std::string number_problem(const SceneNode& node, Measure measure, const Range& 
 std::string integer_problem(const SceneNode& node, const Range& range) {
     if (!node.is_scalar() || node.quoted) return found_text(node);
     const auto value = read_integer(node.text);
-    if (!value) return found_text(node) + read_quantity(node.text, Measure::fraction).problem;
+    if (!value) return found_text(node) + number_flaw(node.text);
     return inside(static_cast<double>(*value), range.least, range.most, range) ? std::string{} : found_text(node);
 }
 
@@ -61,6 +61,13 @@ std::string choice_problem(const SceneNode& node, const KeyRule& rule) {
     if (is_in(rule.choices)) return {};
     if (is_in(rule.unavailable)) return found_text(node) + ", which is not available in this version";
     return found_text(node) + suggestion(node.text, rule.choices);
+}
+
+std::string text_problem(const SceneNode& node) {
+    const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; };
+    if (std::any_of(node.text.begin(), node.text.end(), is_control))
+        return found_text(node) + ", which has control characters";
+    return node.text.empty() ? found_text(node) : std::string{};
 }
 
 bool is_name(std::string_view text) {
@@ -134,13 +141,15 @@ private:
         errors_.add(node.at, path, fmt::format("expected {}, found {}", expected, found));
     }
 
-    /// Returns the missing key that is probably meant, "" if there is none.
+    /// Returns the valid key that is probably meant, "" if there is none.
     std::string refuse_key(const SceneKey& key, const std::vector<std::string>& valid,
                            const std::vector<std::string>& missing, const std::string& path) {
-        const std::string meant = nearest_name(key.text, missing);
+        std::vector<std::string> candidates = missing;
+        candidates.insert(candidates.end(), valid.begin(), valid.end());
+        const std::string meant = nearest_name(key.text, candidates);
         errors_.add(key.at, joined_path(path, key.text),
                     fmt::format("expected one of {}, found {}{}", listed(valid), in_quotes(key.text),
-                                meant.empty() ? suggestion(key.text, valid) : suggestion(key.text, {meant})));
+                                suggestion(key.text, candidates)));
         return meant;
     }
 
@@ -235,7 +244,7 @@ std::string scalar_problem(const SceneNode& node, const KeyRule& rule) {
     if (rule.type == KeyType::choice) return choice_problem(node, rule);
     if (rule.type == KeyType::boolean)
         return !node.quoted && (node.text == "true" || node.text == "false") ? std::string{} : found_text(node);
-    return node.text.empty() ? found_text(node) : std::string{};
+    return text_problem(node);
 }
 
 void check_against_schema(const SceneNode& root, SceneErrors& errors) {

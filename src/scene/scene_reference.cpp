@@ -111,6 +111,7 @@ std::string shown_type(const KeyRule& rule) {
 
 std::string shown_default(const KeyRule& rule) {
     if (rule.required) return "required";
+    if (rule.path.ends_with('*') || rule.path.ends_with('#')) return "";
     if (!rule.fallback_note.empty()) return std::string(rule.fallback_note);
     return rule.fallback.empty() ? "none" : fmt::format("`{}`", rule.fallback);
 }

@@ -361,7 +361,9 @@ std::vector<KeyRule> loading_rules() {
         {.path = "boundaries.*.facing",
          .type = KeyType::choice,
          .choices = {"left", "right", "top", "bottom"},
-         .doc = "All sides whose outward normal points within 45 degrees of this direction. Not for rectangles."},
+         .doc =
+             "All sides whose outward normal points within 45 degrees of this direction (at exactly 45 degrees it is "
+             "`top` or `bottom`). Not for rectangles."},
         {.path = "stages",
          .type = KeyType::list,
          .required = true,
