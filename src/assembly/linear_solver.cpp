@@ -54,10 +54,10 @@ std::vector<int> fill_reducing_order(const BlockPattern& pattern) {
 
 /// The permuted matrix by columns, and where each 6 x 6 block of the pattern goes.
 struct ColumnLayout {
-    std::vector<int> position;             ///< of each block in the elimination order
-    std::vector<SuiteSparse_long> starts;  ///< per column, size 6 n_blocks + 1
-    std::vector<SuiteSparse_long> rows;    ///< per nonzero
-    std::vector<SuiteSparse_long> offset;  ///< per pattern entry: first nonzero of the block, relative to its column
+    std::vector<int> position;            ///< of each block in the elimination order
+    std::vector<SuiteSparse_long> starts; ///< per column, size 6 n_blocks + 1
+    std::vector<SuiteSparse_long> rows;   ///< per nonzero
+    std::vector<SuiteSparse_long> offset; ///< per pattern entry: first nonzero of the block, relative to its column
 
     void build(const BlockPattern& pattern) {
         const int n = pattern.n_blocks();

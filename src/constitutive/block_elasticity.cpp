@@ -43,10 +43,12 @@ Mat2 cauchy_stress(const Mat2& f, const ElasticModuli& moduli) {
 Mat4 elastic_tangent(const Mat2& f, const ElasticModuli& moduli, bool positive) {
     const auto [rotation, trace] = polar(f);
     const Eigen::Vector4d r(rotation(0, 0), rotation(1, 0), rotation(0, 1), rotation(1, 1));
-    const Eigen::Vector4d spin(rotation(0, 1), rotation(1, 1), -rotation(0, 0), -rotation(1, 0)); // R W, W = [0 -1; 1 0]
+    const Eigen::Vector4d spin(rotation(0, 1), rotation(1, 1), -rotation(0, 0),
+                               -rotation(1, 0)); // R W, W = [0 -1; 1 0]
     double along_spin = trace > 0.0 ? (moduli.lambda * (trace - 2.0) - 2.0 * moduli.mu) / trace : -moduli.mu;
     if (positive) along_spin = std::max(along_spin, -moduli.mu); // 2 mu + 2 along_spin is the eigenvalue
-    return 2.0 * moduli.mu * Mat4::Identity() + moduli.lambda * r * r.transpose() + along_spin * spin * spin.transpose();
+    return 2.0 * moduli.mu * Mat4::Identity() + moduli.lambda * r * r.transpose() +
+           along_spin * spin * spin.transpose();
 }
 
 } // namespace kluft

@@ -167,8 +167,7 @@ private:
         overlapping_.emplace_back(edge_a.edge, edge_b.edge);
         for (int k = 0; k < 3; ++k) {
             const double tau = low + lobatto_positions[k] * overlap;
-            ContactPoint point =
-                point_between(a, edge_a, tau / extent_a, b, edge_b, 1.0 - (tau - start_b) / extent_b);
+            ContactPoint point = point_between(a, edge_a, tau / extent_a, b, edge_b, 1.0 - (tau - start_b) / extent_b);
             point.weight = lobatto_weights[k] * overlap;
             point.key.point = k;
             finish(point, along);

@@ -22,8 +22,8 @@ std::vector<PressureEdge> pressure_edges(const BlockSystem& system, int boundary
         const Block& block = system.blocks[b];
         const Vec2& start = edge_start(system, block.edges[e]);
         const Vec2& end = edge_end(system, block.edges[e]);
-        edges.push_back({b, boundary, block_coordinates(block, 0.5 * (start + end)), end - start,
-                         (end - start) / block.size});
+        edges.push_back(
+            {b, boundary, block_coordinates(block, 0.5 * (start + end)), end - start, (end - start) / block.size});
     }
     return edges;
 }
@@ -62,8 +62,8 @@ Constraints::Constraints(std::vector<PrescribedDisplacement> rows) : rows_(std::
         const auto rank = (singular.array() > rank_tolerance * singular[0]).count();
         const Eigen::MatrixXd range = svd.matrixV().leftCols(rank);
         Constrained constrained{block, indices, Mat6::Identity() - range * range.transpose(), {}};
-        constrained.inverse = range * singular.head(rank).cwiseInverse().asDiagonal() *
-                              svd.matrixU().leftCols(rank).transpose();
+        constrained.inverse =
+            range * singular.head(rank).cwiseInverse().asDiagonal() * svd.matrixU().leftCols(rank).transpose();
         blocks_.push_back(std::move(constrained));
     }
 }

@@ -14,7 +14,8 @@ namespace {
 /// (1, xi): the weights of u, D's first and D's second column in the displacement of a point.
 std::array<double, 3> shape(const Vec2& xi) { return {1.0, xi.x(), xi.y()}; }
 
-void add_outer(const std::array<double, 3>& row, const std::array<double, 3>& column, const Mat2& stiffness, Mat6& block) {
+void add_outer(const std::array<double, 3>& row, const std::array<double, 3>& column, const Mat2& stiffness,
+               Mat6& block) {
     for (int j = 0; j < 3; ++j) {
         for (int i = 0; i < 3; ++i) block.block<2, 2>(2 * i, 2 * j) += (row[i] * column[j]) * stiffness;
     }
@@ -34,7 +35,8 @@ void add_point_tangent(const ContactPoint& point, const Mat2& tangent, const std
 }
 
 /// Interface forces are internal: R gets +f on b where f is what b's opening stretches.
-void add_point_force(const ContactPoint& point, const Vec2& force, Eigen::VectorXd& forces, Eigen::VectorXd& magnitudes) {
+void add_point_force(const ContactPoint& point, const Vec2& force, Eigen::VectorXd& forces,
+                     Eigen::VectorXd& magnitudes) {
     add_force(forces, point.block_b, point.xi_b, force);
     add_force(forces, point.block_a, point.xi_a, -force);
     const Vec2 size = force.cwiseAbs();
@@ -118,16 +120,6 @@ void EquilibriumEvaluator::add_mass_tangent(BlockMatrix& matrix) const {
     }
 }
 
-double EquilibriumEvaluator::viscous_force(const Eigen::VectorXd& q) const {
-    double sum = 0.0;
-    for (int b = 0; b < pattern_.n_blocks(); ++b) {
-        const auto moved = q.segment<n_block_unknowns>(n_block_unknowns * b) -
-                           problem_.start.segment<n_block_unknowns>(n_block_unknowns * b);
-        sum += (mass(problem_.system->blocks[b], problem_.least_mass_area) * moved).squaredNorm();
-    }
-    return problem_.eta * std::sqrt(sum);
-}
-
 void EquilibriumEvaluator::residual(const Eigen::VectorXd& q, Residual& result) {
     const BlockSystem& system = *problem_.system;
     result.forces.setZero(q.size());
@@ -186,9 +178,8 @@ void EquilibriumEvaluator::tangent(const Eigen::VectorXd& q, TangentKind kind, B
     matrix.values = bonds_and_mass_.values;
     for (int b = 0; b < system.n_blocks(); ++b) {
         const Block& block = system.blocks[b];
-        matrix.values[diagonal_[b]].block<4, 4>(2, 2) +=
-            elastic_tangent(deformation_gradient(q, b, block.size), (*problem_.moduli)[block.material],
-                            kind == TangentKind::symmetric);
+        matrix.values[diagonal_[b]].block<4, 4>(2, 2) += elastic_tangent(
+            deformation_gradient(q, b, block.size), (*problem_.moduli)[block.material], kind == TangentKind::symmetric);
     }
     for (std::size_t i = 0; i < problem_.contacts.size(); ++i) {
         const auto traction = contact_traction(problem_, static_cast<int>(i), q);
@@ -201,6 +192,17 @@ void EquilibriumEvaluator::tangent(const Eigen::VectorXd& q, TangentKind kind, B
         const double pressure = problem_.pressures[edge.boundary];
         if (pressure != 0.0) add_pressure_tangent(edge, pressure, matrix.values[diagonal_[edge.block]]);
     }
+}
+
+double viscous_force(const EquilibriumProblem& problem, const Eigen::VectorXd& q) {
+    if (problem.eta == 0.0) return 0.0;
+    double sum = 0.0;
+    for (int b = 0; b < problem.system->n_blocks(); ++b) {
+        const Vec6 moved = q.segment<n_block_unknowns>(n_block_unknowns * b) -
+                           problem.start.segment<n_block_unknowns>(n_block_unknowns * b);
+        sum += (mass(problem.system->blocks[b], problem.least_mass_area) * moved).squaredNorm();
+    }
+    return problem.eta * std::sqrt(sum);
 }
 
 std::vector<Mat2> block_stresses(const BlockSystem& system, const std::vector<ElasticModuli>& moduli,

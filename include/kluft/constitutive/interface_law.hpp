@@ -29,11 +29,11 @@ struct PointHistory {
 
 /// Traction at a point and its derivatives with respect to (gap, slip).
 struct PointTraction {
-    double normal = 0.0;          ///< Pa, positive in tension
-    double shear = 0.0;           ///< Pa
-    Mat2 tangent = Mat2::Zero();  ///< d(normal, shear)/d(gap, slip), Pa/m
+    double normal = 0.0;         ///< Pa, positive in tension
+    double shear = 0.0;          ///< Pa
+    Mat2 tangent = Mat2::Zero(); ///< d(normal, shear)/d(gap, slip), Pa/m
     ContactState state = ContactState::locked;
-    PointHistory history;         ///< to keep if this becomes the equilibrium
+    PointHistory history; ///< to keep if this becomes the equilibrium
 };
 
 /// Contact pressure p(gap) >= 0 of the rounded law and its derivative (<= 0). With g_0 = contact_rounding/k_n:
@@ -57,7 +57,7 @@ struct ShearLimit {
 /// A point of a fracture: no tension, Coulomb friction with rounding, dilation by plastic slip. `gap` is total,
 /// `slip` counts from where `start` was kept. With `frozen_limit` the shear limit is that constant (the convex
 /// problem of the lagged limit).
-[[nodiscard]] PointTraction fracture_traction(const InterfaceLaw& law, const PointHistory& start, double gap, double slip,
-                                              std::optional<double> frozen_limit = std::nullopt);
+[[nodiscard]] PointTraction fracture_traction(const InterfaceLaw& law, const PointHistory& start, double gap,
+                                              double slip, std::optional<double> frozen_limit = std::nullopt);
 
 } // namespace kluft

@@ -32,17 +32,17 @@ struct ContactMemory {
 struct ContactPoint {
     int block_a = 0;
     int block_b = 0;
-    Vec2 xi_a = Vec2::Zero();     ///< block coordinates of the point of a
+    Vec2 xi_a = Vec2::Zero(); ///< block coordinates of the point of a
     Vec2 xi_b = Vec2::Zero();
-    Vec2 offset = Vec2::Zero();   ///< X_b - X_a before loading (m); zero where the two points were one
-    Vec2 normal = Vec2::Zero();   ///< from a to b
-    Vec2 tangent = Vec2::Zero();  ///< normal turned by +90 degrees
-    double weight = 0.0;          ///< length that the point stands for (m)
-    double slip_start = 0.0;      ///< tangent . relative position where slip = 0 (m)
-    int law = 0;                  ///< index of the interface law
-    int interface = -1;           ///< the interface of a bond or of a fracture's own two edges; -1 otherwise
-    PointHistory history;         ///< at the start of the load step
-    ContactKey key;               ///< of fracture points
+    Vec2 offset = Vec2::Zero();  ///< X_b - X_a before loading (m); zero where the two points were one
+    Vec2 normal = Vec2::Zero();  ///< from a to b
+    Vec2 tangent = Vec2::Zero(); ///< normal turned by +90 degrees
+    double weight = 0.0;         ///< length that the point stands for (m)
+    double slip_start = 0.0;     ///< tangent . relative position where slip = 0 (m)
+    int law = 0;                 ///< index of the interface law
+    int interface = -1;          ///< the interface of a bond or of a fracture's own two edges; -1 otherwise
+    PointHistory history;        ///< at the start of the load step
+    ContactKey key;              ///< of fracture points
 };
 
 /// x_b - x_a at displacements q (m).

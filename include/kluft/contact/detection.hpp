@@ -12,14 +12,14 @@ namespace kluft {
 
 /// What detection needs to know of the interfaces.
 struct ContactSurfaces {
-    std::vector<char> bonded;          ///< per interface: 1 while it is a bond
-    std::vector<int> law;              ///< per interface: its law as a fracture (index into the interface laws)
-    std::vector<double> friction;      ///< per law: tan(phi), to choose between the laws of two surfaces
-    int default_law = 0;               ///< of two surfaces of the domain's outline that meet
+    std::vector<char> bonded;     ///< per interface: 1 while it is a bond
+    std::vector<int> law;         ///< per interface: its law as a fracture (index into the interface laws)
+    std::vector<double> friction; ///< per law: tan(phi), to choose between the laws of two surfaces
+    int default_law = 0;          ///< of two surfaces of the domain's outline that meet
 };
 
 struct DetectedContacts {
-    std::vector<ContactPoint> points;           ///< sorted by key
+    std::vector<ContactPoint> points;            ///< sorted by key
     std::vector<std::pair<int, int>> near_pairs; ///< blocks that are near enough to touch soon, sorted
 };
 

@@ -62,7 +62,7 @@ private:
     struct Constrained {
         int block;
         std::vector<int> rows;
-        Mat6 projector;                              ///< onto the null space of the rows
+        Mat6 projector;                                   ///< onto the null space of the rows
         Eigen::Matrix<double, 6, Eigen::Dynamic> inverse; ///< pseudo-inverse of the rows
     };
     std::vector<PrescribedDisplacement> rows_;

@@ -24,14 +24,14 @@ struct EquilibriumProblem {
     std::vector<ContactPoint> bonds;
     std::vector<ContactPoint> contacts;
     std::vector<PressureEdge> pressure_edges;
-    std::vector<double> pressures;            ///< per boundary (Pa)
-    std::vector<double> densities;            ///< per material (kg/m3); empty without gravity
-    Vec2 gravity = Vec2::Zero();              ///< m/s2
+    std::vector<double> pressures; ///< per boundary (Pa)
+    std::vector<double> densities; ///< per material (kg/m3); empty without gravity
+    Vec2 gravity = Vec2::Zero();   ///< m/s2
     Constraints constraints;
-    double eta = 0.0;                         ///< of the mass-like term (Pa/m2); 0 switches it off
-    double least_mass_area = 0.0;             ///< a block counts with at least this area in M (m2)
-    Eigen::VectorXd start;                    ///< q_start of the mass-like term
-    std::vector<double> frozen_limits;        ///< shear limits of the contacts in the convex problem; else empty
+    double eta = 0.0;                  ///< of the mass-like term (Pa/m2); 0 switches it off
+    double least_mass_area = 0.0;      ///< a block counts with at least this area in M (m2)
+    Eigen::VectorXd start;             ///< q_start of the mass-like term
+    std::vector<double> frozen_limits; ///< shear limits of the contacts in the convex problem; else empty
 };
 
 enum class TangentKind {
@@ -55,8 +55,6 @@ public:
     void residual(const Eigen::VectorXd& q, Residual& result);
     /// dR/dq.
     void tangent(const Eigen::VectorXd& q, TangentKind kind, BlockMatrix& matrix);
-    /// The norm of eta M (q - q_start) (N/m).
-    [[nodiscard]] double viscous_force(const Eigen::VectorXd& q) const;
 
 private:
     using Slots = std::array<int, 4>; ///< entries (aa, ab, ba, bb) of the pattern
@@ -70,6 +68,9 @@ private:
     BlockMatrix bonds_and_mass_; ///< the part of the tangent that stays constant
     Eigen::VectorXd magnitudes_;
 };
+
+/// The norm of eta M (q - q_start) (N/m).
+[[nodiscard]] double viscous_force(const EquilibriumProblem& problem, const Eigen::VectorXd& q);
 
 /// The traction of a contact point of the problem at q; `i` indexes problem.contacts.
 [[nodiscard]] PointTraction contact_traction(const EquilibriumProblem& problem, int i, const Eigen::VectorXd& q);

@@ -10,12 +10,12 @@
 namespace kluft {
 
 struct OpenCloseOptions {
-    double tolerance = 1e-5;        ///< of |R|/F_ref
-    int max_iterations = 20;        ///< linear solves per attempt: give up early, a cut step is cheaper
+    double tolerance = 1e-5; ///< of |R|/F_ref
+    int max_iterations = 20; ///< linear solves per attempt: give up early, a cut step is cheaper
     TangentKind tangent = TangentKind::exact;
-    double strain_limit = 0.05;     ///< largest change of D per iteration, relative to the block's own size
-    double motion_limit = 0.04;     ///< largest motion of a block per iteration, relative to the lattice spacing
-    int max_lagged_rounds = 20;     ///< rounds of the lagged-limit scheme
+    double strain_limit = 0.05; ///< largest change of D per iteration, relative to the block's own size
+    double motion_limit = 0.04; ///< largest motion of a block per iteration, relative to the lattice spacing
+    int max_lagged_rounds = 20; ///< rounds of the lagged-limit scheme
 };
 
 enum class Termination {
@@ -46,6 +46,9 @@ public:
     /// true residual is in tolerance. Slower, but it converges where single fragments stop Newton.
     OpenCloseSummary solve_lagged(EquilibriumProblem& problem, const BlockPattern& pattern, Eigen::VectorXd& q);
 
+    /// Time spent so far in residuals and tangents (s).
+    [[nodiscard]] double assembly_seconds() const { return assembly_seconds_; }
+
 private:
     OpenCloseSummary iterate(const EquilibriumProblem& problem, const BlockPattern& pattern, TangentKind kind,
                              Eigen::VectorXd& q);
@@ -60,6 +63,7 @@ private:
 
     LinearSolver& linear_solver_;
     OpenCloseOptions options_;
+    double assembly_seconds_ = 0.0;
     BlockMatrix matrix_;
     Residual residual_;
     Residual trial_;

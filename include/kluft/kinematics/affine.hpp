@@ -15,7 +15,9 @@ using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 
 /// xi of a material point X of the block (dimensionless).
-[[nodiscard]] inline Vec2 block_coordinates(const Block& block, const Vec2& x) { return (x - block.centroid) / block.size; }
+[[nodiscard]] inline Vec2 block_coordinates(const Block& block, const Vec2& x) {
+    return (x - block.centroid) / block.size;
+}
 
 /// Displacement of the point xi of block `b` (m); q has size 6 n_blocks.
 [[nodiscard]] inline Vec2 displacement_at(const Eigen::VectorXd& q, int b, const Vec2& xi) {
