@@ -6,15 +6,18 @@
 #include <map>
 #include <numbers>
 #include <numeric>
+#include <string>
 #include <tuple>
 
 #include <fmt/format.h>
 
 #include "kluft/blocks/arrangement.hpp"
+#include "kluft/blocks/fracture_trace.hpp"
 #include "kluft/blocks/hexagon_lattice.hpp"
 #include "kluft/blocks/map_mender.hpp"
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/geometry/polygon.hpp"
+#include "kluft/geometry/segment_grid.hpp"
 
 namespace kluft {
 
@@ -168,25 +171,65 @@ void check_outline(const GeometrySpec& spec, const std::vector<SourceSegment>& s
     }
 }
 
-std::vector<SourceSegment> cutting_segments(const GeometrySpec& spec, const LocalFrame& frame,
-                                            const SourceNumbers& numbers) {
-    std::vector<SourceSegment> segments = outline_segments(spec, frame);
-    check_outline(spec, segments);
-    for (std::size_t f = 0; f < spec.fractures.size(); ++f) {
-        const Polygon points = frame.to_local(spec.fractures[f].points);
-        for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-            if (points[i] == points[i + 1]) continue;
-            segments.push_back({points[i], points[i + 1], numbers.first_fracture + static_cast<int>(f)});
+/// The smallest length that the cut resolves (m); see block_cutter.hpp.
+double resolution(const GeometrySpec& spec, const LocalFrame& frame) {
+    constexpr double of_spacing = 0.02;
+    constexpr double of_diagonal = 1e-9;
+    constexpr double of_position = 16.0 * std::numeric_limits<double>::epsilon();
+    const double farthest = frame.origin.cwiseAbs().maxCoeff() + frame.box.upper.maxCoeff();
+    return std::max({of_spacing * lattice_spacing(spec), of_diagonal * frame.box.upper.norm(), of_position * farthest});
+}
+
+std::vector<SourceTrace> local_traces(const GeometrySpec& spec, const LocalFrame& frame, const SourceNumbers& numbers) {
+    std::vector<SourceTrace> traces;
+    for (const FractureTrace& fracture : spec.fractures) {
+        traces.push_back({frame.to_local(fracture.points), numbers.first_fracture + static_cast<int>(traces.size())});
+    }
+    return traces;
+}
+
+void add_traces(std::vector<SourceSegment>& segments, const std::vector<SourceTrace>& traces) {
+    for (const SourceTrace& trace : traces) {
+        for (std::size_t i = 0; i + 1 < trace.points.size(); ++i) {
+            if (trace.points[i] == trace.points[i + 1]) continue;
+            segments.push_back({trace.points[i], trace.points[i + 1], trace.source});
         }
     }
-    if (spec.tessellation) {
-        const Polygon region = spec.tessellation->region ? frame.to_local(*spec.tessellation->region) : Polygon{};
-        const auto keeps = [&region](const Vec2& centre) { return region.empty() || contains(region, centre); };
-        for (const auto& [a, b] : hexagon_edges(spec.tessellation->hexagons, frame.box, keeps)) {
-            segments.push_back({a, b, numbers.tessellation});
-        }
-    }
-    return segments;
+}
+
+/// Adds the hexagons that the region keeps, and of these only those that can reach into the domain.
+void add_hexagons(std::vector<SourceSegment>& segments, const GeometrySpec& spec, const LocalFrame& frame,
+                  const SegmentGrid& outline, int source) {
+    const HexagonLattice& lattice = spec.tessellation->hexagons;
+    const Polygon domain = frame.to_local(spec.domain);
+    const Polygon region = spec.tessellation->region ? frame.to_local(*spec.tessellation->region) : Polygon{};
+    const double reach = lattice.spacing * (1.0 / std::numbers::sqrt3 + lattice.jitter);
+    const auto keeps = [&](const Vec2& centre) {
+        if (!region.empty() && !contains(region, centre)) return false;
+        return contains(domain, centre) || std::isfinite(outline.distance(centre, reach));
+    };
+    for (const auto& [a, b] : hexagon_edges(lattice, frame.box, keeps)) segments.push_back({a, b, source});
+}
+
+struct Cuts {
+    std::vector<SourceSegment> segments;
+    int joined_ends = 0;
+};
+
+Cuts cuts_of(const GeometrySpec& spec, const LocalFrame& frame, const SourceNumbers& numbers) {
+    Cuts cuts;
+    cuts.segments = outline_segments(spec, frame);
+    check_outline(spec, cuts.segments);
+    std::vector<SegmentGrid::Segment> sides;
+    for (const SourceSegment& side : cuts.segments) sides.emplace_back(side.a, side.b);
+
+    const std::vector<SourceTrace> traces = local_traces(spec, frame, numbers);
+    add_traces(cuts.segments, traces);
+    const std::vector<SourceSegment> bridges = bridge_ends(traces, cuts.segments, resolution(spec, frame));
+    cuts.segments.insert(cuts.segments.end(), bridges.begin(), bridges.end());
+    cuts.joined_ends = static_cast<int>(bridges.size());
+    if (spec.tessellation) add_hexagons(cuts.segments, spec, frame, SegmentGrid(sides), numbers.tessellation);
+    return cuts;
 }
 
 /// Every crossing of the outline changes sides: what an odd number of crossings separates from face 0 is the body.
@@ -218,46 +261,43 @@ void take_outside_away(PlanarMap& map, const SourceNumbers& numbers) {
     }
 }
 
-/// Connected pieces of fractures in the body with the same face on both sides, each fracture on its own.
-int count_free_pieces(const PlanarMap& map, const SourceNumbers& numbers) {
-    std::vector<int> pieces;                     // edges
-    std::map<std::pair<int, int>, int> first_at; // (fracture, vertex) -> piece
-    std::vector<int> root;
+/// Connected pieces of fractures in the body with the same face on both sides, each fracture on its own, that are
+/// longer than `shortest` in all.
+int count_free_pieces(const PlanarMap& map, const SourceNumbers& numbers, double shortest) {
+    std::vector<int> root;                       // of each free edge, in the order found
+    std::vector<double> length;                  // of the piece, at its root
+    std::map<std::pair<int, int>, int> first_at; // (source, vertex) -> free edge
     const auto find = [&root](int i) {
         while (root[i] != i) i = root[i] = root[root[i]];
         return i;
     };
-    int count = 0;
-    for (int e = 0; e < map.n_edges(); ++e) {
-        const int h = 2 * e;
+    for (int h = 0; h < 2 * map.n_edges(); h += 2) {
         const bool free = map.face(h) == map.face(h + 1) && map.face(h) != PlanarMap::outside;
         if (!free || map.source(h) >= numbers.tessellation) continue;
-        const int piece = static_cast<int>(root.size());
-        root.push_back(piece);
-        ++count;
+        const int edge = static_cast<int>(root.size());
+        root.push_back(edge);
+        length.push_back(map.length(h));
         for (const int v : {map.start(h), map.end(h)}) {
-            const auto [at, fresh] = first_at.emplace(std::pair(map.source(h), v), piece);
-            const int a = find(piece);
-            const int b = find(at->second);
+            const int a = find(edge);
+            const int b = find(first_at.emplace(std::pair(map.source(h), v), edge).first->second);
             if (a == b) continue;
             root[a] = b;
-            --count;
+            length[b] += length[a];
         }
     }
+    int count = 0;
+    for (int i = 0; i < static_cast<int>(root.size()); ++i) count += root[i] == i && length[i] > shortest ? 1 : 0;
     return count;
 }
 
 MendLimits mend_limits(const GeometrySpec& spec, const LocalFrame& frame, const SourceNumbers& numbers) {
-    constexpr double short_edge = 0.02;     // of the spacing
     constexpr double rounding_area = 1e-12; // of the domain, where no spacing is given
-    constexpr double rounding_edge = 1e-9;  // of the domain's diagonal, likewise
     const double d = lattice_spacing(spec);
-    const double diagonal = (frame.box.upper - frame.box.lower).norm();
     const double domain_area = std::abs(signed_area(spec.domain));
     MendLimits limits;
     limits.area = std::max(rounding_area * domain_area, spec.minimum_area * hexagon_area(d));
-    limits.edge = std::max(rounding_edge * diagonal, short_edge * d);
-    limits.collinear = 4.0 * std::numeric_limits<double>::epsilon() * diagonal;
+    limits.edge = resolution(spec, frame);
+    limits.collinear = 4.0 * std::numeric_limits<double>::epsilon() * frame.box.upper.norm();
     limits.first_fracture = numbers.first_fracture;
     limits.tessellation = numbers.tessellation;
     return limits;
@@ -294,7 +334,7 @@ public:
 
     BlockSystem build() {
         std::vector<Draft> drafts = draft_blocks();
-        sort_by_place(drafts, 1e-9 * (frame_.box.upper - frame_.box.lower).norm());
+        sort_by_place(drafts, 1e-9 * frame_.box.upper.norm());
         number_vertices(drafts);
         system_.origin = frame_.origin;
         system_.lower = frame_.box.lower;
@@ -446,10 +486,12 @@ CutBody cut_blocks(const GeometrySpec& spec) {
     const SourceNumbers numbers = number_sources(spec);
     const LocalFrame frame = local_frame(spec.domain);
 
-    PlanarMap map = arrange(cutting_segments(spec, frame, numbers));
-    take_outside_away(map, numbers);
     CutBody body;
-    body.report.pruned_ends = count_free_pieces(map, numbers);
+    Cuts cuts = cuts_of(spec, frame, numbers);
+    body.report.joined_ends = cuts.joined_ends;
+    PlanarMap map = arrange(cuts.segments);
+    take_outside_away(map, numbers);
+    body.report.pruned_ends = count_free_pieces(map, numbers, 2.0 * resolution(spec, frame));
     map.remove_edges_inside_faces();
 
     MendReport mended = mend(map, mend_limits(spec, frame, numbers));
