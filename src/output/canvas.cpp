@@ -85,7 +85,10 @@ void Canvas::trace(const std::vector<std::vector<Vec2>>& loops) {
     }
 }
 
-void Canvas::fill_page(const Colour& page) { fill_rectangle(Vec2::Zero(), {width_, height_}, page); }
+void Canvas::fill_page(const Colour& page) {
+    set(page);
+    cairo_paint(context_);
+}
 
 void Canvas::fill_rectangle(const Vec2& corner, const Vec2& size, const Colour& fill) {
     set(fill);
@@ -156,8 +159,16 @@ void Canvas::text(const Vec2& at, const std::string& text, const TextStyle& styl
     cairo_save(context_);
     cairo_translate(context_, at.x(), at.y());
     cairo_rotate(context_, style.angle);
-    cairo_move_to(context_, -share(style.across) * text_width(text, style),
-                  (1.0 - share(style.down)) * capital_height * style.size);
+    const double x = -share(style.across) * text_width(text, style);
+    const double y = (1.0 - share(style.down)) * capital_height * style.size;
+    if (style.halo > 0.0) {
+        cairo_move_to(context_, x, y);
+        cairo_text_path(context_, text.c_str());
+        set(Stroke{{1.0, 1.0, 1.0, 0.85}, 2.0 * style.halo});
+        cairo_stroke(context_);
+        set(style.colour);
+    }
+    cairo_move_to(context_, x, y);
     cairo_show_text(context_, text.c_str());
     cairo_restore(context_);
     cairo_new_path(context_);

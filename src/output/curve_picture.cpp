@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -77,21 +78,42 @@ std::vector<Vec2> places(const PlotFrame& frame, const std::vector<Vec2>& values
 
 void draw_unbalanced_marker(Canvas& canvas, const Vec2& at) { canvas.circle(at, 2.6, white, {unbalanced_colour, 1.1}); }
 
+/// The curve in stretches: solid between balanced points, dashed to and from unbalanced ones.
+void draw_line(Canvas& canvas, const PlotFrame& frame, const std::vector<PlottedPoint>& points, const Colour& line) {
+    std::vector<Vec2> solid;
+    std::vector<std::pair<Vec2, Vec2>> dashed;
+    const PlottedPoint* before = nullptr;
+    for (const PlottedPoint& point : points) {
+        if (!finite(point.value)) continue;
+        const Vec2 at = frame.place(point.value);
+        if (before != nullptr && !(before->balanced && point.balanced)) {
+            dashed.emplace_back(frame.place(before->value), at);
+            canvas.polyline(solid, {line, 1.5, {}, true});
+            solid.clear();
+        }
+        solid.push_back(at);
+        before = &point;
+    }
+    canvas.polyline(solid, {line, 1.5, {}, true});
+    canvas.segments(dashed, {unbalanced_colour, 0.8, {2.5, 2.0}});
+}
+
 void draw_curve(Canvas& canvas, const PlotFrame& frame, const PlottedCurve& curve, const Colour& line) {
-    std::vector<Vec2> values;
-    for (const PlottedPoint& point : curve.points) values.push_back(point.value);
-    const auto points = places(frame, values);
     if (!curve.fine.empty()) {
         Colour faint = line;
         faint.alpha = 0.35;
         canvas.polyline(places(frame, curve.fine), {faint, 0.6});
     }
-    canvas.polyline(points, {line, 1.5, {}, true});
+    draw_line(canvas, frame, curve.points, line);
     constexpr std::size_t most_markers = 60;
-    if (points.size() <= most_markers)
-        for (const Vec2& point : points) canvas.circle(point, 1.5, line, {line, 0.3});
-    for (const PlottedPoint& point : curve.points)
-        if (!point.balanced && finite(point.value)) draw_unbalanced_marker(canvas, frame.place(point.value));
+    for (const PlottedPoint& point : curve.points) {
+        if (!finite(point.value)) continue;
+        const Vec2 at = frame.place(point.value);
+        if (!point.balanced)
+            draw_unbalanced_marker(canvas, at);
+        else if (curve.points.size() <= most_markers)
+            canvas.circle(at, 1.5, line, {line, 0.3});
+    }
 }
 
 void draw_peak_marker(Canvas& canvas, const Vec2& at, const Colour& line) {
@@ -104,7 +126,7 @@ void draw_peak(Canvas& canvas, const PlotFrame& frame, const PlottedCurve& curve
     if (!curve.peak || !finite(*curve.peak)) return;
     const Vec2 at = frame.place(*curve.peak);
     draw_peak_marker(canvas, at, line);
-    TextStyle style{.size = 8.5, .colour = line};
+    const TextStyle style{.size = 8.5, .colour = line, .halo = 2.5};
     double width = 0.0;
     for (const std::string& text : curve.peak_text) width = std::max(width, canvas.text_width(text, style));
     const double left = frame.corner.x() + 4.0;
@@ -114,8 +136,6 @@ void draw_peak(Canvas& canvas, const PlotFrame& frame, const PlottedCurve& curve
     double y = at.y() - 8.0 - line_height * (static_cast<double>(curve.peak_text.size()) - 1.0);
     y = std::max(y, frame.corner.y() + line_height);
     for (const std::string& text : curve.peak_text) {
-        canvas.fill_rectangle({x - 2.0, y - 8.5}, {canvas.text_width(text, style) + 4.0, line_height},
-                              colour(0xFFFFFF, 0.8));
         canvas.text({x, y}, text, style);
         y += line_height;
     }
@@ -131,13 +151,11 @@ void draw_references(Canvas& canvas, const PlotFrame& frame, const std::vector<P
     for (const PlottedReference& reference : references) {
         const double right = frame.corner.x() + frame.size.x();
         if (reference.x) {
-            const Vec2 at = frame.place({*reference.x, reference.y});
-            draw_cross(canvas, at, reference_colour);
-            canvas.text(at + Vec2(7.0, -3.0), reference.label, {.size = 8.0, .colour = reference_colour});
+            draw_cross(canvas, frame.place({*reference.x, reference.y}), reference_colour);
         } else {
             const double y = frame.place({0.0, reference.y}).y();
             canvas.line({frame.corner.x(), y}, {right, y}, {reference_colour, 0.9, {5.0, 3.0}});
-            const TextStyle style{.size = 8.0, .colour = reference_colour, .across = Align::high};
+            const TextStyle style{.size = 8.0, .colour = reference_colour, .across = Align::high, .halo = 2.0};
             canvas.text({right - 5.0, y - 3.0}, reference.label, style);
         }
     }
@@ -156,6 +174,13 @@ std::vector<LegendEntry> legend_of(const CurvePlot& plot) {
         entries.push_back({plot.curves[i].label, [line](Canvas& canvas, const Vec2& middle) {
                                canvas.line(middle - Vec2(9.0, 0.0), middle + Vec2(9.0, 0.0), {line, 1.6});
                            }});
+    }
+    for (const PlottedReference& reference : plot.references) {
+        const bool listed = std::any_of(entries.begin(), entries.end(),
+                                        [&](const LegendEntry& entry) { return entry.label == reference.label; });
+        if (!reference.x || reference.label.empty() || listed) continue;
+        entries.push_back({reference.label,
+                           [](Canvas& canvas, const Vec2& middle) { draw_cross(canvas, middle, reference_colour); }});
     }
     if (any_unbalanced(plot)) entries.push_back({"unbalanced step", draw_unbalanced_marker});
     return entries;
@@ -230,8 +255,8 @@ PlottedCurve plotted_run(const RunCurve& run) {
         curve.fine.push_back(plotted(record));
     if (const auto peak = peak_row(run.equilibria.empty() ? run.history : run.equilibria)) {
         curve.peak = plotted(*peak);
-        curve.peak_text = {fmt::format("{:.3g} MPa at {:.2f} %", curve.peak->y(), curve.peak->x()),
-                           fmt::format("\u03c3\u2081 = {:.3g} MPa", peak->axial_stress / mega)};
+        curve.peak_text = {fmt::format("{:#.3g} MPa at {:.2f} %", curve.peak->y(), curve.peak->x()),
+                           fmt::format("\u03c3\u2081 = {:#.3g} MPa", peak->axial_stress / mega)};
     }
     return curve;
 }

@@ -45,7 +45,7 @@ TEST(CurvePicture, PlotsPercentAndMegapascalsFromTheStartOfThePlaten) {
     EXPECT_NEAR(plot.curves[0].points.back().value.x(), 2.0, 1e-12);
     EXPECT_NEAR(plot.curves[0].peak->x(), 1.2, 1e-12);
     EXPECT_NEAR(plot.curves[0].peak->y(), 1.2, 1e-12);
-    EXPECT_THAT(plot.curves[0].peak_text, ::testing::ElementsAre("1.2 MPa at 1.20 %", "\u03c3\u2081 = 1.4 MPa"));
+    EXPECT_THAT(plot.curves[0].peak_text, ::testing::ElementsAre("1.20 MPa at 1.20 %", "\u03c3\u2081 = 1.40 MPa"));
 }
 
 TEST(CurvePicture, NeverCallsAnUnbalancedStepAPeak) {

@@ -45,6 +45,7 @@ struct TextStyle {
     Align down = Align::high; ///< high: the place is on the base line
     bool bold = false;
     double angle = 0.0; ///< radians, clockwise on the page
+    double halo = 0.0;  ///< width of a white rim that keeps the text readable on lines, points
 };
 
 /// Lengths in points, x to the right, y down. Lives inside draw_picture.

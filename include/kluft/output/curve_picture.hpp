@@ -14,7 +14,7 @@ namespace kluft {
 
 struct PlottedPoint {
     Vec2 value = Vec2::Zero();
-    bool balanced = true; ///< otherwise drawn as a hollow red marker
+    bool balanced = true; ///< otherwise drawn as a hollow red marker with dashed lines to it
 };
 
 struct PlottedCurve {
@@ -25,7 +25,8 @@ struct PlottedCurve {
     std::vector<std::string> peak_text; ///< lines beside the peak
 };
 
-/// A published value to compare with: a level across the plot (no x) or a point.
+/// A published value to compare with, in the units of the plot: a level across it (no x; the label stands on the line)
+/// or a point (a cross; equal labels are listed once in the legend).
 struct PlottedReference {
     std::string label;
     std::optional<double> x;
