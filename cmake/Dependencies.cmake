@@ -1,0 +1,57 @@
+# Everything that Kluft builds on, each with the reason that the summary of the configuration prints.
+include(FeatureSummary)
+
+function(kluft_purpose name purpose)
+  set_package_properties(${name} PROPERTIES TYPE REQUIRED PURPOSE "${purpose}")
+endfunction()
+
+kluft_purpose(Eigen3 "small vectors and matrices")
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+
+kluft_purpose(SuiteSparse "sparse factorization: CHOLMOD, UMFPACK")
+find_package(SuiteSparse 5.12 REQUIRED)
+
+kluft_purpose(BLAS "dense kernels of the factorization: OpenBLAS")
+set(BLA_VENDOR OpenBLAS)
+find_package(BLAS QUIET)
+if(NOT BLAS_FOUND)
+  message(FATAL_ERROR "OpenBLAS was not found (Debian: libopenblas-pthread-dev). The reference BLAS is 2-5 times "
+                      "slower in the sparse factorization, so Kluft does not build with it.")
+endif()
+
+kluft_purpose(METIS "ordering of the block graph")
+find_package(METIS REQUIRED)
+
+kluft_purpose(CGAL "exact arrangement of fractures and hexagons")
+set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE TRUE)
+find_package(CGAL 5.5 REQUIRED CONFIG)
+
+kluft_purpose(yaml-cpp "scenes")
+find_package(yaml-cpp REQUIRED CONFIG)
+
+kluft_purpose(nlohmann_json "summaries and GeoJSON")
+find_package(nlohmann_json REQUIRED CONFIG)
+
+kluft_purpose(fmt "text")
+find_package(fmt REQUIRED CONFIG)
+
+kluft_purpose(spdlog "logging")
+find_package(spdlog REQUIRED CONFIG)
+
+kluft_purpose(CLI11 "command line")
+find_package(CLI11 REQUIRED CONFIG)
+
+kluft_purpose(HDF5 "saved states")
+set(HDF5_PREFER_PARALLEL OFF)
+find_package(HDF5 REQUIRED COMPONENTS C)
+
+kluft_purpose(PkgConfig "finds Cairo")
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo)
+
+kluft_purpose(Threads "assembly and studies")
+find_package(Threads REQUIRED)
+
+add_feature_info(tests KLUFT_BUILD_TESTS "GoogleTest, run by ctest")
+add_feature_info(sanitizers KLUFT_SANITIZE "address and undefined behaviour")
+add_feature_info(coverage KLUFT_COVERAGE "gcov counters")

@@ -1,0 +1,65 @@
+// Elastic moduli in the plane, stiffness of interfaces, and what both give for a body cut into regular hexagons.
+#pragma once
+
+#include "kluft/constitutive/material.hpp"
+
+namespace kluft {
+
+/// Lame constants of the plane problem (Pa): stress = 2 mu strain + lambda tr(strain) I with 2x2 tensors. In plane
+/// strain they are the rock's own; in plane stress lambda is 2 mu lambda/(lambda + 2 mu) of the rock's.
+struct ElasticModuli {
+    double lambda = 0.0;
+    double mu = 0.0;
+};
+
+/// Isotropic moduli of a body in the plane (Pa).
+struct LatticeModuli {
+    double youngs_modulus = 0.0; ///< E of the material, whatever the plane
+    double poissons_ratio = 0.0; ///< nu of the material, whatever the plane
+    double bulk_modulus = 0.0;   ///< K = lambda + mu of the plane problem: (s_xx + s_yy)/2 per unit change of area
+    double shear_modulus = 0.0;  ///< G = mu
+};
+
+/// Stiffness of an interface (Pa/m).
+struct InterfaceStiffness {
+    double normal = 0.0;
+    double shear = 0.0;
+};
+
+inline constexpr double default_stiffness_ratio = 10.0; ///< k_n d/E
+inline constexpr double default_shear_ratio = 0.5;      ///< k_s/k_n
+
+/// Plane-reduced Lame constants of a material with Young's modulus E (Pa) and Poisson's ratio nu.
+/// Throws InputError unless E > 0 and -1 < nu < 0.5.
+[[nodiscard]] ElasticModuli plane_moduli(double youngs_modulus, double poissons_ratio, Plane plane);
+
+/// E, nu, K and G of a material from its plane-reduced Lame constants; the inverse of plane_moduli.
+[[nodiscard]] LatticeModuli engineering_moduli(const ElasticModuli& moduli, Plane plane);
+
+/// Moduli of a body of regular hexagons with elastic blocks and elastic interfaces; exact for the infinite lattice:
+///   1/(2 K_eff) = 1/(2 K) + 1/(d k_n),   1/(2 G_eff) = 1/(2 G) + 2/(d (k_n + k_s))   (docs/theory.md, lattice).
+/// `spacing` d is the distance of centres = across flats (m).
+[[nodiscard]] LatticeModuli lattice_moduli(const ElasticModuli& blocks, const InterfaceStiffness& interfaces,
+                                           double spacing, Plane plane);
+
+/// Moduli that the blocks need so that the tessellated body has the rock's E and nu: lattice_moduli solved for the
+/// blocks, with k_n d = stiffness_ratio E and k_s = shear_ratio k_n.
+/// Throws InputError that names the smallest admissible stiffness_ratio where no positive moduli result.
+[[nodiscard]] ElasticModuli block_moduli(double youngs_modulus_of_rock, double poissons_ratio_of_rock, Plane plane,
+                                         double stiffness_ratio, double shear_ratio);
+
+/// The ratio k_n d/E at which the blocks of block_moduli would have to be rigid; admissible ratios are larger.
+[[nodiscard]] double smallest_stiffness_ratio(double poissons_ratio_of_rock, Plane plane, double shear_ratio);
+
+/// True where the stiffness is given by stiffness_ratio (or not at all), so that a material's E and nu are the rock's.
+[[nodiscard]] bool stiffness_from_ratio(const InterfaceType& type);
+
+/// Stiffness in Pa/m from whichever of the three ways the interface type uses: normal_stiffness (Pa/m),
+/// normal_stiffness_times_spacing (Pa) or stiffness_ratio (default, times E of the rock). A shear stiffness that is
+/// not given is shear_ratio (default 0.5) times the normal one. `spacing` (m) is needed by the two scaled ways.
+/// Throws InputError for two ways at once, a shear stiffness without its normal one or beside shear_ratio, a missing
+/// spacing or E, a normal stiffness that is not positive, or a negative shear stiffness.
+[[nodiscard]] InterfaceStiffness resolve_stiffness(const InterfaceType& type, double spacing,
+                                                   double youngs_modulus_of_rock);
+
+} // namespace kluft

@@ -1,0 +1,64 @@
+# Completion of kluft's subcommands and options for bash.
+
+_kluft() {
+    local word=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
+    local commands="run check draw compare envelope study validate calibrate"
+    COMPREPLY=()
+
+    local command="" index
+    for ((index = 1; index < COMP_CWORD; ++index)); do
+        if [[ " $commands " == *" ${COMP_WORDS[index]} "* ]]; then
+            command=${COMP_WORDS[index]}
+            break
+        fi
+    done
+
+    if [[ -z $command ]]; then
+        mapfile -t COMPREPLY < <(compgen -W "$commands --help --version" -- "$word")
+        return
+    fi
+
+    case "$previous" in
+    --emit)
+        mapfile -t COMPREPLY < <(compgen -W "slurm make" -- "$word")
+        return
+        ;;
+    --set | --threads | --jobs | --tolerance) return ;;
+    -o)
+        mapfile -t COMPREPLY < <(compgen -f -- "$word")
+        return
+        ;;
+    esac
+
+    local options="--help"
+    case "$command" in
+    run) options+=" -o --set --threads --quiet --resume" ;;
+    draw) options+=" -o" ;;
+    compare) options+=" --tolerance" ;;
+    study) options+=" -o --jobs --emit --collect" ;;
+    esac
+    if [[ $word == -* ]]; then
+        mapfile -t COMPREPLY < <(compgen -W "$options" -- "$word")
+        return
+    fi
+
+    case "$command" in
+    run | check | calibrate) _kluft_scenes "$word" ;;
+    draw) _kluft_scenes "$word" ;;
+    study)
+        _kluft_scenes "$word"
+        [[ $previous != study ]] || mapfile -t -O "${#COMPREPLY[@]}" COMPREPLY < <(compgen -W "step-size trade" -- "$word")
+        ;;
+    compare | envelope) mapfile -t COMPREPLY < <(compgen -d -- "$word") ;;
+    esac
+}
+
+# Scene files, and folders on the way to them.
+_kluft_scenes() {
+    mapfile -t COMPREPLY < <(
+        compgen -d -- "$1"
+        compgen -f -X '!*.@(yaml|yml|json)' -- "$1"
+    )
+}
+
+complete -o filenames -F _kluft kluft

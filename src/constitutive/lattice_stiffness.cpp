@@ -1,0 +1,136 @@
+#include "kluft/constitutive/lattice_stiffness.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "kluft/core/diagnostics.hpp"
+
+namespace kluft {
+
+namespace {
+
+void require_elastic(double youngs_modulus, double poissons_ratio) {
+    if (!(youngs_modulus > 0.0) || !std::isfinite(youngs_modulus))
+        throw InputError(fmt::format("youngs_modulus: expected a value in Pa > 0, got {:g}", youngs_modulus));
+    if (!(poissons_ratio > -1.0 && poissons_ratio < 0.5))
+        throw InputError(fmt::format("poissons_ratio: expected a value > -1 and < 0.5, got {:g}", poissons_ratio));
+}
+
+double bulk_modulus(const ElasticModuli& moduli) { return moduli.lambda + moduli.mu; }
+
+ElasticModuli moduli_from(double bulk, double shear) { return {.lambda = bulk - shear, .mu = shear}; }
+
+/// The next ratio above with four decimals: what the message names is itself admissible.
+double rounded_up(double ratio) { return (std::floor(ratio * 1e4) + 1.0) / 1e4; }
+
+bool given_in_pascal_per_metre(const InterfaceType& type) { return type.normal_stiffness || type.shear_stiffness; }
+
+bool given_times_spacing(const InterfaceType& type) {
+    return type.normal_stiffness_times_spacing || type.shear_stiffness_times_spacing;
+}
+
+[[noreturn]] void reject(const InterfaceType& type, const std::string& reason) {
+    throw InputError(fmt::format("interfaces/{}: {}", type.name, reason));
+}
+
+void require_one_way(const InterfaceType& type) {
+    const int ways =
+        int(given_in_pascal_per_metre(type)) + int(given_times_spacing(type)) + int(type.stiffness_ratio.has_value());
+    if (ways > 1)
+        reject(type,
+               "expected one of normal_stiffness, normal_stiffness_times_spacing and stiffness_ratio, got several");
+    if (type.shear_stiffness && !type.normal_stiffness) reject(type, "shear_stiffness needs normal_stiffness");
+    if (type.shear_stiffness_times_spacing && !type.normal_stiffness_times_spacing)
+        reject(type, "shear_stiffness_times_spacing needs normal_stiffness_times_spacing");
+    if (type.shear_ratio && (type.shear_stiffness || type.shear_stiffness_times_spacing))
+        reject(type, "expected a shear stiffness or shear_ratio, got both");
+}
+
+double required_spacing(const InterfaceType& type, double spacing) {
+    if (!(spacing > 0.0))
+        reject(type, fmt::format("{} needs a spacing: give geometry.tessellation or geometry.reference_spacing",
+                                 given_times_spacing(type) ? "normal_stiffness_times_spacing" : "stiffness_ratio"));
+    return spacing;
+}
+
+double normal_stiffness(const InterfaceType& type, double spacing, double youngs_modulus_of_rock) {
+    if (type.normal_stiffness) return *type.normal_stiffness;
+    if (type.normal_stiffness_times_spacing)
+        return *type.normal_stiffness_times_spacing / required_spacing(type, spacing);
+    if (!(youngs_modulus_of_rock > 0.0)) reject(type, "stiffness_ratio needs youngs_modulus of the rock in Pa > 0");
+    return type.stiffness_ratio.value_or(default_stiffness_ratio) * youngs_modulus_of_rock /
+           required_spacing(type, spacing);
+}
+
+double shear_stiffness(const InterfaceType& type, double spacing, double normal) {
+    if (type.shear_stiffness) return *type.shear_stiffness;
+    if (type.shear_stiffness_times_spacing) return *type.shear_stiffness_times_spacing / spacing;
+    return type.shear_ratio.value_or(default_shear_ratio) * normal;
+}
+
+} // namespace
+
+ElasticModuli plane_moduli(double youngs_modulus, double poissons_ratio, Plane plane) {
+    require_elastic(youngs_modulus, poissons_ratio);
+    const double mu = youngs_modulus / (2.0 * (1.0 + poissons_ratio));
+    const double through_thickness = plane == Plane::strain ? 1.0 - 2.0 * poissons_ratio : 1.0 - poissons_ratio;
+    return {.lambda = 2.0 * mu * poissons_ratio / through_thickness, .mu = mu};
+}
+
+LatticeModuli engineering_moduli(const ElasticModuli& moduli, Plane plane) {
+    const double bulk = bulk_modulus(moduli);
+    const double shear = moduli.mu;
+    const double poissons_ratio = plane == Plane::strain ? (1.0 - shear / bulk) / 2.0 : (bulk - shear) / (bulk + shear);
+    return {.youngs_modulus = 2.0 * shear * (1.0 + poissons_ratio),
+            .poissons_ratio = poissons_ratio,
+            .bulk_modulus = bulk,
+            .shear_modulus = shear};
+}
+
+LatticeModuli lattice_moduli(const ElasticModuli& blocks, const InterfaceStiffness& interfaces, double spacing,
+                             Plane plane) {
+    const double bulk_compliance = 1.0 / (2.0 * bulk_modulus(blocks)) + 1.0 / (spacing * interfaces.normal);
+    const double shear_compliance = 1.0 / (2.0 * blocks.mu) + 2.0 / (spacing * (interfaces.normal + interfaces.shear));
+    return engineering_moduli(moduli_from(0.5 / bulk_compliance, 0.5 / shear_compliance), plane);
+}
+
+double smallest_stiffness_ratio(double poissons_ratio_of_rock, Plane plane, double shear_ratio) {
+    const ElasticModuli rock = plane_moduli(1.0, poissons_ratio_of_rock, plane);
+    return std::max(2.0 * bulk_modulus(rock), 4.0 * rock.mu / (1.0 + shear_ratio));
+}
+
+ElasticModuli block_moduli(double youngs_modulus_of_rock, double poissons_ratio_of_rock, Plane plane,
+                           double stiffness_ratio, double shear_ratio) {
+    if (!(shear_ratio >= 0.0))
+        throw InputError(fmt::format("shear_ratio: expected a value >= 0, got {:g}", shear_ratio));
+    const ElasticModuli rock = plane_moduli(youngs_modulus_of_rock, poissons_ratio_of_rock, plane);
+    const double smallest = smallest_stiffness_ratio(poissons_ratio_of_rock, plane, shear_ratio);
+    if (!(stiffness_ratio > smallest))
+        throw InputError(fmt::format(
+            "stiffness_ratio: {:g} is too small: with poissons_ratio {:g} and shear_ratio {:g} no blocks are stiff "
+            "enough to give the rock's youngs_modulus; the smallest admissible ratio is {:.4f}",
+            stiffness_ratio, poissons_ratio_of_rock, shear_ratio, rounded_up(smallest)));
+    const double normal_times_spacing = stiffness_ratio * youngs_modulus_of_rock;
+    const double bulk_compliance = 1.0 / (2.0 * bulk_modulus(rock)) - 1.0 / normal_times_spacing;
+    const double shear_compliance = 1.0 / (2.0 * rock.mu) - 2.0 / (normal_times_spacing * (1.0 + shear_ratio));
+    return moduli_from(0.5 / bulk_compliance, 0.5 / shear_compliance);
+}
+
+bool stiffness_from_ratio(const InterfaceType& type) {
+    return !given_in_pascal_per_metre(type) && !given_times_spacing(type);
+}
+
+InterfaceStiffness resolve_stiffness(const InterfaceType& type, double spacing, double youngs_modulus_of_rock) {
+    require_one_way(type);
+    const double normal = normal_stiffness(type, spacing, youngs_modulus_of_rock);
+    const double shear = shear_stiffness(type, spacing, normal);
+    if (!(normal > 0.0) || !std::isfinite(normal))
+        reject(type, fmt::format("expected a normal stiffness in Pa/m > 0, got {:g}", normal));
+    if (!(shear >= 0.0) || !std::isfinite(shear))
+        reject(type, fmt::format("expected a shear stiffness in Pa/m >= 0, got {:g}", shear));
+    return {.normal = normal, .shear = shear};
+}
+
+} // namespace kluft

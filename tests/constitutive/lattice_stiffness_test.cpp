@@ -1,0 +1,207 @@
+#include "kluft/constitutive/lattice_stiffness.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kluft/core/diagnostics.hpp"
+
+namespace kluft {
+namespace {
+
+constexpr double youngs_modulus = 10e9;
+constexpr double poissons_ratio = 0.25;
+constexpr double spacing = 0.03;
+
+// E' = E/(1 - nu^2), nu' = nu/(1 - nu) in plane strain; E' = E, nu' = nu in plane stress.
+double in_plane_youngs_modulus(const LatticeModuli& moduli) {
+    return 4.0 * moduli.bulk_modulus * moduli.shear_modulus / (moduli.bulk_modulus + moduli.shear_modulus);
+}
+double in_plane_poissons_ratio(const LatticeModuli& moduli) {
+    return (moduli.bulk_modulus - moduli.shear_modulus) / (moduli.bulk_modulus + moduli.shear_modulus);
+}
+
+std::string input_error_of(const auto& action) {
+    try {
+        action();
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+TEST(PlaneModuli, GiveHookesLawOfUniaxialStressInPlaneStress) {
+    // s_xx = s, s_yy = 0: e_xx = s/E, e_yy = -nu s/E.
+    const ElasticModuli moduli = plane_moduli(youngs_modulus, poissons_ratio, Plane::stress);
+    const double e_xx = 1.0 / youngs_modulus;
+    const double e_yy = -poissons_ratio / youngs_modulus;
+    EXPECT_NEAR(2.0 * moduli.mu * e_xx + moduli.lambda * (e_xx + e_yy), 1.0, 1e-14);
+    EXPECT_NEAR(2.0 * moduli.mu * e_yy + moduli.lambda * (e_xx + e_yy), 0.0, 1e-14);
+}
+
+TEST(PlaneModuli, GiveHookesLawWithoutThicknessStrainInPlaneStrain) {
+    // s_zz = nu s: e_xx = (1 - nu^2) s/E, e_yy = -nu (1 + nu) s/E.
+    const ElasticModuli moduli = plane_moduli(youngs_modulus, poissons_ratio, Plane::strain);
+    const double e_xx = (1.0 - poissons_ratio * poissons_ratio) / youngs_modulus;
+    const double e_yy = -poissons_ratio * (1.0 + poissons_ratio) / youngs_modulus;
+    EXPECT_NEAR(2.0 * moduli.mu * e_xx + moduli.lambda * (e_xx + e_yy), 1.0, 1e-14);
+    EXPECT_NEAR(2.0 * moduli.mu * e_yy + moduli.lambda * (e_xx + e_yy), 0.0, 1e-14);
+}
+
+TEST(PlaneModuli, AreUndoneByEngineeringModuli) {
+    for (const Plane plane : {Plane::strain, Plane::stress})
+        for (const double nu : {-0.5, 0.0, 0.139, 0.25, 0.49}) {
+            const LatticeModuli moduli = engineering_moduli(plane_moduli(1500e6, nu, plane), plane);
+            EXPECT_NEAR(moduli.youngs_modulus, 1500e6, 1e-3);
+            EXPECT_NEAR(moduli.poissons_ratio, nu, 1e-14);
+        }
+}
+
+TEST(PlaneModuli, RejectWhatNoMaterialHas) {
+    EXPECT_THROW((void)plane_moduli(0.0, 0.25, Plane::strain), InputError);
+    EXPECT_THROW((void)plane_moduli(-1.0, 0.25, Plane::strain), InputError);
+    EXPECT_THROW((void)plane_moduli(std::nan(""), 0.25, Plane::strain), InputError);
+    EXPECT_THROW((void)plane_moduli(1e9, 0.5, Plane::strain), InputError);
+    EXPECT_THROW((void)plane_moduli(1e9, -1.0, Plane::stress), InputError);
+    EXPECT_THROW((void)plane_moduli(1e9, std::nan(""), Plane::stress), InputError);
+}
+
+// 1/(2K_eff) = (1 - nu)/E + 1/(d k_n), 1/(2G_eff) = (1 + nu)/E + 2/(1.4 d k_n), by hand.
+TEST(LatticeModuliFormula, MeetsTheTableInPlaneStress) {
+    const ElasticModuli blocks = plane_moduli(youngs_modulus, poissons_ratio, Plane::stress);
+    const LatticeModuli moduli = lattice_moduli(blocks, {.normal = 1e11, .shear = 0.4e11}, spacing, Plane::stress);
+    EXPECT_NEAR(moduli.youngs_modulus, 1.98113e9, 5e3);
+    EXPECT_NEAR(moduli.poissons_ratio, 0.19104, 5e-6);
+    EXPECT_NEAR(moduli.shear_modulus, 0.83168e9, 5e3);
+}
+
+TEST(LatticeModuliFormula, MeetsTheTableInPlaneStrain) {
+    const ElasticModuli blocks = plane_moduli(youngs_modulus, poissons_ratio, Plane::strain);
+    const LatticeModuli moduli = lattice_moduli(blocks, {.normal = 1e12, .shear = 0.4e12}, spacing, Plane::strain);
+    EXPECT_NEAR(in_plane_youngs_modulus(moduli), 7.45011e9, 5e3);
+    EXPECT_NEAR(in_plane_poissons_ratio(moduli), 0.28603, 5e-6);
+    EXPECT_NEAR(moduli.shear_modulus, 2.89655e9, 5e3);
+}
+
+TEST(LatticeModuliFormula, GivesTheModuliOfTheReferenceSet) {
+    // E 1500 MPa, nu 0.25 with k_n d = 200 MPa, k_s = k_n/2 is a body of E 152 MPa and nu 0.139 in plane strain.
+    const ElasticModuli blocks = plane_moduli(1500e6, 0.25, Plane::strain);
+    const LatticeModuli moduli = lattice_moduli(blocks, {.normal = 4000e6, .shear = 2000e6}, 0.05, Plane::strain);
+    EXPECT_NEAR(moduli.youngs_modulus, 152e6, 0.5e6);
+    EXPECT_NEAR(moduli.poissons_ratio, 0.139, 5e-4);
+}
+
+TEST(LatticeModuliFormula, AddsTheEnergyOfTheFacesOfAHexagonToThatOfTheBlock) {
+    // Uniaxial stress s at angle a to a face normal loads the face by t_n = s (1/2 + cos 2a/(1+r)) and
+    // t_s = s sin 2a r/(1+r). A cell of area sqrt(3)/2 d^2 owns three faces of length d/sqrt(3). Equal work:
+    // s^2/E'_eff = s^2/E'_block + sum of length (t_n^2/k_n + t_s^2/k_s)/area.
+    const double k_n = 2e11;
+    const double r = 0.4;
+    const ElasticModuli blocks = plane_moduli(youngs_modulus, poissons_ratio, Plane::stress);
+    const LatticeModuli moduli = lattice_moduli(blocks, {.normal = k_n, .shear = r * k_n}, spacing, Plane::stress);
+    const double area = std::numbers::sqrt3 / 2.0 * spacing * spacing;
+    for (const double direction : {0.0, 0.3, std::numbers::pi / 6.0}) {
+        double compliance = 1.0 / youngs_modulus;
+        for (int face = 0; face < 3; ++face) {
+            const double a = direction + face * std::numbers::pi / 3.0;
+            const double t_n = 0.5 + std::cos(2.0 * a) / (1.0 + r);
+            const double t_s = std::sin(2.0 * a) * r / (1.0 + r);
+            compliance += spacing / std::numbers::sqrt3 * (t_n * t_n / k_n + t_s * t_s / (r * k_n)) / area;
+        }
+        EXPECT_NEAR(compliance * moduli.youngs_modulus, 1.0, 1e-12) << "direction " << direction;
+    }
+    // The same sum in closed form: (3 + r)/(2 d k_n (1 + r)).
+    EXPECT_NEAR(1.0 / moduli.youngs_modulus, 1.0 / youngs_modulus + (3.0 + r) / (2.0 * spacing * k_n * (1.0 + r)),
+                1e-12 / youngs_modulus);
+}
+
+TEST(LatticeModuliFormula, ApproachesTheBlocksForStiffInterfaces) {
+    const ElasticModuli blocks = plane_moduli(youngs_modulus, poissons_ratio, Plane::strain);
+    const LatticeModuli moduli = lattice_moduli(blocks, {.normal = 1e20, .shear = 1e20}, spacing, Plane::strain);
+    EXPECT_NEAR(moduli.youngs_modulus / youngs_modulus, 1.0, 1e-7);
+    EXPECT_NEAR(moduli.poissons_ratio, poissons_ratio, 1e-7);
+}
+
+TEST(BlockModuli, MakeTheTessellatedBodyAsStiffAsTheRock) {
+    for (const Plane plane : {Plane::strain, Plane::stress})
+        for (const double nu : {0.0, 0.1, 0.25, 0.35})
+            for (const double ratio : {5.0, 10.0, 20.0})
+                for (const double shear_ratio : {0.2, 0.5, 1.0}) {
+                    const ElasticModuli blocks = block_moduli(5e9, nu, plane, ratio, shear_ratio);
+                    const double k_n = ratio * 5e9 / spacing;
+                    const LatticeModuli body =
+                        lattice_moduli(blocks, {.normal = k_n, .shear = shear_ratio * k_n}, spacing, plane);
+                    EXPECT_NEAR(body.youngs_modulus / 5e9, 1.0, 1e-12);
+                    EXPECT_NEAR(body.poissons_ratio, nu, 1e-12);
+                }
+}
+
+TEST(BlockModuli, NameTheSmallestAdmissibleRatio) {
+    // Plane strain, nu 0.25: 2K/E = 1/((1+nu)(1-2nu)) = 1.6; 2*2G/(E(1+r)) = 2/(1.25*1.5) = 1.0667.
+    EXPECT_NEAR(smallest_stiffness_ratio(0.25, Plane::strain, 0.5), 1.6, 1e-14);
+    // Plane stress, nu 0: 2K/E = 1; with r = 0: 4G/E = 2 governs.
+    EXPECT_NEAR(smallest_stiffness_ratio(0.0, Plane::stress, 0.0), 2.0, 1e-14);
+    const auto too_soft = [] { (void)block_moduli(5e9, 0.25, Plane::strain, 1.5, 0.5); };
+    EXPECT_THAT(input_error_of(too_soft), testing::HasSubstr("smallest admissible ratio is 1.6001"));
+    EXPECT_NO_THROW((void)block_moduli(5e9, 0.25, Plane::strain, 1.6001, 0.5));
+    EXPECT_THROW((void)block_moduli(5e9, 0.25, Plane::strain, std::nan(""), 0.5), InputError);
+}
+
+TEST(ResolveStiffness, TakesPascalPerMetreAsTheyAre) {
+    InterfaceType type{.name = "joint"};
+    type.normal_stiffness = 4e9;
+    type.shear_stiffness = 1e9;
+    const InterfaceStiffness stiffness = resolve_stiffness(type, 0.0, 0.0);
+    EXPECT_EQ(stiffness.normal, 4e9);
+    EXPECT_EQ(stiffness.shear, 1e9);
+    EXPECT_FALSE(stiffness_from_ratio(type));
+}
+
+TEST(ResolveStiffness, DividesStiffnessTimesSpacingByTheSpacing) {
+    InterfaceType type{.name = "joint"};
+    type.normal_stiffness_times_spacing = 200e6;
+    type.shear_stiffness_times_spacing = 50e6;
+    const InterfaceStiffness stiffness = resolve_stiffness(type, 0.05, 0.0);
+    EXPECT_DOUBLE_EQ(stiffness.normal, 4000e6);
+    EXPECT_DOUBLE_EQ(stiffness.shear, 1000e6);
+    EXPECT_FALSE(stiffness_from_ratio(type));
+}
+
+TEST(ResolveStiffness, ScalesWithTheRockByDefault) {
+    const InterfaceType type{.name = "bond"};
+    const InterfaceStiffness stiffness = resolve_stiffness(type, 0.05, 1e9);
+    EXPECT_DOUBLE_EQ(stiffness.normal, 10.0 * 1e9 / 0.05);
+    EXPECT_DOUBLE_EQ(stiffness.shear, 0.5 * stiffness.normal);
+    EXPECT_TRUE(stiffness_from_ratio(type));
+}
+
+TEST(ResolveStiffness, AppliesTheShearRatioToEveryWay) {
+    InterfaceType type{.name = "joint"};
+    type.normal_stiffness = 4e9;
+    type.shear_ratio = 0.25;
+    EXPECT_DOUBLE_EQ(resolve_stiffness(type, 0.0, 0.0).shear, 1e9);
+    type.shear_ratio.reset();
+    EXPECT_DOUBLE_EQ(resolve_stiffness(type, 0.0, 0.0).shear, 2e9);
+}
+
+TEST(ResolveStiffness, RejectsWhatIsMissingOrContradictory) {
+    const auto error = [](InterfaceType type, double d, double youngs) {
+        type.name = "joint";
+        return input_error_of([&] { (void)resolve_stiffness(type, d, youngs); });
+    };
+    EXPECT_THAT(error({.stiffness_ratio = 10.0}, 0.0, 1e9), testing::HasSubstr("reference_spacing"));
+    EXPECT_THAT(error({.stiffness_ratio = 10.0}, 0.05, 0.0), testing::HasSubstr("youngs_modulus"));
+    EXPECT_THAT(error({.normal_stiffness_times_spacing = 1e6}, 0.0, 1e9), testing::HasSubstr("interfaces/joint"));
+    EXPECT_THAT(error({.normal_stiffness = 1e9, .stiffness_ratio = 10.0}, 0.05, 1e9), testing::HasSubstr("several"));
+    EXPECT_THAT(error({.shear_stiffness = 1e9}, 0.05, 1e9), testing::HasSubstr("needs normal_stiffness"));
+    EXPECT_THAT(error({.normal_stiffness = 1e9, .shear_stiffness = 1e9, .shear_ratio = 0.5}, 0.05, 1e9),
+                testing::HasSubstr("got both"));
+    EXPECT_THAT(error({.normal_stiffness = 0.0}, 0.05, 1e9), testing::HasSubstr("> 0"));
+    EXPECT_THAT(error({.normal_stiffness = 1e9, .shear_stiffness = -1.0}, 0.05, 1e9), testing::HasSubstr(">= 0"));
+}
+
+} // namespace
+} // namespace kluft

@@ -1,0 +1,163 @@
+// Reads the #include lines of the sources: a file includes its own layer and lower ones, and every library of others
+// stays in the one layer that hides it.
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace kluft {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path root = KLUFT_SOURCE_DIR;
+
+/// Low to high; layers of one rank are siblings and do not include each other.
+const std::map<std::string, int> rank_of_layer{
+    {"core", 0},    {"geometry", 1},   {"blocks", 2},      {"kinematics", 3},   {"constitutive", 4}, {"contact", 5},
+    {"loading", 6}, {"assembly", 7},   {"equilibrium", 8}, {"fracture", 9},     {"simulation", 10},  {"scene", 11},
+    {"output", 11}, {"reference", 11}, {"studies", 12},    {"calibration", 12}, {"apps", 13},
+};
+
+/// Which layers may include a header of another project, by the start of its name. What is not listed is free.
+const std::map<std::string, std::set<std::string>> layers_of_library{
+    {"cholmod", {"assembly"}},
+    {"umfpack", {"assembly"}},
+    {"SuiteSparse", {"assembly"}},
+    {"suitesparse/", {"assembly"}},
+    {"metis", {"assembly"}},
+    {"cblas", {"assembly"}},
+    {"openblas", {"assembly"}},
+    {"yaml-cpp/", {"scene"}},
+    {"CGAL/", {"blocks"}},
+    {"hdf5", {"output"}},
+    {"H5", {"output"}},
+    {"cairo", {"output"}},
+    {"CLI/", {"apps"}},
+    {"coin", {"calibration"}},
+    {"Ip", {"calibration"}},
+};
+
+/// Heavy headers have no place in what everyone includes.
+const std::vector<std::string> never_in_public_headers{
+    "cholmod", "umfpack", "SuiteSparse", "suitesparse/", "metis", "cblas", "openblas",  "yaml-cpp/", "CGAL/",
+    "hdf5",    "H5",      "cairo",       "CLI/",         "coin",  "Ip",    "nlohmann/", "spdlog/",   "fmt/"};
+
+struct Include {
+    std::string name;
+    int line = 0;
+};
+
+bool is_source(const fs::path& path) { return path.extension() == ".cpp" || path.extension() == ".hpp"; }
+
+std::vector<fs::path> sources_under(const fs::path& folder) {
+    std::vector<fs::path> files;
+    if (!fs::exists(folder)) return files;
+    for (const auto& entry : fs::recursive_directory_iterator(folder))
+        if (entry.is_regular_file() && is_source(entry.path())) files.push_back(entry.path());
+    std::sort(files.begin(), files.end());
+    return files;
+}
+
+std::vector<Include> includes_of(const fs::path& file) {
+    static const std::regex pattern(R"(^\s*#\s*include\s*[<"]([^>"]+)[>"])");
+    std::vector<Include> includes;
+    std::ifstream stream(file);
+    std::string line;
+    for (int number = 1; std::getline(stream, line); ++number) {
+        std::smatch match;
+        if (std::regex_search(line, match, pattern)) includes.push_back({.name = match[1], .line = number});
+    }
+    return includes;
+}
+
+/// First folder of a path: the layer of "blocks/block_system.hpp".
+std::string first_folder(const fs::path& path) { return path.begin()->string(); }
+
+std::string layer_of_file(const fs::path& file) {
+    const fs::path relative = file.lexically_relative(root);
+    if (first_folder(relative) == "apps") return "apps";
+    const fs::path base = first_folder(relative) == "include" ? root / "include" / "kluft" : root / "src";
+    return first_folder(file.lexically_relative(base));
+}
+
+std::string complaint(const fs::path& file, const Include& include, const std::string& reason) {
+    return file.lexically_relative(root).string() + ":" + std::to_string(include.line) + " includes " + include.name +
+           ": " + reason;
+}
+
+std::vector<fs::path> all_sources() {
+    std::vector<fs::path> files;
+    for (const char* const folder : {"include", "src", "apps"})
+        for (const fs::path& file : sources_under(root / folder)) files.push_back(file);
+    return files;
+}
+
+/// "" where the include is allowed.
+std::string reason_against_layer(const std::string& layer, const std::string& other) {
+    if (!rank_of_layer.contains(other)) return "no such layer";
+    if (other == layer) return "";
+    if (rank_of_layer.at(other) >= rank_of_layer.at(layer)) return other + " is not below " + layer;
+    if (layer == "reference" && (other == "assembly" || other == "equilibrium"))
+        return "the explicit reference shares nothing with the implicit solver";
+    return "";
+}
+
+TEST(Layering, KnowsEveryFolder) {
+    std::vector<std::string> unknown;
+    for (const fs::path& file : all_sources())
+        if (!rank_of_layer.contains(layer_of_file(file))) unknown.push_back(file.string());
+    EXPECT_THAT(unknown, testing::IsEmpty());
+    EXPECT_THAT(all_sources(), testing::Not(testing::IsEmpty()));
+}
+
+TEST(Layering, HasNoUpwardInclude) {
+    std::vector<std::string> upward;
+    for (const fs::path& file : all_sources())
+        for (const Include& include : includes_of(file)) {
+            if (!include.name.starts_with("kluft/")) continue;
+            const std::string other = first_folder(fs::path(include.name).lexically_relative("kluft"));
+            const std::string reason = reason_against_layer(layer_of_file(file), other);
+            if (!reason.empty()) upward.push_back(complaint(file, include, reason));
+        }
+    EXPECT_THAT(upward, testing::IsEmpty());
+}
+
+TEST(Layering, KeepsEveryLibraryInTheLayerThatHidesIt) {
+    std::vector<std::string> leaks;
+    for (const fs::path& file : all_sources())
+        for (const Include& include : includes_of(file))
+            for (const auto& [library, layers] : layers_of_library)
+                if (include.name.starts_with(library) && !layers.contains(layer_of_file(file)))
+                    leaks.push_back(complaint(file, include, "belongs in " + *layers.begin()));
+    EXPECT_THAT(leaks, testing::IsEmpty());
+}
+
+TEST(Layering, KeepsHeavyHeadersOutOfPublicOnes) {
+    std::vector<std::string> leaks;
+    for (const fs::path& file : sources_under(root / "include"))
+        for (const Include& include : includes_of(file))
+            for (const std::string& library : never_in_public_headers)
+                if (include.name.starts_with(library))
+                    leaks.push_back(complaint(file, include, "include it in a source file"));
+    EXPECT_THAT(leaks, testing::IsEmpty());
+}
+
+TEST(Layering, JudgesByTheOrderOfTheLayers) {
+    EXPECT_EQ(reason_against_layer("contact", "blocks"), "");
+    EXPECT_EQ(reason_against_layer("contact", "contact"), "");
+    EXPECT_NE(reason_against_layer("blocks", "contact"), "");
+    EXPECT_NE(reason_against_layer("scene", "output"), "");
+    EXPECT_NE(reason_against_layer("reference", "assembly"), "");
+    EXPECT_NE(reason_against_layer("contact", "utilities"), "");
+}
+
+} // namespace
+} // namespace kluft
