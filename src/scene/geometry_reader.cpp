@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include "kluft/core/diagnostics.hpp"
+#include "kluft/geometry/polygon.hpp"
 #include "kluft/scene/geojson.hpp"
 #include "kluft/scene/outline.hpp"
 #include "kluft/scene/scene_check.hpp"
@@ -22,7 +23,8 @@ namespace kluft {
 
 namespace {
 
-constexpr double most_hexagons = 2e7; ///< beyond what memory holds: the spacing's unit is wrong
+constexpr int most_sides_checked = 2000; ///< of a polygon here; the block cutter checks all
+constexpr double most_hexagons = 2e7;    ///< beyond what memory holds: the spacing's unit is wrong
 
 /// Where neighbouring points coincide, if anywhere: the second one's index.
 std::optional<std::size_t> repeated_point(const std::vector<Vec2>& points) {
@@ -32,17 +34,9 @@ std::optional<std::size_t> repeated_point(const std::vector<Vec2>& points) {
 }
 
 bool boxes_meet(const std::vector<Vec2>& a, const std::vector<Vec2>& b) {
-    const auto box = [](const std::vector<Vec2>& points) {
-        Vec2 lower = points.front(), upper = points.front();
-        for (const auto& point : points) {
-            lower = lower.cwiseMin(point);
-            upper = upper.cwiseMax(point);
-        }
-        return std::pair{lower, upper};
-    };
-    const auto [lower_a, upper_a] = box(a);
-    const auto [lower_b, upper_b] = box(b);
-    return (lower_a.array() <= upper_b.array()).all() && (lower_b.array() <= upper_a.array()).all();
+    const Box box_a = bounding_box(a);
+    const Box box_b = bounding_box(b);
+    return (box_a.lower.array() <= box_b.upper.array()).all() && (box_b.lower.array() <= box_a.upper.array()).all();
 }
 
 /// "expected one of a, b, found both"; counts how many of the keys are given.
@@ -134,12 +128,14 @@ private:
         if (!points) return {};
         if (points->size() > 3 && points->front() == points->back()) points->pop_back();
         if (!has_distinct_points(section, key, *points)) return {};
-        if (const auto crossing = crossing_sides(*points))
+        if (const auto crossing = crossing_sides(*points, most_sides_checked))
             context_.fail(section, key,
                           fmt::format("expected a simple polygon, found sides {} and {} (counted from 0) that cross",
                                       crossing->first, crossing->second));
         else if (signed_area(*points) == 0.0)
             context_.fail(section, key, "expected a polygon with an area, found none");
+        else if (static_cast<int>(points->size()) < most_sides_checked && !is_simple(*points))
+            context_.fail(section, key, "expected a simple polygon, found one that touches itself");
         else
             return *points;
         return {};

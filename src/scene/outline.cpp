@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "kluft/core/vector.hpp"
+#include "kluft/geometry/polygon.hpp"
 
 namespace kluft {
 
@@ -47,13 +48,6 @@ std::string_view facing_name(Facing facing) {
         return "bottom";
     }
     return "";
-}
-
-double signed_area(const Polygon& polygon) {
-    double twice = 0.0;
-    for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
-        twice += cross(polygon[i] - polygon[0], polygon[i + 1] - polygon[0]);
-    return 0.5 * twice;
 }
 
 Polygon counter_clockwise(const Polygon& polygon) {

@@ -268,7 +268,7 @@ SceneNode parse_scene_tree(std::string_view text, int source, const TextPosition
     } catch (const YAML::Exception& error) {
         const TextPosition at{source, origin.line + std::max(error.mark.line, 0),
                               std::max(error.mark.column, 0) + (error.mark.line > 0 ? 1 : origin.column)};
-        errors.add(at, {}, fmt::format("expected YAML, found what is none: {}", error.msg));
+        errors.add(at, {}, fmt::format("expected valid YAML, found a mistake: {}", error.msg));
         return {};
     } catch (const TooDeep&) {
         return {};

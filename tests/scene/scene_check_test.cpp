@@ -243,6 +243,8 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"geometry.tessellation.region=[[1, 0], [2, 1], [2, 0], [1, 1]]",
                 "geometry.tessellation.region: expected a simple polygon, found sides 0 and 2 (counted from 0) that "
                 "cross"},
+        Refusal{"geometry.tessellation.region=[[0, 0], [4, 0], [4, 4], [2, 0], [0, 4]]",
+                "geometry.tessellation.region: expected a simple polygon, found one that touches itself"},
         Refusal{"geometry.regions.0.polygon=[[0, 0], [1, 1], [2, 2]]",
                 "geometry.regions.0.polygon: expected a polygon with an area, found none"},
         Refusal{"geometry.tessellation.hexagons.spacing=0.2 mm",

@@ -190,7 +190,7 @@ TEST(Overrides, ThatAreWrongSayWhichOne) {
                             "of everything'"));
     EXPECT_THAT(errors_with({"extends=other.yaml"}), ElementsAre(HasSubstr("expected a key that can be overridden")));
     EXPECT_THAT(errors_with({"solver.tolerance=[1"}),
-                testing::Contains(HasSubstr("expected YAML, found what is none")));
+                testing::Contains(HasSubstr("expected valid YAML, found a mistake")));
     EXPECT_THAT(errors_with({std::string("title=a\0b", 9)}), ElementsAre(HasSubstr("expected a value in UTF-8 text")));
     EXPECT_THAT(errors_with({"..=1"}), testing::SizeIs(1));
 }
@@ -198,7 +198,7 @@ TEST(Overrides, ThatAreWrongSayWhichOne) {
 TEST(SceneYaml, SyntaxErrorsHaveAPlace) {
     EXPECT_THAT(
         errors_in("kluft: 1\ntitle: [a, b\nstages: 3\n"),
-        testing::Contains(AllOf(StartsWith("scene.yaml:3:"), HasSubstr("expected YAML, found what is none: "))));
+        testing::Contains(AllOf(StartsWith("scene.yaml:3:"), HasSubstr("expected valid YAML, found a mistake: "))));
 }
 
 TEST(SceneYaml, AnchorsAliasesTagsAndSecondDocumentsAreRefused) {

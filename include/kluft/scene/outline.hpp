@@ -15,10 +15,6 @@ enum class Facing { left, right, top, bottom };
 /// "left", "right", "top", "bottom".
 [[nodiscard]] std::string_view facing_name(Facing facing);
 
-/// Area of a polygon, positive counter-clockwise (m2). Computed from the first vertex, so that large coordinates lose
-/// nothing.
-[[nodiscard]] double signed_area(const Polygon& polygon);
-
 /// The polygon counter-clockwise with the same first vertex.
 [[nodiscard]] Polygon counter_clockwise(const Polygon& polygon);
 
@@ -31,6 +27,6 @@ enum class Facing { left, right, top, bottom };
 
 /// Two sides that cross each other or touch where they should not, if the polygon has fewer than `most_sides` sides.
 /// Plain floating-point arithmetic: clear cases only; the block cutter decides exactly.
-[[nodiscard]] std::optional<std::pair<int, int>> crossing_sides(const Polygon& polygon, int most_sides = 2000);
+[[nodiscard]] std::optional<std::pair<int, int>> crossing_sides(const Polygon& polygon, int most_sides);
 
 } // namespace kluft
