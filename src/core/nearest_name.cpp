@@ -4,6 +4,8 @@
 #include <cctype>
 #include <cstddef>
 
+#include <fmt/format.h>
+
 namespace kluft {
 
 namespace {
@@ -43,7 +45,7 @@ int edit_distance(std::string_view a, std::string_view b) {
 
 std::string nearest_name(std::string_view name, const std::vector<std::string>& candidates) {
     if (name.empty() || name.size() > longest_name) return {};
-    const int limit = std::max(1, static_cast<int>(name.size() + 1) / 3);
+    const int limit = name.size() == 1 ? 0 : std::max(1, static_cast<int>(name.size() + 1) / 3);
     std::string nearest;
     int smallest = limit + 1;
     for (const auto& candidate : candidates) {
@@ -62,7 +64,7 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
 
 std::string suggestion(std::string_view name, const std::vector<std::string>& candidates) {
     const std::string nearest = nearest_name(name, candidates);
-    return nearest.empty() ? std::string{} : "; did you mean '" + nearest + "'?";
+    return nearest.empty() ? std::string{} : fmt::format("; did you mean '{}'?", nearest);
 }
 
 std::string listed(const std::vector<std::string>& names) {

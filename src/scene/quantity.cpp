@@ -16,15 +16,17 @@ namespace kluft {
 
 namespace {
 
+constexpr const char* too_large = ", which is beyond the range of a number";
+
 /// Powers of metre, kilogram, second and radian.
 using Dimension = std::array<int, 4>;
 
-/// value in SI = value * numerator / denominator, so that 38 cm is the same double as 0.38.
+/// value in SI = value * 10^exponent * factor.
 struct UnitRow {
     std::string_view symbol;
-    double numerator = 1.0;
-    double denominator = 1.0;
+    int exponent = 0;
     Dimension dimension{};
+    double factor = 1.0;
 };
 
 constexpr Dimension none{};
@@ -35,32 +37,22 @@ constexpr Dimension newton{1, 1, -2, 0};
 constexpr Dimension pascal{-1, 1, -2, 0};
 constexpr Dimension radian{0, 0, 0, 1};
 
+constexpr double degree = std::numbers::pi / 180.0;
+
 constexpr std::array units{
-    UnitRow{"m", 1.0, 1.0, metre},
-    UnitRow{"cm", 1.0, 1e2, metre},
-    UnitRow{"mm", 1.0, 1e3, metre},
-    UnitRow{"um", 1.0, 1e6, metre},
-    UnitRow{"km", 1e3, 1.0, metre},
-    UnitRow{"kg", 1.0, 1.0, kilogram},
-    UnitRow{"g", 1.0, 1e3, kilogram},
-    UnitRow{"t", 1e3, 1.0, kilogram},
-    UnitRow{"s", 1.0, 1.0, second},
-    UnitRow{"ms", 1.0, 1e3, second},
-    UnitRow{"N", 1.0, 1.0, newton},
-    UnitRow{"kN", 1e3, 1.0, newton},
-    UnitRow{"MN", 1e6, 1.0, newton},
-    UnitRow{"GN", 1e9, 1.0, newton},
-    UnitRow{"Pa", 1.0, 1.0, pascal},
-    UnitRow{"hPa", 1e2, 1.0, pascal},
-    UnitRow{"kPa", 1e3, 1.0, pascal},
-    UnitRow{"MPa", 1e6, 1.0, pascal},
-    UnitRow{"GPa", 1e9, 1.0, pascal},
-    UnitRow{"bar", 1e5, 1.0, pascal},
-    UnitRow{"rad", 1.0, 1.0, radian},
-    UnitRow{"deg", std::numbers::pi, 180.0, radian},
-    UnitRow{"°", std::numbers::pi, 180.0, radian},
-    UnitRow{"%", 1.0, 1e2, none},
-    UnitRow{"‰", 1.0, 1e3, none},
+    UnitRow{"m", 0, metre},          UnitRow{"cm", -2, metre},
+    UnitRow{"mm", -3, metre},        UnitRow{"um", -6, metre},
+    UnitRow{"km", 3, metre},         UnitRow{"kg", 0, kilogram},
+    UnitRow{"g", -3, kilogram},      UnitRow{"t", 3, kilogram},
+    UnitRow{"s", 0, second},         UnitRow{"ms", -3, second},
+    UnitRow{"N", 0, newton},         UnitRow{"kN", 3, newton},
+    UnitRow{"MN", 6, newton},        UnitRow{"GN", 9, newton},
+    UnitRow{"Pa", 0, pascal},        UnitRow{"hPa", 2, pascal},
+    UnitRow{"kPa", 3, pascal},       UnitRow{"MPa", 6, pascal},
+    UnitRow{"GPa", 9, pascal},       UnitRow{"bar", 5, pascal},
+    UnitRow{"rad", 0, radian},       UnitRow{"deg", 0, radian, degree},
+    UnitRow{"°", 0, radian, degree}, UnitRow{"%", -2, none},
+    UnitRow{"‰", -3, none},
 };
 
 Dimension dimension_of(Measure measure) {
@@ -130,8 +122,8 @@ std::size_t number_length(std::string_view text) {
 }
 
 struct UnitReading {
-    double numerator = 1.0;
-    double denominator = 1.0;
+    int exponent = 0;
+    double factor = 1.0;
     Dimension dimension{};
     std::string problem;
 };
@@ -151,11 +143,21 @@ std::string unknown_unit(std::string_view symbol) {
 }
 
 void multiply(UnitReading& reading, const UnitRow& row, int power) {
-    for (int i = 0; i < std::abs(power); ++i) {
-        reading.numerator *= power > 0 ? row.numerator : row.denominator;
-        reading.denominator *= power > 0 ? row.denominator : row.numerator;
-    }
+    reading.exponent += power * row.exponent;
+    reading.factor *= std::pow(row.factor, power);
     for (std::size_t i = 0; i < row.dimension.size(); ++i) reading.dimension[i] += power * row.dimension[i];
+}
+
+/// number * 10^exponent, rounded once: 1.3 % is the same double as 0.013.
+std::optional<double> scaled_number(std::string_view number, int exponent) {
+    const std::size_t e = number.find_first_of("eE");
+    if (e != std::string_view::npos) {
+        const char* start = number.data() + e + (number[e + 1] == '+' ? 2 : 1);
+        int own = 0;
+        if (std::from_chars(start, number.data() + number.size(), own).ec != std::errc{}) return std::nullopt;
+        exponent += std::clamp(own, -10'000, 10'000);
+    }
+    return read_number(fmt::format("{}e{}", number.substr(0, e), exponent));
 }
 
 /// Power behind a symbol (3, ^3, -2), 1 if none; moves `at` behind it. 0 for what is no power.
@@ -210,17 +212,6 @@ std::string_view trimmed(std::string_view text) {
     return text;
 }
 
-std::string number_problem(std::string_view text) {
-    std::string lower;
-    for (const char c : text)
-        if (c != '+' && c != '-' && c != '.') lower += static_cast<char>(c | 0x20);
-    if (lower == "nan" || lower == "inf" || lower == "infinity") return ", which is not finite";
-    const std::size_t first = text.find_first_not_of("+-");
-    if (first != std::string_view::npos && first + 1 < text.size() && text[first] == '0' && is_digit(text[first + 1]))
-        return ", which has a leading zero";
-    return {};
-}
-
 } // namespace
 
 std::string_view unit_name(Measure measure) {
@@ -263,25 +254,38 @@ std::optional<long long> read_integer(std::string_view text) {
     return value;
 }
 
-double si_value(double plain, Measure measure) {
-    return measure == Measure::angle ? plain * std::numbers::pi / 180.0 : plain;
-}
+double to_si(double plain, Measure measure) { return measure == Measure::angle ? plain * degree : plain; }
 
 QuantityReading read_quantity(std::string_view text, Measure measure) {
     text = trimmed(text);
     const std::size_t length = number_length(text);
-    if (length == 0) return {std::nullopt, number_problem(text)};
+    const std::string flaw = number_flaw(text);
+    if (length == 0 || !flaw.empty()) return {std::nullopt, flaw};
     const auto number = read_number(text.substr(0, length));
-    if (!number) return {std::nullopt, ", which is beyond the range of a number"};
+    if (!number) return {std::nullopt, too_large};
     const std::string_view unit_text = trimmed(text.substr(length));
-    if (unit_text.empty()) return {si_value(*number, measure), {}};
+    if (unit_text.empty()) return {to_si(*number, measure), {}};
     const UnitReading unit = read_unit(unit_text);
     if (!unit.problem.empty()) return {std::nullopt, unit.problem};
     if (unit.dimension != dimension_of(measure))
         return {std::nullopt, fmt::format(", which is in {}", dimension_name(unit.dimension))};
-    const double value = *number * unit.numerator / unit.denominator;
-    if (!std::isfinite(value)) return {std::nullopt, ", which is beyond the range of a number"};
-    return {value, {}};
+    const auto value = scaled_number(text.substr(0, length), unit.exponent);
+    if (!value || !std::isfinite(*value * unit.factor)) return {std::nullopt, too_large};
+    return {*value * unit.factor, {}};
+}
+
+std::string number_flaw(std::string_view text) {
+    std::string lower;
+    for (const char c : text)
+        if (c != '+' && c != '-' && c != '.') lower += static_cast<char>(c | 0x20);
+    if (lower == "nan" || lower == "inf" || lower == "infinity") return ", which is not finite";
+    const std::size_t first = text.find_first_not_of("+-");
+    if (first == std::string_view::npos || first + 1 >= text.size()) return {};
+    if (text[first] == '0' && is_digit(text[first + 1])) return ", which has a leading zero";
+    if (text[first] == '0' && (text[first + 1] | 0x20) == 'x') return ", which is not decimal";
+    const std::size_t end = digits_from(text, first);
+    if (end > first && end < text.size() && text[end] == '_') return ", which has digit groups";
+    return {};
 }
 
 std::string known_units() {

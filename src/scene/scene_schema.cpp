@@ -43,6 +43,7 @@ std::vector<KeyRule> analysis_rules() {
         {.path = "analysis.gravity",
          .type = KeyType::gravity,
          .measure = Measure::acceleration,
+         .range = not_negative,
          .fallback = "0",
          .doc = "Acceleration of gravity: a number >= 0 acts downwards (towards -y), `[gx, gy]` anywhere. Needs "
                 "densities."},
@@ -360,7 +361,9 @@ std::vector<KeyRule> loading_rules() {
         {.path = "boundaries.*.facing",
          .type = KeyType::choice,
          .choices = {"left", "right", "top", "bottom"},
-         .doc = "All sides whose outward normal points within 45 degrees of this direction. Not for rectangles."},
+         .doc =
+             "All sides whose outward normal points within 45 degrees of this direction (at exactly 45 degrees it is "
+             "`top` or `bottom`). Not for rectangles."},
         {.path = "stages",
          .type = KeyType::list,
          .required = true,
@@ -528,192 +531,6 @@ std::string join(std::string_view pattern, std::string_view key) {
 
 std::string number_text(double value) { return fmt::format("{:.15g}", value); }
 
-/// " > 0", " >= 0 and < 0.5", " from -0.5 to 0.5", "".
-std::string range_text(const Range& range, bool whole) {
-    const bool below = std::isfinite(range.least);
-    const bool above = std::isfinite(range.most) && !(whole && range.most >= 2147483647.0);
-    if (below && above && range.least == range.most) return " equal to " + number_text(range.least);
-    if (below && above && !range.open_below && !range.open_above)
-        return fmt::format(" from {} to {}", number_text(range.least), number_text(range.most));
-    std::string text;
-    if (below) text += (range.open_below ? " > " : " >= ") + number_text(range.least);
-    if (below && above) text += " and";
-    if (above) text += (range.open_above ? " < " : " <= ") + number_text(range.most);
-    return text;
-}
-
-std::string unit_text(Measure measure) {
-    return measure == Measure::fraction ? std::string{} : fmt::format(" in {}", unit_name(measure));
-}
-
-bool inside(double value, double least, double most, const Range& range) {
-    return (range.open_below ? value > least : value >= least) && (range.open_above ? value < most : value <= most);
-}
-
-/// What is wrong with one number of a key; "" if nothing.
-std::string number_problem(const SceneNode& node, const KeyRule& rule) {
-    if (!node.is_scalar()) return found_text(node);
-    if (node.quoted && read_number(node.text)) return found_text(node) + ", which is text";
-    const QuantityReading reading = read_quantity(node.text, rule.measure);
-    if (!reading.value) return found_text(node) + reading.problem;
-    const double least = si_value(rule.range.least, rule.measure);
-    const double most = si_value(rule.range.most, rule.measure);
-    return inside(*reading.value, least, most, rule.range) ? std::string{} : found_text(node);
-}
-
-std::string integer_problem(const SceneNode& node, const KeyRule& rule) {
-    if (!node.is_scalar() || node.quoted) return found_text(node);
-    const auto value = read_integer(node.text);
-    if (!value) return found_text(node) + read_quantity(node.text, Measure::fraction).problem;
-    return inside(static_cast<double>(*value), rule.range.least, rule.range.most, rule.range) ? std::string{}
-                                                                                              : found_text(node);
-}
-
-bool is_name(std::string_view text) {
-    return !text.empty() && text.size() <= 64 && std::all_of(text.begin(), text.end(), [](char c) {
-        const auto u = static_cast<unsigned char>(c);
-        return (u >= 'a' && u <= 'z') || (u >= 'A' && u <= 'Z') || (u >= '0' && u <= '9') || u == '_' || u == '-' ||
-               u >= 0x80;
-    });
-}
-
-/// Walks a scene along the table.
-class SchemaCheck {
-public:
-    explicit SchemaCheck(SceneErrors& errors) : errors_(errors) {}
-
-    void check(const SceneNode& node, const KeyRule& rule, const std::string& path) {
-        switch (rule.type) {
-        case KeyType::mapping:
-            check_mapping(node, rule.path, path, expected_text(rule));
-            break;
-        case KeyType::named:
-            check_named(node, rule, path);
-            break;
-        case KeyType::list:
-            check_list(node, rule, path);
-            break;
-        case KeyType::point:
-            check_point(node, rule, path, expected_text(rule));
-            break;
-        case KeyType::points:
-            check_points(node, rule, path);
-            break;
-        case KeyType::integers:
-            check_integers(node, rule, path);
-            break;
-        case KeyType::gravity:
-            check_gravity(node, rule, path);
-            break;
-        default:
-            check_scalar(node, rule, path);
-            break;
-        }
-    }
-
-    void check_mapping(const SceneNode& node, std::string_view pattern, const std::string& path,
-                       const std::string& expected) {
-        if (!node.is_mapping()) return fail(node, path, expected, found_text(node));
-        const auto valid = child_keys(pattern);
-        std::vector<std::string> meant;
-        for (std::size_t i = 0; i < node.keys.size(); ++i) {
-            const std::string& key = node.keys[i].text;
-            if (const KeyRule* rule = find_rule(join(pattern, key)); rule != nullptr && is_key(key)) {
-                check(node.items[i], *rule, joined_path(path, key));
-                continue;
-            }
-            std::vector<std::string> unused;
-            std::copy_if(valid.begin(), valid.end(), std::back_inserter(unused),
-                         [&](const std::string& name) { return node.find(name) == nullptr; });
-            const std::string near = nearest_name(key, unused);
-            meant.push_back(near);
-            errors_.add(node.keys[i].at, joined_path(path, key),
-                        fmt::format("expected one of {}, found {}{}", listed(valid), in_quotes(key),
-                                    near.empty() ? suggestion(key, valid) : suggestion(key, {near})));
-        }
-        for (const auto& key : valid) {
-            const KeyRule* rule = find_rule(join(pattern, key));
-            if (!rule->required || node.find(key) != nullptr) continue;
-            if (std::find(meant.begin(), meant.end(), key) != meant.end()) continue;
-            fail(node, joined_path(path, key), expected_text(*rule), "nothing");
-        }
-    }
-
-private:
-    void fail(const SceneNode& node, const std::string& path, const std::string& expected, const std::string& found) {
-        errors_.add(node.at, path, fmt::format("expected {}, found {}", expected, found));
-    }
-
-    /// '*' and '#' are patterns, no keys.
-    static bool is_key(std::string_view key) { return key.find_first_of("*#.") == std::string_view::npos; }
-
-    void check_named(const SceneNode& node, const KeyRule& rule, const std::string& path) {
-        if (!node.is_mapping()) return fail(node, path, expected_text(rule), found_text(node));
-        if (static_cast<int>(node.items.size()) < rule.least_items) fail(node, path, expected_text(rule), "none");
-        const KeyRule* item = find_rule(join(rule.path, "*"));
-        for (std::size_t i = 0; i < node.keys.size(); ++i) {
-            const std::string& name = node.keys[i].text;
-            if (!is_name(name))
-                errors_.add(node.keys[i].at, joined_path(path, name),
-                            fmt::format("expected a name of letters, digits, '_' and '-', found {}", in_quotes(name)));
-            check(node.items[i], *item, joined_path(path, name));
-        }
-    }
-
-    void check_list(const SceneNode& node, const KeyRule& rule, const std::string& path) {
-        if (!node.is_list()) return fail(node, path, expected_text(rule), found_text(node));
-        if (static_cast<int>(node.items.size()) < rule.least_items)
-            fail(node, path, expected_text(rule), "an empty list");
-        const KeyRule* item = find_rule(join(rule.path, "#"));
-        for (std::size_t i = 0; i < node.items.size(); ++i)
-            check(node.items[i], *item, joined_path(path, std::to_string(i)));
-    }
-
-    void check_point(const SceneNode& node, const KeyRule& rule, const std::string& path, const std::string& expected) {
-        if (!node.is_list() || node.items.size() != 2) return fail(node, path, expected, found_text(node));
-        for (std::size_t i = 0; i < 2; ++i) {
-            const std::string problem = number_problem(node.items[i], rule);
-            if (!problem.empty())
-                fail(node.items[i], joined_path(path, std::to_string(i)), "a number" + unit_text(rule.measure),
-                     problem);
-        }
-    }
-
-    void check_points(const SceneNode& node, const KeyRule& rule, const std::string& path) {
-        const bool enough = node.is_list() && static_cast<int>(node.items.size()) >= rule.least_items;
-        if (!enough) return fail(node, path, expected_text(rule), found_text(node));
-        for (std::size_t i = 0; i < node.items.size(); ++i)
-            check_point(node.items[i], rule, joined_path(path, std::to_string(i)),
-                        fmt::format("a point [x, y]{}", unit_text(rule.measure)));
-    }
-
-    void check_integers(const SceneNode& node, const KeyRule& rule, const std::string& path) {
-        const bool enough = node.is_list() && static_cast<int>(node.items.size()) >= rule.least_items;
-        if (!enough) return fail(node, path, expected_text(rule), found_text(node));
-        for (std::size_t i = 0; i < node.items.size(); ++i) {
-            const std::string problem = integer_problem(node.items[i], rule);
-            if (!problem.empty())
-                fail(node.items[i], joined_path(path, std::to_string(i)), "an integer" + range_text(rule.range, true),
-                     problem);
-        }
-    }
-
-    void check_gravity(const SceneNode& node, const KeyRule& rule, const std::string& path) {
-        if (node.is_list()) return check_point(node, rule, path, expected_text(rule));
-        KeyRule downwards = rule;
-        downwards.range = not_negative;
-        const std::string problem = number_problem(node, downwards);
-        if (!problem.empty()) fail(node, path, expected_text(rule), problem);
-    }
-
-    void check_scalar(const SceneNode& node, const KeyRule& rule, const std::string& path) {
-        const std::string problem = scalar_problem(node, rule);
-        if (!problem.empty()) fail(node, path, expected_text(rule), problem);
-    }
-
-    SceneErrors& errors_;
-};
-
 } // namespace
 
 const std::vector<KeyRule>& scene_schema() {
@@ -750,6 +567,23 @@ std::vector<std::string> child_keys(std::string_view pattern) {
     return keys;
 }
 
+std::string range_text(const Range& range, bool whole) {
+    const bool below = std::isfinite(range.least);
+    const bool above = std::isfinite(range.most) && !(whole && range.most >= 2147483647.0);
+    if (below && above && range.least == range.most) return " equal to " + number_text(range.least);
+    if (below && above && !range.open_below && !range.open_above)
+        return fmt::format(" from {} to {}", number_text(range.least), number_text(range.most));
+    std::string text;
+    if (below) text += (range.open_below ? " > " : " >= ") + number_text(range.least);
+    if (below && above) text += " and";
+    if (above) text += (range.open_above ? " < " : " <= ") + number_text(range.most);
+    return text;
+}
+
+std::string unit_text(Measure measure) {
+    return measure == Measure::fraction ? std::string{} : fmt::format(" in {}", unit_name(measure));
+}
+
 std::string expected_text(const KeyRule& rule) {
     const std::string unit = unit_text(rule.measure);
     switch (rule.type) {
@@ -779,40 +613,6 @@ std::string expected_text(const KeyRule& rule) {
         return "a number >= 0 (downwards) or [gx, gy]" + unit;
     }
     return {};
-}
-
-std::string found_text(const SceneNode& node) {
-    switch (node.kind) {
-    case SceneNode::Kind::nothing:
-        return "nothing";
-    case SceneNode::Kind::scalar:
-        return in_quotes(node.text);
-    case SceneNode::Kind::list:
-        return node.items.empty() ? "an empty list" : fmt::format("a list of {}", node.items.size());
-    case SceneNode::Kind::mapping:
-        return node.items.empty() ? "an empty mapping" : "a mapping";
-    }
-    return {};
-}
-
-std::string scalar_problem(const SceneNode& node, const KeyRule& rule) {
-    if (rule.type == KeyType::number) return number_problem(node, rule);
-    if (rule.type == KeyType::integer) return integer_problem(node, rule);
-    if (!node.is_scalar()) return found_text(node);
-    if (rule.type == KeyType::boolean)
-        return !node.quoted && (node.text == "true" || node.text == "false") ? std::string{} : found_text(node);
-    if (rule.type == KeyType::choice) {
-        if (std::find(rule.choices.begin(), rule.choices.end(), node.text) != rule.choices.end()) return {};
-        const bool reserved =
-            std::find(rule.unavailable.begin(), rule.unavailable.end(), node.text) != rule.unavailable.end();
-        if (reserved) return found_text(node) + ", which is not available in this version";
-        return found_text(node) + suggestion(node.text, rule.choices);
-    }
-    return node.text.empty() ? found_text(node) : std::string{};
-}
-
-void check_against_schema(const SceneNode& root, SceneErrors& errors) {
-    SchemaCheck(errors).check_mapping(root, {}, {}, "a mapping that begins with kluft: 1");
 }
 
 } // namespace kluft

@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "kluft/scene/scene_check.hpp"
+
 namespace kluft {
 
 namespace {
@@ -119,7 +121,8 @@ std::vector<long long> SceneSection::integers(std::string_view key) const {
     std::vector<long long> result;
     const SceneNode* node = value(key);
     if (node == nullptr) return result;
-    for (const auto& item : node->items) result.push_back(read_integer(item.text).value_or(-1));
+    for (const auto& item : node->items)
+        if (const auto integer = read_integer(item.text)) result.push_back(*integer);
     return result;
 }
 

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "kluft/core/diagnostics.hpp"
+#include "kluft/scene/scene_check.hpp"
 #include "kluft/scene/scene_schema.hpp"
 
 namespace kluft {

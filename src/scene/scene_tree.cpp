@@ -20,6 +20,7 @@ constexpr std::size_t widest_line = 160;
 constexpr std::size_t longest_quote = 60;
 constexpr std::size_t most_messages = 1000;
 constexpr int deepest_level = 32;
+constexpr std::size_t most_keys = 10'000; ///< of one mapping
 
 bool continues_character(char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; }
 
@@ -148,18 +149,26 @@ private:
 /// yaml-cpp keeps both entries of a duplicate key; the first one stays.
 void remove_duplicates(SceneNode& node, const std::string& path, SceneErrors& errors) {
     std::set<std::string, std::less<>> seen;
-    for (std::size_t i = 0; i < node.items.size();) {
+    std::vector<SceneKey> keys;
+    std::vector<SceneNode> items;
+    for (std::size_t i = 0; i < node.items.size(); ++i) {
         const std::string name = node.is_mapping() ? node.keys[i].text : std::to_string(i);
+        const std::string item_path = joined_path(path, name);
         if (node.is_mapping() && !seen.insert(name).second) {
-            errors.add(node.keys[i].at, joined_path(path, name),
+            errors.add(node.keys[i].at, item_path,
                        fmt::format("expected each key once, found {} again", in_quotes(name)));
-            node.keys.erase(node.keys.begin() + static_cast<std::ptrdiff_t>(i));
-            node.items.erase(node.items.begin() + static_cast<std::ptrdiff_t>(i));
             continue;
         }
-        remove_duplicates(node.items[i], joined_path(path, name), errors);
-        ++i;
+        if (node.is_mapping() && keys.size() == most_keys) {
+            errors.add(node.keys[i].at, path, fmt::format("expected at most {} keys", most_keys));
+            break;
+        }
+        remove_duplicates(node.items[i], item_path, errors);
+        if (node.is_mapping()) keys.push_back(std::move(node.keys[i]));
+        items.push_back(std::move(node.items[i]));
     }
+    node.keys = std::move(keys);
+    node.items = std::move(items);
 }
 
 std::vector<std::string> split_lines(std::string_view text) {
@@ -183,18 +192,24 @@ const SceneNode* SceneNode::find(std::string_view key) const {
 SceneNode* SceneNode::find(std::string_view key) { return const_cast<SceneNode*>(std::as_const(*this).find(key)); }
 
 int SceneSources::add_file(const std::filesystem::path& file, std::string_view text) {
-    sources_.push_back({printable(file.string()), split_lines(text)});
+    sources_.push_back({printable(file.string()), file.parent_path(), split_lines(text)});
     return static_cast<int>(sources_.size()) - 1;
 }
 
 int SceneSources::add_override(const std::string& assignment) {
-    sources_.push_back({"--set " + printable(window(assignment, 0, widest_line)), {}});
+    sources_.push_back({fmt::format("--set {}", printable(window(assignment, 0, widest_line))),
+                        sources_.empty() ? std::filesystem::path{} : sources_.front().directory,
+                        {}});
     return static_cast<int>(sources_.size()) - 1;
 }
 
 std::string SceneSources::place(const TextPosition& at) const {
     const Source& source = sources_.at(at.source);
     return source.lines.empty() ? source.name : fmt::format("{}:{}:{}", source.name, at.line, at.column);
+}
+
+const std::filesystem::path& SceneSources::directory(const TextPosition& at) const {
+    return sources_.at(at.source).directory;
 }
 
 std::string SceneSources::line(const TextPosition& at) const {
@@ -205,7 +220,7 @@ std::string SceneSources::line(const TextPosition& at) const {
     if (text.size() <= widest_line) return printable(text);
     const auto column = static_cast<std::size_t>(std::max(at.column - 1, 0));
     const std::size_t from = column < widest_line / 2 ? 0 : std::min(column - widest_line / 2, text.size());
-    return (from > 0 ? "..." : "") + printable(window(text, from, widest_line)) + "...";
+    return fmt::format("{}{}...", from > 0 ? "..." : "", printable(window(text, from, widest_line)));
 }
 
 void SceneErrors::add(const TextPosition& at, const std::string& path, const std::string& what) {
@@ -213,7 +228,7 @@ void SceneErrors::add(const TextPosition& at, const std::string& path, const std
     if (!path.empty()) message += printable(path) + ": ";
     message += what;
     const std::string line = sources_.line(at);
-    if (!line.empty()) message += "\n  " + line;
+    if (!line.empty()) message += fmt::format("\n  {}", line);
     errors_.push_back({at, std::move(message)});
 }
 
@@ -236,11 +251,11 @@ void SceneErrors::throw_if_any() const {
 
 std::string in_quotes(std::string_view text) {
     const bool whole = text.size() <= longest_quote;
-    return "'" + printable(whole ? text : window(text, 0, longest_quote)) + (whole ? "'" : "...'");
+    return fmt::format("'{}{}'", printable(whole ? text : window(text, 0, longest_quote)), whole ? "" : "...");
 }
 
 std::string joined_path(const std::string& path, std::string_view key) {
-    return path.empty() ? std::string(key) : path + "." + std::string(key);
+    return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
 }
 
 SceneNode parse_scene_tree(std::string_view text, int source, const TextPosition& origin, SceneErrors& errors) {
@@ -253,7 +268,7 @@ SceneNode parse_scene_tree(std::string_view text, int source, const TextPosition
     } catch (const YAML::Exception& error) {
         const TextPosition at{source, origin.line + std::max(error.mark.line, 0),
                               std::max(error.mark.column, 0) + (error.mark.line > 0 ? 1 : origin.column)};
-        errors.add(at, {}, "expected YAML, found what is none: " + error.msg);
+        errors.add(at, {}, fmt::format("expected YAML, found what is none: {}", error.msg));
         return {};
     } catch (const TooDeep&) {
         return {};

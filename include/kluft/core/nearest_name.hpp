@@ -12,7 +12,7 @@ namespace kluft {
 [[nodiscard]] int edit_distance(std::string_view a, std::string_view b);
 
 /// The candidate that is most likely meant by `name`: the one of smallest edit distance if that is at most a third of
-/// the name's length (and 1 for short names), else the first that begins with it, else nothing ("").
+/// the name's length (1 for two or three characters, 0 for one), else the first that begins with it, else nothing ("").
 [[nodiscard]] std::string nearest_name(std::string_view name, const std::vector<std::string>& candidates);
 
 /// "; did you mean 'density'?", or "" where nothing is near. Made to be appended to an error message.

@@ -20,6 +20,9 @@ enum class Measure { fraction, length, stress, stiffness, density, acceleration,
 /// A decimal integer without leading zeros, within +-2^53.
 [[nodiscard]] std::optional<long long> read_integer(std::string_view text);
 
+/// Why a text is no number where that is known (".nan", "012", "0x1f", "1_000"), made to follow "found ..."; else "".
+[[nodiscard]] std::string number_flaw(std::string_view text);
+
 struct QuantityReading {
     std::optional<double> value; ///< SI, angles in radians
     std::string problem;         ///< without a value: what is wrong, made to follow "found ..."; may be empty
@@ -30,7 +33,7 @@ struct QuantityReading {
 [[nodiscard]] QuantityReading read_quantity(std::string_view text, Measure measure);
 
 /// A plain number of the measure in SI: degrees become radians, the rest is unchanged.
-[[nodiscard]] double si_value(double plain, Measure measure);
+[[nodiscard]] double to_si(double plain, Measure measure);
 
 /// Every unit that is understood, for the documentation.
 [[nodiscard]] std::string known_units();

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "kluft/scene/quantity.hpp"
-#include "kluft/scene/scene_tree.hpp"
 
 namespace kluft {
 
@@ -63,13 +62,10 @@ struct KeyRule {
 /// "a number > 0 in Pa", "one of strain, stress": what a key takes, for messages and documentation.
 [[nodiscard]] std::string expected_text(const KeyRule& rule);
 
-/// "'25 m'", "a list", "nothing": what a message says was found.
-[[nodiscard]] std::string found_text(const SceneNode& node);
+/// " > 0", " >= 0 and < 0.5", " from -0.5 to 0.5", or "" without bounds. An integer's bound 2^31 - 1 is not told.
+[[nodiscard]] std::string range_text(const Range& range, bool whole);
 
-/// "" if the value of a number, integer, boolean, text or choice is what the rule asks for, else what was found.
-[[nodiscard]] std::string scalar_problem(const SceneNode& node, const KeyRule& rule);
-
-/// Checks keys, types, units, ranges and required keys of a whole scene.
-void check_against_schema(const SceneNode& root, SceneErrors& errors);
+/// " in Pa", or "" for plain numbers.
+[[nodiscard]] std::string unit_text(Measure measure);
 
 } // namespace kluft

@@ -23,7 +23,7 @@ public:
     [[nodiscard]] SceneSection section(std::string_view key) const;
     /// The items of a list of mappings, or the named mappings of a mapping of names.
     [[nodiscard]] std::vector<SceneSection> sections(std::string_view key) const;
-    /// The names of a mapping of names.
+    /// The keys of a mapping of names.
     [[nodiscard]] std::vector<std::string> names() const;
 
     [[nodiscard]] std::optional<double> given_number(std::string_view key) const; ///< without the default
@@ -42,6 +42,8 @@ public:
     [[nodiscard]] const SceneNode* node() const { return node_; }
     [[nodiscard]] const SceneNode* value(std::string_view key) const;
     [[nodiscard]] const std::string& path() const { return path_; }
+    /// The last key of the path: the name of a named mapping.
+    [[nodiscard]] std::string name() const { return path_.substr(path_.rfind('.') + 1); }
     [[nodiscard]] std::string path_of(std::string_view key) const { return joined_path(path_, key); }
     /// Where the key's value stands, else the section itself, else the start of the scene.
     [[nodiscard]] TextPosition position(std::string_view key) const;

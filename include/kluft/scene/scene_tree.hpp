@@ -54,10 +54,13 @@ public:
     [[nodiscard]] std::string place(const TextPosition& at) const;
     /// The source's line, shortened to a window around the position; "" for an override.
     [[nodiscard]] std::string line(const TextPosition& at) const;
+    /// What relative paths written there start from: the file's directory; for an override the first file's.
+    [[nodiscard]] const std::filesystem::path& directory(const TextPosition& at) const;
 
 private:
     struct Source {
         std::string name;
+        std::filesystem::path directory;
         std::vector<std::string> lines;
     };
     std::vector<Source> sources_;
@@ -71,6 +74,7 @@ public:
     /// "place: path: what" with the offending line below; `path` may be empty.
     void add(const TextPosition& at, const std::string& path, const std::string& what);
     [[nodiscard]] bool empty() const { return errors_.empty(); }
+    [[nodiscard]] const SceneSources& sources() const { return sources_; }
     /// Throws one InputError with all messages in the order of the text; does nothing if there are none.
     void throw_if_any() const;
 
@@ -90,7 +94,7 @@ private:
 [[nodiscard]] std::string joined_path(const std::string& path, std::string_view key);
 
 /// Parses YAML (JSON included) strictly: one document, no anchors, aliases or tags, no duplicate keys, plain keys, no
-/// deeper than 32 levels. What is wrong goes to `errors`; the tree holds the rest.
+/// deeper than 32 levels, at most 10 000 keys in a mapping. What is wrong goes to `errors`; the tree holds the rest.
 [[nodiscard]] SceneNode parse_scene_tree(std::string_view text, int source, const TextPosition& origin,
                                          SceneErrors& errors);
 

@@ -1,0 +1,17 @@
+// Reads the supports and the stages of a scene.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kluft/loading/load_program.hpp"
+#include "kluft/scene/reading_context.hpp"
+
+namespace kluft {
+
+/// `root` is the whole scene; `boundaries` are the names of the geometry's boundaries, none if the domain could not be
+/// read (then references to boundaries are not checked).
+[[nodiscard]] LoadProgram read_loads(const SceneSection& root, const std::vector<std::string>& boundaries,
+                                     bool has_gravity, ReadingContext& context);
+
+} // namespace kluft

@@ -1,0 +1,20 @@
+// Checks a scene's tree against the schema.
+#pragma once
+
+#include <string>
+
+#include "kluft/scene/scene_schema.hpp"
+#include "kluft/scene/scene_tree.hpp"
+
+namespace kluft {
+
+/// "'25 m'", "a list of 3", "nothing": what a message says was found.
+[[nodiscard]] std::string found_text(const SceneNode& node);
+
+/// "" if the value of a number, integer, boolean, text or choice is what the rule asks for, else what was found.
+[[nodiscard]] std::string scalar_problem(const SceneNode& node, const KeyRule& rule);
+
+/// Checks keys, types, units, ranges and required keys of a whole scene.
+void check_against_schema(const SceneNode& root, SceneErrors& errors);
+
+} // namespace kluft

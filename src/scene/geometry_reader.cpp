@@ -1,0 +1,325 @@
+#include "kluft/scene/geometry_reader.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <numbers>
+#include <optional>
+#include <set>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "kluft/core/diagnostics.hpp"
+#include "kluft/scene/geojson.hpp"
+#include "kluft/scene/outline.hpp"
+#include "kluft/scene/scene_check.hpp"
+
+namespace kluft {
+
+namespace {
+
+constexpr double most_hexagons = 2e7; ///< beyond what memory holds: the spacing's unit is wrong
+
+/// Where neighbouring points coincide, if anywhere: the second one's index.
+std::optional<std::size_t> repeated_point(const std::vector<Vec2>& points) {
+    for (std::size_t i = 1; i < points.size(); ++i)
+        if (points[i] == points[i - 1]) return i;
+    return std::nullopt;
+}
+
+bool boxes_meet(const std::vector<Vec2>& a, const std::vector<Vec2>& b) {
+    const auto box = [](const std::vector<Vec2>& points) {
+        Vec2 lower = points.front(), upper = points.front();
+        for (const auto& point : points) {
+            lower = lower.cwiseMin(point);
+            upper = upper.cwiseMax(point);
+        }
+        return std::pair{lower, upper};
+    };
+    const auto [lower_a, upper_a] = box(a);
+    const auto [lower_b, upper_b] = box(b);
+    return (lower_a.array() <= upper_b.array()).all() && (lower_b.array() <= upper_a.array()).all();
+}
+
+/// "expected one of a, b, found both"; counts how many of the keys are given.
+bool gives_one_of(const SceneSection& section, const std::vector<std::string_view>& keys, ReadingContext& context) {
+    std::vector<std::string> given;
+    for (const auto key : keys)
+        if (section.has(key)) given.emplace_back(key);
+    if (given.size() == 1) return true;
+    context.fail(section, {},
+                 fmt::format("expected one of {}, found {}", fmt::join(keys, ", "),
+                             given.empty() ? "none of them" : fmt::format("{}", fmt::join(given, " and "))));
+    return false;
+}
+
+class GeometryReader {
+public:
+    GeometryReader(const SceneSection& root, const std::vector<std::string>& materials,
+                   const std::vector<std::string>& interfaces, ReadingContext& context)
+        : root_(root), materials_(materials), interfaces_(interfaces), context_(context) {}
+
+    GeometrySpec read() {
+        const auto geometry = root_.section("geometry");
+        if (geometry.has("domain")) read_domain(geometry.section("domain"));
+        for (const auto& section : geometry.sections("fractures")) read_fracture(section);
+        if (geometry.has("tessellation")) read_tessellation(geometry.section("tessellation"));
+        spec_.reference_spacing = geometry.number("reference_spacing");
+        spec_.minimum_area = geometry.number("minimum_area");
+        if (!materials_.empty() && geometry.node() != nullptr)
+            spec_.material = context_.reference(geometry, "material", materials_, "a material").value_or(-1);
+        for (const auto& section : geometry.sections("regions")) read_region(section);
+        if (!spec_.domain.empty()) name_boundaries(root_.sections("boundaries"));
+        return std::move(spec_);
+    }
+
+private:
+    void read_domain(const SceneSection& domain) {
+        if (!domain.node()->is_mapping() || !gives_one_of(domain, {"rectangle", "polygon", "file"}, context_)) return;
+        if (domain.has("rectangle")) {
+            read_rectangle(domain.section("rectangle"));
+        } else if (domain.has("polygon")) {
+            set_outline(read_polygon(domain, "polygon"));
+        } else {
+            read_domain_file(domain);
+        }
+    }
+
+    void read_rectangle(const SceneSection& rectangle) {
+        is_rectangle_ = true;
+        const auto width = rectangle.given_number("width");
+        const auto height = rectangle.given_number("height");
+        if (!width || !height) return;
+        const Vec2 lower = rectangle.point("origin");
+        const Vec2 upper = lower + Vec2(*width, *height);
+        const Polygon corners{lower, {upper.x(), lower.y()}, upper, {lower.x(), upper.y()}};
+        if (signed_area(corners) > 0.0)
+            set_outline(corners);
+        else
+            context_.fail(rectangle, {}, "expected a rectangle with an area, found one that vanishes in round-off");
+    }
+
+    /// The file that a key names; relative to the file that the key stands in.
+    [[nodiscard]] std::optional<std::filesystem::path> file_of(const SceneSection& section) const {
+        const auto name = section.given_text("file");
+        if (!name) return std::nullopt;
+        return (context_.errors.sources().directory(section.position("file")) / *name).lexically_normal();
+    }
+
+    void read_domain_file(const SceneSection& domain) {
+        const auto file = file_of(domain);
+        if (!file) return;
+        try {
+            auto area = read_geojson_area(*file);
+            spec_.holes = std::move(area.holes);
+            set_outline(area.outline);
+        } catch (const InputError& error) {
+            context_.fail(domain, "file", error.what());
+        }
+    }
+
+    void set_outline(const Polygon& polygon) {
+        if (polygon.empty()) return;
+        is_clockwise_ = signed_area(polygon) < 0.0;
+        spec_.domain = counter_clockwise(polygon);
+    }
+
+    /// A polygon without its closing point; empty (and an error) if it is not simple.
+    Polygon read_polygon(const SceneSection& section, std::string_view key) {
+        auto points = section.given_points(key);
+        if (!points) return {};
+        if (points->size() > 3 && points->front() == points->back()) points->pop_back();
+        if (!has_distinct_points(section, key, *points)) return {};
+        if (const auto crossing = crossing_sides(*points))
+            context_.fail(section, key,
+                          fmt::format("expected a simple polygon, found sides {} and {} (counted from 0) that cross",
+                                      crossing->first, crossing->second));
+        else if (signed_area(*points) == 0.0)
+            context_.fail(section, key, "expected a polygon with an area, found none");
+        else
+            return *points;
+        return {};
+    }
+
+    bool has_distinct_points(const SceneSection& section, std::string_view key, const std::vector<Vec2>& points) {
+        const auto repeated = repeated_point(points);
+        if (repeated)
+            context_.fail(
+                section, key,
+                fmt::format("expected successive points to differ, found points {} and {} (counted from 0) equal",
+                            *repeated - 1, *repeated));
+        return !repeated;
+    }
+
+    void read_fracture(const SceneSection& section) {
+        FractureTrace trace;
+        trace.interface_type = interface_of(section);
+        const auto name = section.given_text("name");
+        trace.name = name.value_or(fmt::format("fracture {}", spec_.fractures.size() + 1));
+        if (!section.node()->is_mapping() || !gives_one_of(section, {"trace", "file"}, context_)) return;
+        if (section.has("file")) return read_trace_file(section, trace);
+        auto points = section.given_points("trace");
+        if (!points || !has_distinct_points(section, "trace", *points)) return;
+        trace.points = std::move(*points);
+        add_trace(section, std::move(trace));
+    }
+
+    /// One trace per line of the file, numbered from 1.
+    void read_trace_file(const SceneSection& section, const FractureTrace& common) {
+        const auto file = file_of(section);
+        if (!file) return;
+        try {
+            int number = 0;
+            for (auto& line : read_geojson_traces(*file)) {
+                FractureTrace trace = common;
+                trace.points = std::move(line);
+                trace.name = fmt::format("{} {}", section.given_text("name").value_or("trace"), ++number);
+                add_trace(section, std::move(trace));
+            }
+        } catch (const InputError& error) {
+            context_.fail(section, "file", error.what());
+        }
+    }
+
+    void add_trace(const SceneSection& section, FractureTrace trace) {
+        if (!spec_.domain.empty() && !trace.points.empty() && !boxes_meet(spec_.domain, trace.points))
+            context_.warn(section, {}, fmt::format("{} lies outside the domain", trace.name));
+        spec_.fractures.push_back(std::move(trace));
+    }
+
+    /// Index of the interface that a fracture or the tessellation names; -1 for an error.
+    int interface_of(const SceneSection& section) {
+        if (!section.node()->is_mapping()) return -1;
+        return context_.reference(section, "interface", interfaces_, "an interface").value_or(-1);
+    }
+
+    void read_tessellation(const SceneSection& section) {
+        if (!section.node()->is_mapping()) return;
+        const auto hexagons = section.section("hexagons");
+        Tessellation tessellation;
+        tessellation.hexagons.spacing = hexagons.number("spacing");
+        tessellation.hexagons.rotation = hexagons.number("rotation");
+        tessellation.hexagons.offset = hexagons.point("offset");
+        tessellation.hexagons.jitter = hexagons.number("jitter");
+        tessellation.hexagons.seed = static_cast<std::uint64_t>(hexagons.integer("seed"));
+        tessellation.interface_type = interface_of(section);
+        if (section.has("region")) tessellation.region = read_polygon(section, "region");
+        check_hexagon_count(hexagons);
+        spec_.tessellation = std::move(tessellation);
+    }
+
+    void check_hexagon_count(const SceneSection& hexagons) {
+        const auto spacing = hexagons.given_number("spacing");
+        if (!spacing) return;
+        const double hexagon_area = 0.5 * std::numbers::sqrt3 * *spacing * *spacing;
+        const double n_hexagons = signed_area(spec_.domain) / hexagon_area;
+        if (n_hexagons > most_hexagons)
+            context_.fail(
+                hexagons, "spacing",
+                fmt::format("expected a spacing in m that fits the domain, found {}, which makes {:.1e} hexagons",
+                            found_text(*hexagons.value("spacing")), n_hexagons));
+    }
+
+    void read_region(const SceneSection& section) {
+        MaterialRegion region;
+        region.polygon = read_polygon(section, "polygon");
+        if (const auto name = section.given_text("material"))
+            region.material = context_.index_of(section, "material", *name, materials_, "a material").value_or(-1);
+        spec_.regions.push_back(std::move(region));
+    }
+
+    void name_boundaries(const std::vector<SceneSection>& sections) {
+        const bool gives_sides = std::any_of(sections.begin(), sections.end(), [](const SceneSection& section) {
+            return section.has("sides") || section.has("facing");
+        });
+        if (is_rectangle_) {
+            name_rectangle_sides(sections);
+        } else if (!gives_sides) {
+            name_facing_sides();
+        } else {
+            for (const auto& section : sections) name_sides(section);
+            check_sides_once(sections);
+        }
+    }
+
+    void name_rectangle_sides(const std::vector<SceneSection>& sections) {
+        for (const auto& section : sections)
+            for (const auto* key : {"sides", "facing"})
+                if (section.has(key))
+                    context_.fail(section, key,
+                                  fmt::format("expected nothing for a rectangle, whose boundaries are bottom, right, "
+                                              "top, left, found {}",
+                                              found_text(*section.value(key))));
+        spec_.boundaries = {{"bottom", {0}}, {"right", {1}}, {"top", {2}}, {"left", {3}}};
+    }
+
+    void name_facing_sides() {
+        for (const auto facing : {Facing::bottom, Facing::right, Facing::top, Facing::left}) {
+            auto sides = sides_facing(spec_.domain, facing);
+            if (!sides.empty()) spec_.boundaries.push_back({std::string(facing_name(facing)), std::move(sides)});
+        }
+    }
+
+    void name_sides(const SceneSection& section) {
+        BoundarySides boundary{section.name(), {}};
+        if (section.node()->is_mapping() && gives_one_of(section, {"sides", "facing"}, context_))
+            boundary.sides = section.has("sides") ? counted_sides(section) : facing_sides(section);
+        spec_.boundaries.push_back(std::move(boundary));
+    }
+
+    std::vector<int> facing_sides(const SceneSection& section) {
+        const auto choice = section.given_choice("facing");
+        if (!choice) return {};
+        auto sides = sides_facing(spec_.domain, static_cast<Facing>(*choice));
+        if (sides.empty())
+            context_.fail(section, "facing",
+                          fmt::format("expected a direction that a side of the domain faces, found {}",
+                                      found_text(*section.value("facing"))));
+        return sides;
+    }
+
+    std::vector<int> counted_sides(const SceneSection& section) {
+        const int n_sides = static_cast<int>(spec_.domain.size());
+        std::vector<int> sides;
+        for (const long long side : section.integers("sides")) {
+            if (side >= 0 && side < n_sides)
+                sides.push_back(counter_clockwise_side(static_cast<int>(side), n_sides, is_clockwise_));
+            else if (side >= 0)
+                context_.fail(section, "sides",
+                              fmt::format("expected sides of the domain from 0 to {}, found {}", n_sides - 1, side));
+        }
+        return sides;
+    }
+
+    void check_sides_once(const std::vector<SceneSection>& sections) {
+        const int n_sides = static_cast<int>(spec_.domain.size());
+        std::set<int> seen;
+        for (std::size_t i = 0; i < sections.size(); ++i)
+            for (const int side : spec_.boundaries[i].sides)
+                if (!seen.insert(side).second)
+                    context_.fail(sections[i], {},
+                                  fmt::format("expected each side of the domain once, found side {} again",
+                                              counter_clockwise_side(side, n_sides, is_clockwise_)));
+    }
+
+    const SceneSection& root_;
+    const std::vector<std::string>& materials_;
+    const std::vector<std::string>& interfaces_;
+    ReadingContext& context_;
+    GeometrySpec spec_;
+    bool is_rectangle_ = false;
+    bool is_clockwise_ = false;
+};
+
+} // namespace
+
+GeometrySpec read_geometry(const SceneSection& root, const std::vector<std::string>& materials,
+                           const std::vector<std::string>& interfaces, ReadingContext& context) {
+    return GeometryReader(root, materials, interfaces, context).read();
+}
+
+} // namespace kluft

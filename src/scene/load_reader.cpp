@@ -1,0 +1,114 @@
+#include "kluft/scene/load_reader.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "kluft/scene/quantity.hpp"
+
+namespace kluft {
+
+namespace {
+
+/// In the order of PlatenControl.
+constexpr std::array<std::string_view, 3> platen_keys{"displacement", "strain", "stress"};
+
+class LoadReader {
+public:
+    LoadReader(const std::vector<std::string>& boundaries, ReadingContext& context)
+        : boundaries_(boundaries), context_(context) {}
+
+    void read_supports(const std::vector<SceneSection>& sections) {
+        loads_.supports.assign(boundaries_.size(), Support::none);
+        for (const auto& section : sections) {
+            const auto boundary = boundary_index(section, {}, section.name());
+            if (boundary) support(*boundary) = static_cast<Support>(section.choice("support"));
+        }
+    }
+
+    void read_stage(const SceneSection& section, bool has_gravity) {
+        Stage stage;
+        stage.name = section.given_text("name").value_or(fmt::format("stage {}", loads_.stages.size()));
+        stage.platens = static_cast<Platens>(section.choice("platens"));
+        stage.steps = section.count("steps");
+        if (section.has("pressure")) read_pressure(section.section("pressure"), stage);
+        read_platen(section, stage);
+        const bool has_platen =
+            std::any_of(platen_keys.begin(), platen_keys.end(), [&](auto key) { return section.has(key); });
+        const bool has_pressure = section.has("pressure") && !section.value("pressure")->items.empty();
+        if (!has_gravity && !has_platen && !has_pressure && section.node()->is_mapping())
+            context_.fail(section, {},
+                          "expected a load (pressure, displacement, strain or stress) because there is no gravity, "
+                          "found none");
+        loads_.stages.push_back(std::move(stage));
+    }
+
+    LoadProgram take() { return std::move(loads_); }
+
+private:
+    Support& support(int boundary) { return loads_.supports[static_cast<std::size_t>(boundary)]; }
+
+    std::optional<int> boundary_index(const SceneSection& section, std::string_view key, const std::string& name) {
+        return boundaries_.empty() ? std::nullopt : context_.index_of(section, key, name, boundaries_, "a boundary");
+    }
+
+    void read_pressure(const SceneSection& pressure, Stage& stage) {
+        for (const auto& name : pressure.names()) {
+            const auto boundary = boundary_index(pressure, name, name);
+            const SceneNode& value = *pressure.value(name);
+            if (!boundary || !value.is_scalar()) continue;
+            stage.pressure[*boundary] = read_quantity(value.text, Measure::stress).value.value_or(0.0);
+            if (support(*boundary) != Support::none)
+                context_.warn(pressure, name, "a pressure has no effect where the boundary is supported");
+        }
+    }
+
+    void read_platen(const SceneSection& section, Stage& stage) {
+        std::optional<std::string_view> first;
+        for (std::size_t i = 0; i < platen_keys.size(); ++i) {
+            const auto key = platen_keys[i];
+            if (!section.has(key)) continue;
+            if (first) {
+                context_.fail(section, key,
+                              fmt::format("expected one platen in a stage, found {} beside {}", key, *first));
+                continue;
+            }
+            first = key;
+            const auto platen = section.section(key);
+            const auto name = platen.given_text("boundary");
+            const auto boundary = name ? boundary_index(platen, "boundary", *name) : std::nullopt;
+            if (!boundary) continue;
+            stage.motion = PlatenMotion{static_cast<PlatenControl>(i), *boundary, platen.number("value")};
+            check_platen(platen, *name, stage);
+        }
+    }
+
+    void check_platen(const SceneSection& platen, const std::string& name, const Stage& stage) {
+        if (stage.pressure.contains(stage.motion->boundary))
+            context_.fail(platen, "boundary",
+                          fmt::format("expected a boundary without a pressure in the same stage, found '{}'", name));
+        if (support(stage.motion->boundary) != Support::none)
+            context_.fail(platen, "boundary", fmt::format("expected a boundary without a support, found '{}'", name));
+    }
+
+    const std::vector<std::string>& boundaries_;
+    ReadingContext& context_;
+    LoadProgram loads_;
+};
+
+} // namespace
+
+LoadProgram read_loads(const SceneSection& root, const std::vector<std::string>& boundaries, bool has_gravity,
+                       ReadingContext& context) {
+    LoadReader reader(boundaries, context);
+    reader.read_supports(root.sections("boundaries"));
+    for (const auto& section : root.sections("stages")) reader.read_stage(section, has_gravity);
+    return reader.take();
+}
+
+} // namespace kluft

@@ -1,0 +1,77 @@
+#include "kluft/scene/outline.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace kluft {
+namespace {
+
+const Polygon square{{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}};
+
+TEST(Outline, AreaIsPositiveCounterClockwise) {
+    EXPECT_DOUBLE_EQ(signed_area(square), 1.0);
+    EXPECT_DOUBLE_EQ(signed_area({square.rbegin(), square.rend()}), -1.0);
+}
+
+/// A square of 1 mm at map coordinates: sums of products of coordinates would keep no digit of its area.
+TEST(Outline, AreaSurvivesMapCoordinates) {
+    Polygon far = square;
+    for (auto& point : far) point = Vec2(466000.0, 6692100.0) + 0x1p-10 * point;
+    EXPECT_DOUBLE_EQ(signed_area(far), 0x1p-20);
+}
+
+TEST(Outline, CounterClockwiseKeepsTheFirstVertexAndTheSides) {
+    const Polygon clockwise{{0.0, 0.0}, {0.0, 1.0}, {2.0, 1.0}, {2.0, 0.0}};
+    const Polygon turned = counter_clockwise(clockwise);
+    EXPECT_GT(signed_area(turned), 0.0);
+    EXPECT_EQ(turned.front(), clockwise.front());
+    for (int side = 0; side < 4; ++side) {
+        const int new_side = counter_clockwise_side(side, 4, true);
+        EXPECT_EQ(turned[new_side], clockwise[(side + 1) % 4]);
+        EXPECT_EQ(turned[(new_side + 1) % 4], clockwise[side]);
+    }
+    EXPECT_EQ(counter_clockwise(square), square);
+}
+
+TEST(Outline, SidesFaceTheDirectionOfTheirOutwardNormal) {
+    EXPECT_EQ(sides_facing(square, Facing::bottom), std::vector<int>{0});
+    EXPECT_EQ(sides_facing(square, Facing::right), std::vector<int>{1});
+    EXPECT_EQ(sides_facing(square, Facing::top), std::vector<int>{2});
+    EXPECT_EQ(sides_facing(square, Facing::left), std::vector<int>{3});
+}
+
+TEST(Outline, EverySideOfAManySidedPolygonFacesExactlyOneWay) {
+    Polygon circle;
+    for (int i = 0; i < 97; ++i) {
+        const double angle = 2.0 * std::numbers::pi * i / 97.0;
+        circle.emplace_back(std::cos(angle), std::sin(angle));
+    }
+    std::vector<int> all;
+    for (const auto facing : {Facing::left, Facing::right, Facing::top, Facing::bottom}) {
+        const auto sides = sides_facing(circle, facing);
+        EXPECT_NEAR(static_cast<double>(sides.size()), 97.0 / 4.0, 1.0);
+        all.insert(all.end(), sides.begin(), sides.end());
+    }
+    std::sort(all.begin(), all.end());
+    for (int i = 0; i < 97; ++i) EXPECT_EQ(all[i], i);
+}
+
+TEST(Outline, SidesAtExactly45DegreesFaceTopOrBottom) {
+    const Polygon diamond{{0.0, -1.0}, {1.0, 0.0}, {0.0, 1.0}, {-1.0, 0.0}};
+    EXPECT_EQ(sides_facing(diamond, Facing::bottom), (std::vector<int>{0, 3}));
+    EXPECT_EQ(sides_facing(diamond, Facing::top), (std::vector<int>{1, 2}));
+    EXPECT_TRUE(sides_facing(diamond, Facing::left).empty());
+}
+
+TEST(Outline, CrossingSidesAreFound) {
+    const Polygon bow_tie{{0.0, 0.0}, {1.0, 1.0}, {1.0, 0.0}, {0.0, 1.0}};
+    EXPECT_EQ(crossing_sides(bow_tie), (std::pair{0, 2}));
+    EXPECT_FALSE(crossing_sides(square));
+}
+
+} // namespace
+} // namespace kluft

@@ -1,0 +1,380 @@
+// Every class of error in a scene, with the exact message where its shape matters.
+#include "kluft/scene/scene_check.hpp"
+
+#include <ostream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "scene/scene_text.hpp"
+
+namespace kluft {
+namespace {
+
+using test::errors_in;
+using test::errors_with;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+TEST(SceneErrors, UnknownKeyNamesPlaceKeyValidKeysNearestKeyAndShowsTheLine) {
+    EXPECT_THAT(errors_in("kluft: 1\n"
+                          "materials:\n"
+                          "  rock:\n"
+                          "    densty: 2300\n"
+                          "    youngs_modulus: 1e9\n"
+                          "    poissons_ratio: 0.25\n"
+                          "geometry: {domain: {rectangle: {width: 1, height: 2}}}\n"
+                          "stages: [{strain: {boundary: top, value: 0.01}}]\n"),
+                ElementsAre("scene.yaml:4:5: materials.rock.densty: expected one of density, youngs_modulus, "
+                            "poissons_ratio, cohesion, friction_angle, tensile_strength, found 'densty'; did you mean "
+                            "'density'?\n"
+                            "      densty: 2300"));
+}
+
+TEST(SceneErrors, AllAreReportedAtOnceInTheOrderOfTheText) {
+    const auto errors = errors_in("kluft: 1\n"
+                                  "materials:\n"
+                                  "  rock: {youngs_modulus: -1 GPa, poissons_ratio: 0.5}\n"
+                                  "geometry: {domain: {rectangle: {width: 1, height: two}}, material: rok}\n"
+                                  "stages:\n"
+                                  "  - strain: {boundary: top, value: 1 m}\n"
+                                  "    steps: 0\n"
+                                  "colour: red\n");
+    EXPECT_THAT(errors,
+                ElementsAre(StartsWith("scene.yaml:3:26: materials.rock.youngs_modulus: expected a number > 0 in Pa, "
+                                       "found '-1 GPa'\n"),
+                            StartsWith("scene.yaml:3:50: materials.rock.poissons_ratio: expected a number >= 0 and < "
+                                       "0.5, found '0.5'\n"),
+                            StartsWith("scene.yaml:4:51: geometry.domain.rectangle.height: expected a number > 0 in m, "
+                                       "found 'two'\n"),
+                            StartsWith("scene.yaml:4:68: geometry.material: expected the name of a material (rock), "
+                                       "found 'rok'; did you mean 'rock'?\n"),
+                            StartsWith("scene.yaml:6:36: stages.0.strain.value: expected a number from -0.5 to 0.5, "
+                                       "found '1 m', which is in m\n"),
+                            StartsWith("scene.yaml:7:12: stages.0.steps: expected an integer >= 1, found '0'\n"),
+                            StartsWith("scene.yaml:8:1: colour: expected one of kluft, title, extends, analysis, ")));
+}
+
+TEST(SceneErrors, MissingKeysPointToTheMappingThatLacksThem) {
+    EXPECT_THAT(errors_in("title: empty\nmaterials: {rock: {density: 1}}\n"),
+                ElementsAre("scene.yaml:1:1: kluft: expected an integer equal to 1, found nothing\n  title: empty",
+                            StartsWith("scene.yaml:1:1: geometry: expected a mapping of domain, fractures, "),
+                            StartsWith("scene.yaml:1:1: stages: expected a list of at least one, found nothing"),
+                            StartsWith("scene.yaml:2:19: materials.rock.youngs_modulus: expected a number > 0 in Pa, "
+                                       "found nothing"),
+                            StartsWith("scene.yaml:2:19: materials.rock.poissons_ratio: ")));
+}
+
+/// The mistyped key is reported, not the one that it was meant to be.
+TEST(SceneErrors, AMistypedRequiredKeyIsOneError) {
+    EXPECT_THAT(errors_with({"materials.rock.youngs_modulus=null", "materials.rock.young_modulus=1 GPa"}),
+                ElementsAre(AllOf(HasSubstr("materials.rock.young_modulus: expected one of "),
+                                  HasSubstr("did you mean 'youngs_modulus'?"))));
+}
+
+TEST(SceneErrors, DuplicateKeysAreErrors) {
+    std::string text = test::short_scene + "title: a\ntitle: b\n";
+    EXPECT_THAT(errors_in(text),
+                ElementsAre("scene.yaml:9:1: title: expected each key once, found 'title' again\n  title: b"));
+    EXPECT_THAT(errors_in(test::short_scene + "solver: {max_cuts: 1, max_cuts: 2}\n"),
+                ElementsAre(StartsWith("scene.yaml:8:23: solver.max_cuts: expected each key once")));
+}
+
+struct Refusal {
+    const char* assignment;
+    const char* what; ///< of the message, after "--set assignment: "
+};
+
+void PrintTo(const Refusal& refusal, std::ostream* stream) { *stream << refusal.assignment; }
+
+class RefusedValue : public testing::TestWithParam<Refusal> {};
+
+TEST_P(RefusedValue, IsOneErrorThatSaysWhy) {
+    const auto& [assignment, what] = GetParam();
+    EXPECT_THAT(errors_with({assignment}), ElementsAre(std::string("--set ") + assignment + ": " + what));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    WrongType, RefusedValue,
+    testing::Values(
+        Refusal{"kluft=2", "kluft: expected an integer equal to 1, found '2'"},
+        Refusal{"kluft=1.0", "kluft: expected an integer equal to 1, found '1.0'"},
+        Refusal{"title=[a]", "title: expected text, found a list of 1"},
+        Refusal{"title=", "title: expected text, found nothing"},
+        Refusal{"title=\"a\\tb\"", "title: expected text, found 'a b', which has control characters"},
+        Refusal{"solver=3", "solver: expected a mapping of tolerance, balance, viscosity, max_iterations, max_cuts, "
+                            "max_unbalanced_steps, tangent, repeatable, found '3'"},
+        Refusal{"materials.rock.density={a: 1}",
+                "materials.rock.density: expected a number >= 0 in kg/m3, found a mapping"},
+        Refusal{"solver.repeatable=yes", "solver.repeatable: expected true or false, found 'yes'"},
+        Refusal{"solver.repeatable='true'", "solver.repeatable: expected true or false, found 'true'"},
+        Refusal{"analysis.plane=strian",
+                "analysis.plane: expected one of strain, stress, found 'strian'; did you mean 'strain'?"},
+        Refusal{"analysis.integrator=explicit",
+                "analysis.integrator: expected implicit, found 'explicit', which is not available in this version"},
+        Refusal{"analysis.kinematics=rigid",
+                "analysis.kinematics: expected affine, found 'rigid', which is not available in this version"},
+        Refusal{"analysis.gravity=down",
+                "analysis.gravity: expected a number >= 0 (downwards) or [gx, gy] in m/s2, found 'down'"},
+        Refusal{"analysis.gravity=-9.81",
+                "analysis.gravity: expected a number >= 0 (downwards) or [gx, gy] in m/s2, found '-9.81'"},
+        Refusal{"analysis.gravity=[0, 0, 9.81]",
+                "analysis.gravity: expected a number >= 0 (downwards) or [gx, gy] in m/s2, found a list of 3"},
+        Refusal{"stages={a: 1}", "stages: expected a list of at least one, found a mapping"},
+        Refusal{"stages=[]", "stages: expected a list of at least one, found an empty list"},
+        Refusal{"geometry.fractures.0.trace=[[0, 0]]",
+                "geometry.fractures.0.trace: expected a list of at least 2 points [x, y] in m, found a list of 1"},
+        Refusal{"geometry.fractures.0.trace=[[0, 0], [1, 2, 3]]",
+                "geometry.fractures.0.trace.1: expected a point [x, y] in m, found a list of 3"},
+        Refusal{"geometry.fractures.0.trace=[[0, 0], [1, b]]",
+                "geometry.fractures.0.trace.1.1: expected a number in m, found 'b'"},
+        Refusal{"stages.0.steps=2.5", "stages.0.steps: expected an integer >= 1, found '2.5'"},
+        Refusal{"stages.0.steps='3'", "stages.0.steps: expected an integer >= 1, found '3'"},
+        Refusal{"geometry.domain.rectangle=1",
+                "geometry.domain.rectangle: expected a mapping of width, height, origin, found '1'"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    OutOfRange, RefusedValue,
+    testing::Values(
+        Refusal{"materials.rock.youngs_modulus=0",
+                "materials.rock.youngs_modulus: expected a number > 0 in Pa, found '0'"},
+        Refusal{"materials.rock.poissons_ratio=-0.1",
+                "materials.rock.poissons_ratio: expected a number >= 0 and < 0.5, found '-0.1'"},
+        Refusal{"materials.rock.density=-1", "materials.rock.density: expected a number >= 0 in kg/m3, found '-1'"},
+        Refusal{"materials.rock.friction_angle=90",
+                "materials.rock.friction_angle: expected a number >= 0 and < 90 in deg, found '90'"},
+        Refusal{"materials.rock.friction_angle=90 deg",
+                "materials.rock.friction_angle: expected a number >= 0 and < 90 in deg, found '90 deg'"},
+        Refusal{"interfaces.joint.normal_stiffness=-3 GPa/m",
+                "interfaces.joint.normal_stiffness: expected a number > 0 in Pa/m, found '-3 GPa/m'"},
+        Refusal{"geometry.tessellation.hexagons.spacing=0",
+                "geometry.tessellation.hexagons.spacing: expected a number > 0 in m, found '0'"},
+        Refusal{"geometry.tessellation.hexagons.jitter=0.25",
+                "geometry.tessellation.hexagons.jitter: expected a number >= 0 and < 0.25, found '0.25'"},
+        Refusal{"geometry.tessellation.hexagons.seed=-1",
+                "geometry.tessellation.hexagons.seed: expected an integer >= 0, found '-1'"},
+        Refusal{"stages.0.steps=3000000000", "stages.0.steps: expected an integer >= 1, found '3000000000'"},
+        Refusal{"stages.1.strain.value=1.5", "stages.1.strain.value: expected a number from -0.5 to 0.5, found '1.5'"},
+        Refusal{"geometry.domain.rectangle.width=1e300",
+                "geometry.domain.rectangle.width: expected a number > 0 in m, found '1e300', which is beyond 1e+09 m"},
+        Refusal{"solver.tolerance=1", "solver.tolerance: expected a number > 0 and < 1, found '1'"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    NotANumber, RefusedValue,
+    testing::Values(
+        Refusal{"solver.tolerance=.nan",
+                "solver.tolerance: expected a number > 0 and < 1, found '.nan', which is not finite"},
+        Refusal{"materials.rock.density=.inf",
+                "materials.rock.density: expected a number >= 0 in kg/m3, found '.inf', which is not finite"},
+        Refusal{"materials.rock.density=1e999", "materials.rock.density: expected a number >= 0 in kg/m3, found "
+                                                "'1e999', which is beyond the range of a number"},
+        Refusal{"materials.rock.density=012",
+                "materials.rock.density: expected a number >= 0 in kg/m3, found '012', which has a leading zero"},
+        Refusal{"stages.0.steps=010",
+                "stages.0.steps: expected an integer >= 1, found '010', which has a leading zero"},
+        Refusal{"stages.0.steps=0x10", "stages.0.steps: expected an integer >= 1, found '0x10', which is not decimal"},
+        Refusal{"materials.rock.density=1_000",
+                "materials.rock.density: expected a number >= 0 in kg/m3, found '1_000', which has digit groups"},
+        Refusal{"materials.rock.density='2650'",
+                "materials.rock.density: expected a number >= 0 in kg/m3, found '2650', which is text"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    WrongUnit, RefusedValue,
+    testing::Values(
+        Refusal{"interfaces.joint.normal_stiffness=25 MPa",
+                "interfaces.joint.normal_stiffness: expected a number > 0 in Pa/m, found '25 MPa', which is in Pa"},
+        Refusal{"geometry.domain.rectangle.width=3 deg",
+                "geometry.domain.rectangle.width: expected a number > 0 in m, found '3 deg', which is in deg"},
+        Refusal{"geometry.domain.rectangle.width=3 ccm",
+                "geometry.domain.rectangle.width: expected a number > 0 in m, "
+                "found '3 ccm' with the unknown unit 'ccm'; did you mean 'cm'?"},
+        Refusal{"solver.tolerance=3 m",
+                "solver.tolerance: expected a number > 0 and < 1, found '3 m', which is in m"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Reference, RefusedValue,
+    testing::Values(
+        Refusal{"geometry.material=clya", "geometry.material: expected the name of a material (rock, clay), found "
+                                          "'clya'; did you mean 'clay'?"},
+        Refusal{"geometry.regions.0.material=sand",
+                "geometry.regions.0.material: expected the name of a material (rock, clay), found 'sand'"},
+        Refusal{"geometry.fractures.0.interface=joins", "geometry.fractures.0.interface: expected the name of an "
+                                                        "interface (joint, bond, seam), found 'joins'; did you mean "
+                                                        "'joint'?"},
+        Refusal{"geometry.tessellation.interface=bonds",
+                "geometry.tessellation.interface: expected the name of an interface (joint, bond, seam), found "
+                "'bonds'; did you mean 'bond'?"},
+        Refusal{"interfaces.bond.fails_to=seam",
+                "interfaces.bond.fails_to: expected the name of an interface of kind fracture (joint), found 'seam'"},
+        Refusal{"interfaces.bond.fails_to=jiont", "interfaces.bond.fails_to: expected the name of an interface of kind "
+                                                  "fracture (joint), found 'jiont'; did you mean 'joint'?"},
+        Refusal{"boundaries.botom.support=smooth", "boundaries.botom: expected the name of a boundary (bottom, right, "
+                                                   "top, left), found 'botom'; did you mean 'bottom'?"},
+        Refusal{"stages.0.pressure.up=1", "stages.0.pressure.up: expected the name of a boundary (bottom, right, top, "
+                                          "left), found 'up'"},
+        Refusal{"stages.1.strain.boundary=tpo", "stages.1.strain.boundary: expected the name of a boundary (bottom, "
+                                                "right, top, left), found 'tpo'; did you mean 'top'?"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Contradiction, RefusedValue,
+    testing::Values(
+        Refusal{"interfaces.joint.tensile_strength=1 MPa",
+                "interfaces.joint.tensile_strength: expected 0 or nothing for a fracture, which carries no tension, "
+                "found '1 MPa'"},
+        Refusal{"interfaces.joint.fails_to=joint",
+                "interfaces.joint.fails_to: expected nothing for a fracture, which has failed already, found 'joint'"},
+        Refusal{"interfaces.joint.dilation_angle=31",
+                "interfaces.joint.dilation_angle: expected at most the friction angle (30 deg), found '31'"},
+        Refusal{"boundaries.left.sides=[3]", "boundaries.left.sides: expected nothing for a rectangle, whose "
+                                             "boundaries are bottom, right, top, left, found a list of 1"},
+        Refusal{"stages.1.stress={boundary: right, value: 1}",
+                "stages.1.stress: expected one platen in a stage, found stress beside strain"},
+        Refusal{"stages.1.strain.boundary=bottom",
+                "stages.1.strain.boundary: expected a boundary without a support, found 'bottom'"},
+        Refusal{"geometry.fractures.0.trace=[[0, 0], [0, 0], [1, 1]]",
+                "geometry.fractures.0.trace: expected successive points to differ, found points 0 and 1 (counted from "
+                "0) equal"},
+        Refusal{"geometry.tessellation.region=[[1, 0], [2, 1], [2, 0], [1, 1]]",
+                "geometry.tessellation.region: expected a simple polygon, found sides 0 and 2 (counted from 0) that "
+                "cross"},
+        Refusal{"geometry.regions.0.polygon=[[0, 0], [1, 1], [2, 2]]",
+                "geometry.regions.0.polygon: expected a polygon with an area, found none"},
+        Refusal{"geometry.tessellation.hexagons.spacing=0.2 mm",
+                "geometry.tessellation.hexagons.spacing: expected a spacing in m that fits the domain, found '0.2 "
+                "mm', which makes 2.3e+08 hexagons"}));
+
+TEST(SceneErrors, OneOfSeveralMaterialsMustBeNamed) {
+    EXPECT_THAT(errors_with({"geometry.material=null"}),
+                ElementsAre("scene.yaml:29:3: geometry.material: expected the name of a material (rock, clay), found "
+                            "nothing\n    domain:"));
+}
+
+TEST(SceneErrors, StiffnessIsGivenInOneWay) {
+    EXPECT_THAT(errors_with({"interfaces.joint.stiffness_ratio=10"}),
+                ElementsAre("--set interfaces.joint.stiffness_ratio=10: interfaces.joint.stiffness_ratio: expected one "
+                            "way to give the stiffness, found stiffness_ratio beside normal_stiffness"));
+    EXPECT_THAT(errors_with({"interfaces.joint.shear_stiffness=null"}),
+                ElementsAre(HasSubstr("interfaces.joint.shear_stiffness: expected a value because normal_stiffness is "
+                                      "given, found nothing")));
+}
+
+TEST(SceneErrors, StrengthsComeTogetherOrNotAtAll) {
+    EXPECT_THAT(errors_with({"interfaces.seam.cohesion=null"}),
+                ElementsAre(HasSubstr("interfaces.seam.cohesion: expected cohesion, friction_angle and "
+                                      "tensile_strength together or none of them, found nothing")));
+    EXPECT_THAT(errors_with({"materials.rock.tensile_strength=null"}),
+                ElementsAre(HasSubstr("materials.rock.tensile_strength: expected cohesion, ")));
+}
+
+TEST(SceneErrors, APotentialCrackInUseNeedsAStrengthFromSomewhere) {
+    EXPECT_THAT(errors_with({"materials.clay={cohesion: null, friction_angle: null, tensile_strength: null}"}),
+                ElementsAre(HasSubstr("interfaces.bond: expected cohesion, friction_angle and tensile_strength here or "
+                                      "in the material clay, found neither")));
+}
+
+TEST(SceneErrors, APotentialCrackNeedsAFractureToFailTo) {
+    EXPECT_THAT(errors_with({"interfaces.bond.fails_to=null"}), IsEmpty()) << "the only fracture is the default";
+    EXPECT_THAT(errors_with({"interfaces.bond.fails_to=null", "interfaces.other.kind=fracture"}),
+                ElementsAre(HasSubstr("interfaces.bond.fails_to: expected the name of an interface of kind fracture "
+                                      "(joint, other), found nothing")));
+    EXPECT_THAT(errors_in(test::short_scene, {"interfaces.bond.kind=potential_crack"}),
+                ElementsAre(HasSubstr("interfaces.bond.fails_to: expected the name of an interface of kind fracture "
+                                      "(none), found nothing")));
+}
+
+TEST(SceneErrors, StiffnessesTimesSpacingNeedASpacing) {
+    const std::vector<std::string> overrides{"geometry.tessellation=null", "geometry.reference_spacing=null"};
+    EXPECT_THAT(errors_with(overrides),
+                ElementsAre(HasSubstr("interfaces.seam: expected normal_stiffness and shear_stiffness in Pa/m, or a "
+                                      "geometry.tessellation or a geometry.reference_spacing that gives the spacing, "
+                                      "found none of them for seam")));
+}
+
+TEST(SceneErrors, GravityNeedsDensities) {
+    EXPECT_THAT(errors_with({"materials.rock.density=null"}),
+                ElementsAre(HasSubstr("materials.rock.density: expected a number > 0 in kg/m3 because there is "
+                                      "gravity, found nothing")));
+    EXPECT_THAT(errors_in(test::short_scene, {"analysis.gravity=9.81"}), testing::SizeIs(1));
+}
+
+TEST(SceneErrors, AStageNeedsALoadOrGravity) {
+    EXPECT_THAT(errors_in(test::short_scene, {"stages=[{name: idle}]"}),
+                ElementsAre("--set stages=[{name: idle}]: stages.0: expected a load (pressure, displacement, strain or "
+                            "stress) because there is no gravity, found none"));
+    EXPECT_THAT(errors_in(test::short_scene, {"stages=[{pressure: {}}]"}), testing::SizeIs(1));
+    EXPECT_THAT(errors_in(test::short_scene,
+                          {"stages=[{name: weight}]", "analysis.gravity=9.81", "materials.rock.density=2000"}),
+                IsEmpty());
+}
+
+TEST(SceneErrors, APlatenAndAPressureExcludeEachOtherOnABoundary) {
+    EXPECT_THAT(errors_with({"stages.1.pressure={top: 1}"}),
+                ElementsAre(HasSubstr("stages.1.strain.boundary: expected a boundary without a pressure in the same "
+                                      "stage, found 'top'")));
+}
+
+TEST(SceneErrors, TheDomainIsOneOfThreeThings) {
+    EXPECT_THAT(
+        errors_with({"geometry.domain={rectangle: null}"}),
+        ElementsAre(HasSubstr("geometry.domain: expected one of rectangle, polygon, file, found none of them")));
+    EXPECT_THAT(errors_with({"geometry.domain.file=a.geojson"}),
+                ElementsAre(HasSubstr("geometry.domain: expected one of rectangle, polygon, file, found rectangle and "
+                                      "file")));
+    EXPECT_THAT(errors_with({"geometry.fractures.0.file=a.geojson"}),
+                ElementsAre(HasSubstr("geometry.fractures.0: expected one of trace, file, found trace and file")));
+    EXPECT_THAT(errors_with({"geometry.fractures.0.trace=null"}),
+                ElementsAre(HasSubstr("geometry.fractures.0: expected one of trace, file, found none of them")));
+}
+
+TEST(SceneErrors, AMissingGeometryFileIsReportedWhereItIsNamed) {
+    EXPECT_THAT(errors_with({"geometry.domain={rectangle: null, file: nowhere.geojson}"}),
+                ElementsAre(AllOf(StartsWith("--set geometry.domain={rectangle: null, file: nowhere.geojson}: "
+                                             "geometry.domain.file: "),
+                                  HasSubstr("nowhere.geojson"))));
+    EXPECT_THAT(errors_with({"geometry.fractures.0={trace: null, file: nowhere.geojson}"}),
+                ElementsAre(HasSubstr("geometry.fractures.0.file: ")));
+}
+
+TEST(SceneErrors, ARectangleThatVanishesInRoundOffHasNoArea) {
+    EXPECT_THAT(errors_in(test::short_scene, {"geometry.domain.rectangle={width: 1e-12, origin: [1e8, 0]}"}),
+                ElementsAre(HasSubstr("expected a rectangle with an area")));
+}
+
+TEST(SceneErrors, SidesOfAPolygonBelongToOneBoundaryEach) {
+    const std::string polygon = "geometry.domain={rectangle: null, polygon: [[0, 0], [1, 0], [1, 2], [0, 2]]}";
+    const auto errors = [&](const std::string& boundaries) {
+        return errors_in(test::short_scene, {polygon, "boundaries=" + boundaries, "stages.0.strain.boundary=top"});
+    };
+    EXPECT_THAT(errors("{top: {sides: [2]}, base: {facing: bottom}}"), IsEmpty());
+    EXPECT_THAT(errors("{top: {sides: [2, 4]}}"),
+                ElementsAre(HasSubstr("boundaries.top.sides: expected sides of the domain from 0 to 3, found 4")));
+    EXPECT_THAT(errors("{top: {sides: [2, -1]}}"),
+                ElementsAre(HasSubstr("boundaries.top.sides.1: expected an integer >= 0, found '-1'")));
+    EXPECT_THAT(errors("{top: {sides: [2]}, roof: {facing: top}}"),
+                ElementsAre(HasSubstr("boundaries.roof: expected each side of the domain once, found side 2 again")));
+    EXPECT_THAT(errors("{top: {sides: [2]}, roof: {support: fixed}}"),
+                ElementsAre(HasSubstr("boundaries.roof: expected one of sides, facing, found none of them")));
+    EXPECT_THAT(errors("{top: {sides: [2], facing: top}}"),
+                ElementsAre(HasSubstr("boundaries.top: expected one of sides, facing, found sides and facing")));
+}
+
+TEST(SceneErrors, NamesAreMadeOfLettersDigitsUnderscoresAndHyphens) {
+    EXPECT_THAT(errors_in(test::short_scene + "interfaces: {'a b': {kind: fracture}, 'a.b': {kind: fracture}}\n"),
+                ElementsAre(HasSubstr("interfaces.a b: expected a name of letters, digits, '_' and '-', found 'a b'"),
+                            HasSubstr("interfaces.a.b: expected a name of letters, digits, '_' and '-', found 'a.b'")));
+    EXPECT_THAT(errors_in(test::short_scene + "interfaces: {Klüfte-2_b: {kind: fracture}}\n"), IsEmpty());
+}
+
+TEST(SceneErrors, ThePatternsOfTheTableAreNoKeys) {
+    EXPECT_THAT(errors_in(test::short_scene + "analysis.plane: strain\n"), testing::SizeIs(1));
+    EXPECT_THAT(errors_in(test::short_scene + "'*': 1\n'#': 1\n"), testing::SizeIs(2));
+}
+
+} // namespace
+} // namespace kluft
