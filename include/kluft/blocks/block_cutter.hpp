@@ -17,7 +17,8 @@ struct CutReport {
     };
     std::vector<Merged> merged;  ///< pieces below the minimum area that went into a neighbour
     int collapsed_edges = 0;     ///< short edges collapsed to a point
-    int pruned_ends = 0;         ///< trace segments that separate nothing (dangling ends, isolated traces)
+    int joined_ends = 0;         ///< ends of traces that were carried on to what they nearly met
+    int pruned_ends = 0;         ///< pieces of traces that separate nothing (dangling ends, isolated traces)
     double smallest_area = 0.0;  ///< m2
     double smallest_edge = 0.0;  ///< m
     double smallest_angle = 0.0; ///< radians, between successive edges of a block
@@ -28,7 +29,22 @@ struct CutBody {
     CutReport report;
 };
 
-/// Throws InputError for a domain that is empty, not simple or has NaN coordinates.
+/// The outline, the fractures and the hexagons (whole ones with their centre in the tessellation's region, where there
+/// is one) are subdivided exactly, in coordinates local to the lower left corner of the domain's box; what lies beyond
+/// the outline is left out. Where sources coincide, the outline comes first, then the fracture with the lowest index.
+///
+/// What is smaller than 0.02 d is not resolved: ends of traces within that of another trace or of the outline are
+/// carried on to it, and edges shorter than that are collapsed to a point wherever the blocks around stay simple (a
+/// corner of the domain never moves, and its outline keeps its shape). Where no spacing is given, 1e-9 of the domain's
+/// diagonal takes the place of 0.02 d, and 1e-12 of the domain's area that of the minimum area. Blocks below the
+/// minimum area are merged across their longest tessellation edge, otherwise their longest interior edge, smallest
+/// first, until none is left. Each edge of a block is a side of one interface or lies on one side of the domain.
+/// A fracture that ends inside a block does not cut it. Where material regions overlap, the last one holds.
+///
+/// The order of the blocks is that of their centroids, in rows upwards and to the right in a row; that of the
+/// interfaces follows their lower block. Both are the same on every run.
+/// Throws InputError for a domain that is empty, not simple or has NaN coordinates, and for what else in the
+/// specification is out of range.
 [[nodiscard]] CutBody cut_blocks(const GeometrySpec& spec);
 
 } // namespace kluft

@@ -1,7 +1,12 @@
-// Identity and memory of contact points.
+// Identity, frame and memory of contact points.
 #pragma once
 
 #include <compare>
+
+#include <Eigen/Core>
+
+#include "kluft/constitutive/interface_law.hpp"
+#include "kluft/core/vector.hpp"
 
 namespace kluft {
 
@@ -17,17 +22,30 @@ struct ContactKey {
     auto operator<=>(const ContactKey&) const = default;
 };
 
-enum class ContactState { open, sliding, locked };
-
-/// What a fracture point remembers from one equilibrium to the next.
-struct PointHistory {
-    double shear_trial = 0.0; ///< shear traction before rounding, clipped at the limit of the rounding (Pa)
-    double dilation = 0.0;    ///< opening that plastic slip has forced so far (m)
-};
-
 struct ContactMemory {
     ContactKey key;
     PointHistory history;
 };
+
+/// A pair of points of two blocks with a frame that stays fixed during a solve, so that gap and slip are linear in
+/// the unknowns and the tangent is exact.
+struct ContactPoint {
+    int block_a = 0;
+    int block_b = 0;
+    Vec2 xi_a = Vec2::Zero(); ///< block coordinates of the point of a
+    Vec2 xi_b = Vec2::Zero();
+    Vec2 offset = Vec2::Zero();  ///< X_b - X_a before loading (m); zero where the two points were one
+    Vec2 normal = Vec2::Zero();  ///< from a to b
+    Vec2 tangent = Vec2::Zero(); ///< normal turned by +90 degrees
+    double weight = 0.0;         ///< length that the point stands for (m)
+    double slip_start = 0.0;     ///< tangent . relative position where slip = 0 (m)
+    int law = 0;                 ///< index of the interface law
+    int interface = -1;          ///< the interface of a bond or of a fracture's own two edges; -1 otherwise
+    PointHistory history;        ///< at the start of the load step
+    ContactKey key;              ///< of fracture points
+};
+
+/// x_b - x_a at displacements q (m).
+[[nodiscard]] Vec2 relative_position(const ContactPoint& point, const Eigen::VectorXd& q);
 
 } // namespace kluft

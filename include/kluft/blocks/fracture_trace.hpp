@@ -1,0 +1,25 @@
+// Ends of mapped traces that nearly meet something else.
+#pragma once
+
+#include <vector>
+
+#include "kluft/blocks/arrangement.hpp"
+
+namespace kluft {
+
+/// A trace as a polyline, and the source that its segments carry.
+struct SourceTrace {
+    std::vector<Vec2> points;
+    int source = 0;
+};
+
+/// Where a trace abuts on another, the map has rounded its end, which then misses the other by the last digits, or it
+/// was drawn a little short. For each end of a trace within `reach` (m) of another segment that the trace does not meet
+/// there anyway, this returns a segment of the trace's source from the end to the nearest point of the other; past it by at most the
+/// distance that was missing, so that the two do cross (the rest separates nothing and is pruned).
+/// `segments` holds the segments of all traces and of what else they may abut on. A trace may also abut on a part of
+/// its own that is further along it than 4 reach.
+[[nodiscard]] std::vector<SourceSegment> bridge_ends(const std::vector<SourceTrace>& traces,
+                                                     const std::vector<SourceSegment>& segments, double reach);
+
+} // namespace kluft

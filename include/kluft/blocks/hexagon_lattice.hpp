@@ -1,0 +1,26 @@
+// The edges of a net of regular hexagons, from integer vertex indices.
+#pragma once
+
+#include <functional>
+#include <utility>
+#include <vector>
+
+#include "kluft/blocks/geometry_spec.hpp"
+#include "kluft/geometry/polygon.hpp"
+
+namespace kluft {
+
+/// Edges of all hexagons that can meet `box` and whose centre `keeps`, each edge once; local coordinates (origin = the
+/// lower left corner of the domain's box, from which the lattice's offset counts).
+///
+/// A vertex with lattice indices (p, q) lies at offset + R(rotation) (p d/2, q d/(2 sqrt 3)) + jitter(p, q), computed
+/// once from p and q: hexagons that share a vertex share its bits. The jitter is uniform in a disc of radius
+/// jitter * spacing and depends on (seed, p, q) only, so it is the same on every machine and for every box.
+/// Throws InputError for a spacing that is not positive and finite or a jitter outside [0, 0.25).
+[[nodiscard]] std::vector<std::pair<Vec2, Vec2>> hexagon_edges(const HexagonLattice& lattice, const Box& box,
+                                                               const std::function<bool(const Vec2&)>& keeps);
+
+/// Area of one hexagon of spacing d: sqrt(3)/2 d^2 (m2).
+[[nodiscard]] double hexagon_area(double spacing);
+
+} // namespace kluft

@@ -1,0 +1,43 @@
+// Mends what an exact cut leaves behind: slivers, short edges, needless vertices.
+#pragma once
+
+#include <vector>
+
+#include "kluft/blocks/planar_map.hpp"
+
+namespace kluft {
+
+/// What counts as too small, and the meaning of the map's sources: those below `first_fracture` lie on the domain's
+/// outline, those from `tessellation` on are hexagon edges.
+struct MendLimits {
+    double area = 0.0;      ///< smallest face (m2)
+    double edge = 0.0;      ///< smallest edge (m)
+    double collinear = 0.0; ///< largest distance of a vertex from the line that replaces its two edges (m)
+    int first_fracture = 0;
+    int tessellation = 0;
+};
+
+struct MendReport {
+    struct Merged {
+        Vec2 at = Vec2::Zero(); ///< centroid (m)
+        double area = 0.0;      ///< m2
+    };
+    std::vector<Merged> merged;
+    int collapsed_edges = 0;
+};
+
+/// Until nothing changes any more:
+/// 1. each face below `limits.area`, smallest first, is merged with the neighbour across its longest tessellation edge,
+///    otherwise across its longest interior edge; all edges between the two disappear;
+/// 2. each edge below `limits.edge`, shortest first, is collapsed to the end that is worth more (corner of the domain,
+///    then its outline, then more fracture edges), if every face around stays simple and positively oriented, the
+///    outline keeps its shape and corners, and no two vertices get joined twice;
+/// 3. vertices where two edges with one source go straight on are removed;
+/// 4. faces that rounding left not simple are merged as in 1.
+/// Expects no edge with the same face on both sides, and leaves none.
+[[nodiscard]] MendReport mend(PlanarMap& map, const MendLimits& limits);
+
+/// Whether the loops of a face are simple, exactly one of them is positive, and they meet at most in common vertices.
+[[nodiscard]] bool face_is_simple(PlanarMap& map, int face);
+
+} // namespace kluft

@@ -1,0 +1,63 @@
+// Traction of interfaces from their relative displacement: bonds and fractures (docs/theory.md).
+#pragma once
+
+#include <optional>
+
+#include "kluft/core/vector.hpp"
+
+namespace kluft {
+
+enum class ContactState { open, sliding, locked };
+
+/// All constants of one interface type. Pa/m, Pa, tangents of angles.
+struct InterfaceLaw {
+    double normal_stiffness = 0.0;
+    double shear_stiffness = 0.0;
+    double tan_friction = 0.0;
+    double cohesion = 0.0;
+    double tan_dilation = 0.0;
+    double cohesion_onset = 0.0;    ///< t_r: c_eff = c min(1, p/t_r)
+    double contact_rounding = 0.0;  ///< g_0 k_n: the pressure is rounded for |gap| < g_0
+    double friction_rounding = 0.0; ///< s: Coulomb's limit is rounded for |trial|/limit in 1 - s .. 1 + s
+};
+
+/// What a fracture point remembers from one equilibrium to the next.
+struct PointHistory {
+    double shear_trial = 0.0; ///< shear traction before rounding, clipped at the limit of the rounding (Pa)
+    double dilation = 0.0;    ///< opening that plastic slip has forced so far (m)
+};
+
+/// Traction at a point and its derivatives with respect to (gap, slip).
+struct PointTraction {
+    double normal = 0.0;         ///< Pa, positive in tension
+    double shear = 0.0;          ///< Pa
+    Mat2 tangent = Mat2::Zero(); ///< d(normal, shear)/d(gap, slip), Pa/m
+    ContactState state = ContactState::locked;
+    PointHistory history; ///< to keep if this becomes the equilibrium
+};
+
+/// Contact pressure p(gap) >= 0 of the rounded law and its derivative (<= 0). With g_0 = contact_rounding/k_n:
+/// p = k_n (g_0 - g)^2/(4 g_0) for |g| < g_0, -k_n g below, 0 above.
+struct ContactPressure {
+    double value = 0.0;
+    double slope = 0.0;
+};
+[[nodiscard]] ContactPressure contact_pressure(const InterfaceLaw& law, double gap);
+
+/// Coulomb's limit c min(1, p/t_r) + p tan(phi) and its derivative with respect to p.
+struct ShearLimit {
+    double value = 0.0;
+    double slope = 0.0;
+};
+[[nodiscard]] ShearLimit shear_limit(const InterfaceLaw& law, double pressure);
+
+/// A bonded point: elastic in tension and shear. `start_shear` is the shear traction where slip = 0.
+[[nodiscard]] PointTraction bond_traction(const InterfaceLaw& law, double start_shear, double gap, double slip);
+
+/// A point of a fracture: no tension, Coulomb friction with rounding, dilation by plastic slip. `gap` is total,
+/// `slip` counts from where `start` was kept. With `frozen_limit` the shear limit is that constant (the convex
+/// problem of the lagged limit).
+[[nodiscard]] PointTraction fracture_traction(const InterfaceLaw& law, const PointHistory& start, double gap,
+                                              double slip, std::optional<double> frozen_limit = std::nullopt);
+
+} // namespace kluft

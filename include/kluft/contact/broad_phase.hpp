@@ -1,0 +1,20 @@
+// Pairs of boxes that meet, by a uniform grid.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "kluft/core/vector.hpp"
+
+namespace kluft {
+
+struct Box {
+    int block = 0;
+    Vec2 lower = Vec2::Zero();
+    Vec2 upper = Vec2::Zero();
+};
+
+/// Pairs (i < j) of blocks whose boxes meet when each is grown by `reach` (m) on all sides; sorted, each once.
+[[nodiscard]] std::vector<std::pair<int, int>> meeting_boxes(const std::vector<Box>& boxes, double reach);
+
+} // namespace kluft

@@ -1,0 +1,31 @@
+// Contact points between blocks that are not bonded to each other: overlaps of facing edges and vertices against
+// edges (the narrow phase), with the history of the points that persist.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "kluft/blocks/block_system.hpp"
+#include "kluft/contact/contact.hpp"
+
+namespace kluft {
+
+/// What detection needs to know of the interfaces.
+struct ContactSurfaces {
+    std::vector<char> bonded;     ///< per interface: 1 while it is a bond
+    std::vector<int> law;         ///< per interface: its law as a fracture (index into the interface laws)
+    std::vector<double> friction; ///< per law: tan(phi), to choose between the laws of two surfaces
+    int default_law = 0;          ///< of two surfaces of the domain's outline that meet
+};
+
+struct DetectedContacts {
+    std::vector<ContactPoint> points;            ///< sorted by key
+    std::vector<std::pair<int, int>> near_pairs; ///< blocks that are near enough to touch soon, sorted
+};
+
+/// `reach`: largest opening at which a point is kept (m). Points whose key is in `memory` (sorted) inherit its history.
+[[nodiscard]] DetectedContacts detect_contacts(const BlockSystem& system, const ContactSurfaces& surfaces,
+                                               const Eigen::VectorXd& q, double reach,
+                                               const std::vector<ContactMemory>& memory);
+
+} // namespace kluft

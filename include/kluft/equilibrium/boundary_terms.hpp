@@ -1,0 +1,75 @@
+// Loads and prescribed displacements on the outline of the body.
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "kluft/assembly/block_matrix.hpp"
+#include "kluft/blocks/block_system.hpp"
+#include "kluft/core/vector.hpp"
+
+namespace kluft {
+
+/// A follower pressure on one edge of the outline (Pa, positive inward).
+struct PressureEdge {
+    int block = 0;
+    int boundary = 0;
+    Vec2 xi_middle = Vec2::Zero();
+    Vec2 extent = Vec2::Zero();    ///< X_end - X_start (m)
+    Vec2 xi_extent = Vec2::Zero(); ///< xi_end - xi_start
+};
+
+/// All edges of boundary `i` as pressure edges.
+[[nodiscard]] std::vector<PressureEdge> pressure_edges(const BlockSystem& system, int boundary);
+
+/// Force of the pressure on the edge at displacements q: -pressure times the current outward normal times length (N/m).
+[[nodiscard]] Vec2 pressure_force(const PressureEdge& edge, double pressure, const Eigen::VectorXd& q);
+
+/// Adds minus the derivative of pressure_force to the block's diagonal entry.
+void add_pressure_tangent(const PressureEdge& edge, double pressure, Mat6& diagonal);
+
+/// direction . displacement(xi) of a block is prescribed to be `target` (m).
+struct PrescribedDisplacement {
+    int block = 0;
+    Vec2 xi = Vec2::Zero();
+    Vec2 direction = Vec2::Zero();
+    int boundary = 0;
+    double target = 0.0;
+};
+
+/// Prescribed displacements, block by block. They hold exactly: the unknowns move in the null space of the rows.
+class Constraints {
+public:
+    Constraints() = default;
+    explicit Constraints(std::vector<PrescribedDisplacement> rows);
+
+    [[nodiscard]] bool empty() const { return rows_.empty(); }
+    [[nodiscard]] const std::vector<PrescribedDisplacement>& rows() const { return rows_; }
+    void set_target(int row, double target) { rows_[row].target = target; }
+
+    /// Least-norm change of q that fulfils the rows (zero where they hold). Where rows of a block contradict each
+    /// other it is the least-squares compromise.
+    void correction(const Eigen::VectorXd& q, Eigen::VectorXd& dq) const;
+    /// Removes the constrained part of a vector of unknowns or forces.
+    void project(Eigen::VectorXd& v) const;
+    /// K := P K P + scale (1 - P).
+    void project(BlockMatrix& matrix, double scale) const;
+    /// Force that the support of `boundary` exerts on the body when `residual` = internal - other external forces.
+    [[nodiscard]] Vec2 reaction(const Eigen::VectorXd& residual, int boundary) const;
+
+private:
+    struct Constrained {
+        int block;
+        std::vector<int> rows;
+        Mat6 projector;                                   ///< onto the null space of the rows
+        Eigen::Matrix<double, 6, Eigen::Dynamic> inverse; ///< pseudo-inverse of the rows
+    };
+    std::vector<PrescribedDisplacement> rows_;
+    std::vector<Constrained> blocks_;
+};
+
+/// The row of a prescribed displacement over the six unknowns of its block.
+[[nodiscard]] Vec6 constraint_row(const PrescribedDisplacement& prescribed);
+
+} // namespace kluft

@@ -1,0 +1,53 @@
+// Affine kinematics of a block: x = X + u + D xi with xi = (X - X_c)/h. Unknowns per block, all lengths:
+// q = (u_x, u_y, D11, D21, D12, D22); F = I + D/h. Exact under any rotation (docs/theory.md).
+#pragma once
+
+#include <Eigen/Core>
+
+#include "kluft/blocks/block_system.hpp"
+#include "kluft/core/vector.hpp"
+
+namespace kluft {
+
+inline constexpr int n_block_unknowns = 6;
+
+using Vec6 = Eigen::Matrix<double, 6, 1>;
+using Mat6 = Eigen::Matrix<double, 6, 6>;
+
+/// xi of a material point X of the block (dimensionless).
+[[nodiscard]] inline Vec2 block_coordinates(const Block& block, const Vec2& x) {
+    return (x - block.centroid) / block.size;
+}
+
+/// Displacement of the point xi of block `b` (m); q has size 6 n_blocks.
+[[nodiscard]] inline Vec2 displacement_at(const Eigen::VectorXd& q, int b, const Vec2& xi) {
+    const double* v = q.data() + n_block_unknowns * b;
+    return {v[0] + v[2] * xi.x() + v[4] * xi.y(), v[1] + v[3] * xi.x() + v[5] * xi.y()};
+}
+
+/// F = I + D/h of block `b`.
+[[nodiscard]] inline Mat2 deformation_gradient(const Eigen::VectorXd& q, int b, double size) {
+    const double* v = q.data() + n_block_unknowns * b;
+    Mat2 f;
+    f << 1.0 + v[2] / size, v[4] / size, v[3] / size, 1.0 + v[5] / size;
+    return f;
+}
+
+/// Adds the force f at the point xi to the generalised forces of block `b` (N per metre of thickness).
+inline void add_force(Eigen::VectorXd& forces, int b, const Vec2& xi, const Vec2& f) {
+    double* v = forces.data() + n_block_unknowns * b;
+    v[0] += f.x();
+    v[1] += f.y();
+    v[2] += xi.x() * f.x();
+    v[3] += xi.x() * f.y();
+    v[4] += xi.y() * f.x();
+    v[5] += xi.y() * f.y();
+}
+
+/// Current position of a vertex as a corner of a block, local coordinates (m).
+[[nodiscard]] inline Vec2 current_position(const BlockSystem& system, const Eigen::VectorXd& q, int b, int vertex) {
+    const Vec2& x = system.vertices[vertex];
+    return x + displacement_at(q, b, block_coordinates(system.blocks[b], x));
+}
+
+} // namespace kluft

@@ -1,0 +1,33 @@
+// From a value to a colour, and the bar that explains it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kluft/output/axis.hpp"
+#include "kluft/output/canvas.hpp"
+
+namespace kluft {
+
+/// Colours from light to dark over the range of an axis; values outside take the end's colour. The lightness falls
+/// evenly, so that the scale reads in grey and by colour-blind readers; red, blue, amber and black lines show on it.
+class ColourScale {
+public:
+    explicit ColourScale(const Axis& axis) : axis_(axis) {}
+
+    [[nodiscard]] Colour operator()(double value) const;
+    [[nodiscard]] const Axis& axis() const { return axis_; }
+
+private:
+    Axis axis_;
+};
+
+/// A scale from zero (or a round number below the least value) to a round number above all but the largest hundredth
+/// of the values. Values that are not finite numbers are left out.
+[[nodiscard]] ColourScale scale_for(std::vector<double> values);
+
+/// An upright bar with ticks to its right and its name beyond them.
+void draw_colour_bar(Canvas& canvas, const ColourScale& scale, const Vec2& corner, const Vec2& size,
+                     const std::string& name);
+
+} // namespace kluft

@@ -1,0 +1,62 @@
+// Plots of runs: differential stress against axial strain, several runs and published values in one picture.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kluft/core/vector.hpp"
+#include "kluft/output/canvas.hpp"
+#include "kluft/simulation/step_record.hpp"
+
+namespace kluft {
+
+struct PlottedPoint {
+    Vec2 value = Vec2::Zero();
+    bool balanced = true; ///< otherwise drawn as a hollow red marker with dashed lines to it
+};
+
+struct PlottedCurve {
+    std::string label; ///< in the legend; empty: not listed there
+    std::vector<PlottedPoint> points;
+    std::vector<Vec2> fine; ///< drawn faintly underneath: every equilibrium
+    std::optional<Vec2> peak;
+    std::vector<std::string> peak_text; ///< lines beside the peak
+};
+
+/// A published value to compare with, in the units of the plot: a level across it (no x; the label stands on the line)
+/// or a point (a cross; equal labels are listed once in the legend).
+struct PlottedReference {
+    std::string label;
+    std::optional<double> x;
+    double y = 0.0;
+};
+
+struct CurvePlot {
+    std::string title;
+    std::string x_name;
+    std::string y_name;
+    std::vector<PlottedCurve> curves;
+    std::vector<PlottedReference> references;
+};
+
+/// The rows of one run as written to its tables.
+struct RunCurve {
+    std::string label;
+    std::vector<StepRecord> history;
+    std::vector<StepRecord> equilibria; ///< may be empty
+    int platen_stage = 0;               ///< the first stage that moves a platen
+};
+
+/// Differential stress (MPa) against axial strain (%), positive in compression, from the state before the platen
+/// moves. The peak is the balanced equilibrium with the largest axial stress (see summary.hpp), marked with its values.
+[[nodiscard]] CurvePlot stress_strain_plot(const std::string& title, const std::vector<RunCurve>& runs,
+                                           const std::vector<PlottedReference>& references = {});
+
+/// Bytes of the picture.
+[[nodiscard]] std::string draw_curves(const CurvePlot& plot, PictureFormat format);
+/// Writes the picture in the format that the extension names. Throws InputError, ResourceError.
+void write_curves(const std::filesystem::path& path, const CurvePlot& plot);
+
+} // namespace kluft

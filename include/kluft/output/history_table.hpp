@@ -1,0 +1,29 @@
+// The rows of history.csv, equilibria.csv and cracks.csv.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "kluft/simulation/step_record.hpp"
+
+namespace kluft {
+
+/// Column names of history.csv and equilibria.csv, separated by commas: the members of StepRecord in order.
+/// Stresses (Pa) and strains (fractions) are positive in compression.
+[[nodiscard]] std::string history_header();
+/// Column names of cracks.csv: the members of CrackRecord in order; `mode` is `tension` or `shear`.
+[[nodiscard]] std::string cracks_header();
+
+/// A row without the end of the line. Numbers have 17 significant digits, so that they are read back exactly;
+/// booleans are 0 or 1.
+[[nodiscard]] std::string table_row(const StepRecord& record);
+[[nodiscard]] std::string table_row(const CrackRecord& crack);
+
+/// Reads history.csv or equilibria.csv. Columns may stand in any order and further ones are ignored; so is a last line
+/// without its end, which a killed run may leave. Throws InputError (file:line: column: expected, found).
+[[nodiscard]] std::vector<StepRecord> read_history(const std::filesystem::path& path);
+/// Reads cracks.csv. Throws InputError.
+[[nodiscard]] std::vector<CrackRecord> read_cracks(const std::filesystem::path& path);
+
+} // namespace kluft

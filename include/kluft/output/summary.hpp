@@ -1,0 +1,82 @@
+// What a run comes to: peak, residual stress, elastic constants, counts and costs.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kluft/constitutive/material.hpp"
+#include "kluft/simulation/step_record.hpp"
+
+namespace kluft {
+
+/// The mechanical numbers of a run. Pa and fractions, positive in compression.
+struct CurveNumbers {
+    std::optional<double> peak_stress;     ///< largest axial stress over all balanced equilibria
+    std::optional<double> peak_strain;     ///< axial strain there
+    bool peak_reached = false;             ///< a later balanced equilibrium lies at least 1 % below the peak
+    std::optional<double> residual_stress; ///< mean axial stress over the last 10 % of the strain, with a peak only
+    std::optional<double> axial_modulus;   ///< slope of the differential stress over the axial strain (Pa)
+    std::optional<double> lateral_ratio;   ///< slope of the lateral strain over the axial one, sign changed
+    std::optional<double> youngs_modulus;  ///< of the rock: the same slopes, converted for plane strain (Pa)
+    std::optional<double> poissons_ratio;
+    int cracks_tension = 0;
+    int cracks_shear = 0;
+    int steps = 0;
+    int unbalanced_steps = 0;
+    int open_close_iterations = 0;
+};
+
+/// Rows of the stages from `platen_stage` on, and the last row before them (the state in which the platen starts).
+[[nodiscard]] std::vector<StepRecord> platen_rows(const std::vector<StepRecord>& rows, int platen_stage);
+
+/// The balanced row with the largest axial stress, the first of equals; nothing without a balanced row.
+[[nodiscard]] std::optional<StepRecord> peak_row(const std::vector<StepRecord>& rows);
+
+/// Computes the numbers from the rows of equilibria.csv (peak) and history.csv (the rest; also the peak when there are
+/// no equilibria). Unbalanced rows count in `unbalanced_steps` only.
+///
+/// Elastic constants: least squares from the start of the platen's movement to 30 % of the peak differential stress;
+/// where fewer than two rows lie in that range, its end is interpolated. In plane stress E = slope, nu = ratio; in plane
+/// strain the slopes are E' = E/(1 - nu^2) and nu' = nu/(1 - nu), hence nu = nu'/(1 + nu') and E = E' (1 - nu^2).
+/// `platen_stage`: the first stage that moves a platen; without one there are no elastic constants.
+[[nodiscard]] CurveNumbers curve_numbers(const std::vector<StepRecord>& equilibria,
+                                         const std::vector<StepRecord>& history, std::optional<int> platen_stage,
+                                         Plane plane);
+
+enum class RunStatus { done, no_equilibrium, collapsed, out_of_resources, interrupted };
+
+/// The name of a status in summary.json.
+[[nodiscard]] std::string status_name(RunStatus status);
+
+struct RunSummary {
+    RunStatus status = RunStatus::done;
+    std::string title;
+    CurveNumbers numbers;
+    std::optional<int> platen_stage;
+    int blocks = 0;
+    int interfaces = 0;
+    int unknowns = 0;
+    std::int64_t factorizations = 0;
+    std::int64_t analyses = 0;
+    double elapsed_s = 0.0;
+    std::int64_t peak_memory_bytes = 0;
+    std::string version;
+    std::map<std::string, double> seconds; ///< by stage of the computation
+    std::string message;                   ///< why the run ended, if not done
+};
+
+/// The text of summary.json. What is not known or not a finite number is null.
+[[nodiscard]] std::string summary_json(const RunSummary& summary);
+/// Writes summary.json. Throws ResourceError.
+void write_summary(const std::filesystem::path& path, const RunSummary& summary);
+/// Reads summary.json back. Throws InputError.
+[[nodiscard]] RunSummary read_summary(const std::filesystem::path& path);
+
+/// Largest memory that this program has had so far (bytes).
+[[nodiscard]] std::int64_t peak_memory_bytes();
+
+} // namespace kluft

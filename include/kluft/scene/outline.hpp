@@ -1,0 +1,36 @@
+// The outline of a domain and the groups of its sides that make boundaries.
+#pragma once
+
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "kluft/blocks/geometry_spec.hpp"
+
+namespace kluft {
+
+enum class Facing { left, right, top, bottom };
+
+/// "left", "right", "top", "bottom".
+[[nodiscard]] std::string_view facing_name(Facing facing);
+
+/// Area of a polygon, positive counter-clockwise (m2). Computed from the first vertex, so that large coordinates lose
+/// nothing.
+[[nodiscard]] double signed_area(const Polygon& polygon);
+
+/// The polygon counter-clockwise with the same first vertex.
+[[nodiscard]] Polygon counter_clockwise(const Polygon& polygon);
+
+/// Index in counter_clockwise(polygon) of side `side` (vertex `side` to the next) of a polygon with `n_sides`.
+[[nodiscard]] int counter_clockwise_side(int side, int n_sides, bool was_clockwise);
+
+/// Sides of a counter-clockwise polygon whose outward normal points within 45 degrees of a direction; exactly 45 degrees
+/// counts as top or bottom, so that every side of non-zero length faces one way only.
+[[nodiscard]] std::vector<int> sides_facing(const Polygon& polygon, Facing facing);
+
+/// Two sides that cross each other or touch where they should not, if the polygon has fewer than `most_sides` sides.
+/// Plain floating-point arithmetic: clear cases only; the block cutter decides exactly.
+[[nodiscard]] std::optional<std::pair<int, int>> crossing_sides(const Polygon& polygon, int most_sides = 2000);
+
+} // namespace kluft

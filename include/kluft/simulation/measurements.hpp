@@ -1,0 +1,55 @@
+// Strains, stresses and counts of an equilibrium, as rock engineers read them: positive in compression.
+#pragma once
+
+#include <vector>
+
+#include "kluft/equilibrium/equilibrium_problem.hpp"
+#include "kluft/fracture/crack_check.hpp"
+#include "kluft/simulation/model.hpp"
+#include "kluft/simulation/state.hpp"
+#include "kluft/simulation/step_record.hpp"
+
+namespace kluft {
+
+/// The boundaries that strains and stresses are measured on.
+struct Gauges {
+    int moved = -1; ///< boundary of the first platen that moves; the upper one without any
+    int opposite = -1;
+    std::vector<int> lateral;          ///< the two boundaries across, empty if there are none
+    Vec2 axial_normal = Vec2::UnitY(); ///< outward normal of `moved`
+    Vec2 lateral_normal = Vec2::UnitX();
+    double length = 0.0;         ///< distance of moved and opposite boundary before loading (m)
+    double width = 0.0;          ///< distance of the lateral boundaries before loading (m)
+    int first_platen_stage = -1; ///< first stage that moves a platen; -1 without one
+};
+[[nodiscard]] Gauges make_gauges(const Model& model);
+
+/// Strains since `reference` (m): axial and lateral, positive in compression.
+struct Strains {
+    double axial = 0.0;
+    double lateral = 0.0;
+};
+[[nodiscard]] Strains measure_strains(const Model& model, const Gauges& gauges, const Eigen::VectorXd& q,
+                                      const Eigen::VectorXd& reference);
+
+/// Mean normal stress on a boundary: its pressure, or the support's reaction over the current length (Pa).
+/// `residual` = internal - external forces without the supports'.
+[[nodiscard]] double boundary_stress(const EquilibriumProblem& problem, const Eigen::VectorXd& residual, int boundary,
+                                     bool held, double current_length, const Vec2& normal);
+
+/// Contact states by interface and further touching pairs, each counted once by its worst point.
+struct ContactCounts {
+    int open = 0;
+    int sliding = 0;
+    int locked = 0;
+};
+[[nodiscard]] ContactCounts count_contacts(const Model& model, const State& state, const EquilibriumProblem& problem,
+                                           const Eigen::VectorXd& q);
+
+/// Tractions of the bonded interfaces, mean of their points (Pa); zero for the others.
+[[nodiscard]] std::vector<InterfaceTraction> bond_tractions(const Model& model, const EquilibriumProblem& problem,
+                                                            const Eigen::VectorXd& q);
+
+[[nodiscard]] FieldRecord field_record(const Model& model, const State& state, const EquilibriumProblem& problem);
+
+} // namespace kluft

@@ -1,0 +1,51 @@
+// What a stage does to the outline: pressures, and platens that prescribe displacements.
+#pragma once
+
+#include <vector>
+
+#include "kluft/equilibrium/boundary_terms.hpp"
+#include "kluft/simulation/model.hpp"
+#include "kluft/simulation/state.hpp"
+
+namespace kluft {
+
+/// Mean outward normal of a boundary before loading (unit), and its length (m).
+struct BoundaryFrame {
+    Vec2 normal = Vec2::Zero();
+    double length = 0.0;
+};
+[[nodiscard]] BoundaryFrame boundary_frame(const BlockSystem& system, int boundary);
+
+/// The boundary whose normal is most opposite to that of `boundary`; -1 if none faces the other way.
+[[nodiscard]] int opposite_boundary(const BlockSystem& system, int boundary);
+
+/// Mean position of a boundary before loading, local coordinates (m).
+[[nodiscard]] Vec2 mean_position(const BlockSystem& system, int boundary);
+
+/// Mean displacement of a boundary, weighted by length (m).
+[[nodiscard]] Vec2 mean_displacement(const BlockSystem& system, const Eigen::VectorXd& q, int boundary);
+
+/// The loads of one stage as functions of the load factor.
+class StageLoads {
+public:
+    StageLoads(const Model& model, const State& stage_start, const Stage& stage);
+
+    /// Pressure per boundary at a load factor (Pa); 0 on boundaries that platens hold.
+    [[nodiscard]] std::vector<double> pressures(double load_factor) const;
+    /// The prescribed displacements; targets are those of load factor 0.
+    [[nodiscard]] const Constraints& constraints() const { return constraints_; }
+    /// Sets the targets of a load factor.
+    void set_targets(Constraints& constraints, double load_factor) const;
+    [[nodiscard]] bool is_held(int boundary) const { return held_[boundary] != 0; }
+    /// Boundaries under pressure at any time of the stage.
+    [[nodiscard]] const std::vector<PressureEdge>& edges() const { return edges_; }
+
+private:
+    std::vector<double> start_pressure_, end_pressure_;
+    std::vector<char> held_;
+    std::vector<PressureEdge> edges_;
+    Constraints constraints_;
+    std::vector<double> start_targets_, target_rates_;
+};
+
+} // namespace kluft

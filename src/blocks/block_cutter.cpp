@@ -1,0 +1,506 @@
+#include "kluft/blocks/block_cutter.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <numeric>
+#include <string>
+#include <tuple>
+
+#include <fmt/format.h>
+
+#include "kluft/blocks/arrangement.hpp"
+#include "kluft/blocks/fracture_trace.hpp"
+#include "kluft/blocks/hexagon_lattice.hpp"
+#include "kluft/blocks/map_mender.hpp"
+#include "kluft/core/diagnostics.hpp"
+#include "kluft/geometry/polygon.hpp"
+#include "kluft/geometry/segment_grid.hpp"
+
+namespace kluft {
+
+namespace {
+
+/// Numbers of what cuts the body, in order of priority: the sides of the outline, those of the holes, the fractures,
+/// the tessellation.
+struct SourceNumbers {
+    int n_sides = 0;        ///< of the outline
+    int first_fracture = 0; ///< = number of all sides
+    int tessellation = 0;   ///< = first_fracture + number of fractures
+};
+
+SourceNumbers number_sources(const GeometrySpec& spec) {
+    SourceNumbers numbers;
+    numbers.n_sides = static_cast<int>(spec.domain.size());
+    numbers.first_fracture = numbers.n_sides;
+    for (const Polygon& hole : spec.holes) numbers.first_fracture += static_cast<int>(hole.size());
+    numbers.tessellation = numbers.first_fracture + static_cast<int>(spec.fractures.size());
+    return numbers;
+}
+
+void check_finite(const std::vector<Vec2>& points, const std::string& what) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (!points[i].allFinite()) throw InputError(fmt::format("{}: point {} is not a finite number", what, i));
+    }
+}
+
+void check_polygon(const Polygon& polygon, const std::string& what) {
+    if (polygon.size() < 3) {
+        throw InputError(fmt::format("{}: expected a polygon of at least 3 points, got {}", what, polygon.size()));
+    }
+    check_finite(polygon, what);
+}
+
+/// The boundary of each side of the outline, -1 for sides in none.
+std::vector<int> boundary_of_sides(const GeometrySpec& spec) {
+    const int n_sides = static_cast<int>(spec.domain.size());
+    std::vector<int> boundary(n_sides, -1);
+    for (int k = 0; k < static_cast<int>(spec.boundaries.size()); ++k) {
+        const BoundarySides& named = spec.boundaries[k];
+        for (const int side : named.sides) {
+            if (side < 0 || side >= n_sides) {
+                throw InputError(
+                    fmt::format("boundaries.{}: the domain has sides 0 to {}, got {}", named.name, n_sides - 1, side));
+            }
+            if (boundary[side] >= 0 && boundary[side] != k) {
+                throw InputError(fmt::format("boundaries.{}: side {} already belongs to boundary {}", named.name, side,
+                                             spec.boundaries[boundary[side]].name));
+            }
+            boundary[side] = k;
+        }
+    }
+    return boundary;
+}
+
+void check_spec(const GeometrySpec& spec) {
+    check_polygon(spec.domain, "geometry.domain");
+    for (std::size_t i = 0; i < spec.holes.size(); ++i) {
+        check_polygon(spec.holes[i], fmt::format("geometry.domain: hole {}", i));
+    }
+    for (std::size_t i = 0; i < spec.fractures.size(); ++i) {
+        const FractureTrace& trace = spec.fractures[i];
+        const std::string what =
+            fmt::format("geometry.fractures.{}{}", i, trace.name.empty() ? "" : fmt::format(" ({})", trace.name));
+        if (trace.points.size() < 2) {
+            throw InputError(
+                fmt::format("{}: expected a trace of at least 2 points, got {}", what, trace.points.size()));
+        }
+        check_finite(trace.points, what);
+    }
+    for (std::size_t i = 0; i < spec.regions.size(); ++i) {
+        check_polygon(spec.regions[i].polygon, fmt::format("geometry.regions.{}", i));
+    }
+    if (spec.tessellation && spec.tessellation->region) {
+        check_polygon(*spec.tessellation->region, "geometry.tessellation.region");
+    }
+    if (!(spec.minimum_area >= 0.0 && spec.minimum_area < 1.0)) {
+        throw InputError(
+            fmt::format("geometry.minimum_area: expected a fraction 0 <= f < 1, got {}", spec.minimum_area));
+    }
+    if (!(spec.reference_spacing >= 0.0) || !std::isfinite(spec.reference_spacing)) {
+        throw InputError(fmt::format("geometry.reference_spacing: expected a length, got {}", spec.reference_spacing));
+    }
+}
+
+/// The body relative to the lower left corner of the domain's box.
+struct LocalFrame {
+    Vec2 origin = Vec2::Zero();
+    Box box; ///< of the domain, local
+
+    [[nodiscard]] Polygon to_local(const Polygon& points) const {
+        Polygon local = points;
+        for (Vec2& p : local) p -= origin;
+        return local;
+    }
+};
+
+LocalFrame local_frame(const Polygon& domain) {
+    LocalFrame frame;
+    frame.origin = bounding_box(domain).lower;
+    frame.box = bounding_box(frame.to_local(domain));
+    return frame;
+}
+
+void add_polygon(std::vector<SourceSegment>& segments, const Polygon& polygon, int first_source) {
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        segments.push_back({polygon[i], polygon[(i + 1) % polygon.size()], first_source + static_cast<int>(i)});
+    }
+}
+
+std::vector<SourceSegment> outline_segments(const GeometrySpec& spec, const LocalFrame& frame) {
+    std::vector<SourceSegment> segments;
+    add_polygon(segments, frame.to_local(spec.domain), 0);
+    int first = static_cast<int>(spec.domain.size());
+    for (const Polygon& hole : spec.holes) {
+        add_polygon(segments, frame.to_local(hole), first);
+        first += static_cast<int>(hole.size());
+    }
+    return segments;
+}
+
+/// An outline is sound if it subdivides into exactly its own sides and vertices, and each hole lies in the body.
+void check_outline(const GeometrySpec& spec, const std::vector<SourceSegment>& segments) {
+    for (const SourceSegment& side : segments) {
+        if (side.a == side.b) throw InputError("geometry.domain: two successive points are the same");
+    }
+    const PlanarMap map = arrange(segments);
+    const int n_vertices = static_cast<int>(map.positions.size());
+    bool simple = map.n_edges() == static_cast<int>(segments.size()) && n_vertices == map.n_edges() &&
+                  map.n_faces() == 2 + static_cast<int>(spec.holes.size());
+    for (int v = 0; v < n_vertices && simple; ++v) simple = map.degree(v, 3) == 2;
+    if (!simple) {
+        throw InputError(spec.holes.empty()
+                             ? "geometry.domain: the outline crosses or touches itself"
+                             : "geometry.domain: the outline or a hole crosses or touches itself or another");
+    }
+    // Inside the body every hole has the body's face on its outer side: the face that is left of or right of side 0.
+    const auto faces_of = [&map](int source) {
+        const auto e = std::find(map.sources.begin(), map.sources.end(), source) - map.sources.begin();
+        return std::pair(map.face(static_cast<int>(2 * e)), map.face(static_cast<int>(2 * e + 1)));
+    };
+    const auto [left, right] = faces_of(0);
+    const int body = left == 0 ? right : left;
+    int first = static_cast<int>(spec.domain.size());
+    for (const Polygon& hole : spec.holes) {
+        const auto [a, b] = faces_of(first);
+        if (a != body && b != body)
+            throw InputError("geometry.domain: a hole lies outside the outline or inside another");
+        first += static_cast<int>(hole.size());
+    }
+}
+
+/// The smallest length that the cut resolves (m); see block_cutter.hpp.
+double resolution(const GeometrySpec& spec, const LocalFrame& frame) {
+    constexpr double of_spacing = 0.02;
+    constexpr double of_diagonal = 1e-9;
+    constexpr double of_position = 16.0 * std::numeric_limits<double>::epsilon();
+    const double farthest = frame.origin.cwiseAbs().maxCoeff() + frame.box.upper.maxCoeff();
+    return std::max({of_spacing * lattice_spacing(spec), of_diagonal * frame.box.upper.norm(), of_position * farthest});
+}
+
+std::vector<SourceTrace> local_traces(const GeometrySpec& spec, const LocalFrame& frame, const SourceNumbers& numbers) {
+    std::vector<SourceTrace> traces;
+    for (const FractureTrace& fracture : spec.fractures) {
+        traces.push_back({frame.to_local(fracture.points), numbers.first_fracture + static_cast<int>(traces.size())});
+    }
+    return traces;
+}
+
+void add_traces(std::vector<SourceSegment>& segments, const std::vector<SourceTrace>& traces) {
+    for (const SourceTrace& trace : traces) {
+        for (std::size_t i = 0; i + 1 < trace.points.size(); ++i) {
+            if (trace.points[i] == trace.points[i + 1]) continue;
+            segments.push_back({trace.points[i], trace.points[i + 1], trace.source});
+        }
+    }
+}
+
+/// Adds the hexagons that the region keeps, and of these only those that can reach into the domain.
+void add_hexagons(std::vector<SourceSegment>& segments, const GeometrySpec& spec, const LocalFrame& frame,
+                  const SegmentGrid& outline, int source) {
+    const HexagonLattice& lattice = spec.tessellation->hexagons;
+    const Polygon domain = frame.to_local(spec.domain);
+    const Polygon region = spec.tessellation->region ? frame.to_local(*spec.tessellation->region) : Polygon{};
+    const double reach = lattice.spacing * (1.0 / std::numbers::sqrt3 + lattice.jitter);
+    const auto keeps = [&](const Vec2& centre) {
+        if (!region.empty() && !contains(region, centre)) return false;
+        return contains(domain, centre) || std::isfinite(outline.distance(centre, reach));
+    };
+    for (const auto& [a, b] : hexagon_edges(lattice, frame.box, keeps)) segments.push_back({a, b, source});
+}
+
+struct Cuts {
+    std::vector<SourceSegment> segments;
+    int joined_ends = 0;
+};
+
+Cuts cuts_of(const GeometrySpec& spec, const LocalFrame& frame, const SourceNumbers& numbers) {
+    Cuts cuts;
+    cuts.segments = outline_segments(spec, frame);
+    check_outline(spec, cuts.segments);
+    std::vector<SegmentGrid::Segment> sides;
+    for (const SourceSegment& side : cuts.segments) sides.emplace_back(side.a, side.b);
+
+    const std::vector<SourceTrace> traces = local_traces(spec, frame, numbers);
+    add_traces(cuts.segments, traces);
+    const std::vector<SourceSegment> bridges = bridge_ends(traces, cuts.segments, resolution(spec, frame));
+    cuts.segments.insert(cuts.segments.end(), bridges.begin(), bridges.end());
+    cuts.joined_ends = static_cast<int>(bridges.size());
+    if (spec.tessellation) add_hexagons(cuts.segments, spec, frame, SegmentGrid(sides), numbers.tessellation);
+    return cuts;
+}
+
+/// Every crossing of the outline changes sides: what an odd number of crossings separates from face 0 is the body.
+std::vector<char> faces_in_body(const PlanarMap& map, int first_fracture) {
+    std::vector<char> in_body(map.n_faces(), 0);
+    std::vector<char> reached(map.n_faces(), 0);
+    std::vector<int> stack{0};
+    reached[0] = 1;
+    while (!stack.empty()) {
+        const int face = stack.back();
+        stack.pop_back();
+        for (const int h : map.faces[face]) {
+            const int across = map.face(PlanarMap::twin(h));
+            if (reached[across] != 0) continue;
+            reached[across] = 1;
+            in_body[across] = static_cast<char>(in_body[face] ^ (map.source(h) < first_fracture ? 1 : 0));
+            stack.push_back(across);
+        }
+    }
+    return in_body;
+}
+
+void take_outside_away(PlanarMap& map, const SourceNumbers& numbers) {
+    const std::vector<char> in_body = faces_in_body(map, numbers.first_fracture);
+    for (int f = 0; f < map.n_faces(); ++f) {
+        if (in_body[f] != 0) continue;
+        for (const int h : map.faces[f]) map.half_edges[h].face = PlanarMap::outside;
+        map.faces[f] = {};
+    }
+}
+
+/// Connected pieces of fractures in the body with the same face on both sides, each fracture on its own, that are
+/// longer than `shortest` in all.
+int count_free_pieces(const PlanarMap& map, const SourceNumbers& numbers, double shortest) {
+    std::vector<int> root;                       // of each free edge, in the order found
+    std::vector<double> length;                  // of the piece, at its root
+    std::map<std::pair<int, int>, int> first_at; // (source, vertex) -> free edge
+    const auto find = [&root](int i) {
+        while (root[i] != i) i = root[i] = root[root[i]];
+        return i;
+    };
+    for (int h = 0; h < 2 * map.n_edges(); h += 2) {
+        const bool free = map.face(h) == map.face(h + 1) && map.face(h) != PlanarMap::outside;
+        if (!free || map.source(h) >= numbers.tessellation) continue;
+        const int edge = static_cast<int>(root.size());
+        root.push_back(edge);
+        length.push_back(map.length(h));
+        for (const int v : {map.start(h), map.end(h)}) {
+            const int a = find(edge);
+            const int b = find(first_at.emplace(std::pair(map.source(h), v), edge).first->second);
+            if (a == b) continue;
+            root[a] = b;
+            length[b] += length[a];
+        }
+    }
+    int count = 0;
+    for (int i = 0; i < static_cast<int>(root.size()); ++i) count += root[i] == i && length[i] > shortest ? 1 : 0;
+    return count;
+}
+
+MendLimits mend_limits(const GeometrySpec& spec, const LocalFrame& frame, const SourceNumbers& numbers) {
+    constexpr double rounding_area = 1e-12; // of the domain, where no spacing is given
+    const double d = lattice_spacing(spec);
+    const double domain_area = std::abs(signed_area(spec.domain));
+    MendLimits limits;
+    limits.area = std::max(rounding_area * domain_area, spec.minimum_area * hexagon_area(d));
+    limits.edge = resolution(spec, frame);
+    limits.collinear = 4.0 * std::numeric_limits<double>::epsilon() * frame.box.upper.norm();
+    limits.first_fracture = numbers.first_fracture;
+    limits.tessellation = numbers.tessellation;
+    return limits;
+}
+
+int material_at(const GeometrySpec& spec, const Vec2& scene_point) {
+    int material = spec.material;
+    for (const MaterialRegion& region : spec.regions) {
+        if (contains(region.polygon, scene_point)) material = region.material;
+    }
+    return material;
+}
+
+/// A block before it has its number: its loops as half-edges, the outline first.
+struct Draft {
+    std::vector<std::vector<int>> loops;
+    Block block;
+};
+
+/// The order of the blocks: by rows of centroids upwards, in a row to the right.
+void sort_by_place(std::vector<Draft>& drafts, double tolerance) {
+    const auto place = [tolerance](const Draft& draft) {
+        return std::tuple(std::round(draft.block.centroid.y() / tolerance), draft.block.centroid.x(),
+                          draft.block.centroid.y());
+    };
+    std::stable_sort(drafts.begin(), drafts.end(),
+                     [&place](const Draft& a, const Draft& b) { return place(a) < place(b); });
+}
+
+class SystemBuilder {
+public:
+    SystemBuilder(const GeometrySpec& spec, const LocalFrame& frame, const SourceNumbers& numbers, PlanarMap& map)
+        : spec_(spec), frame_(frame), numbers_(numbers), map_(map), boundary_of_side_(boundary_of_sides(spec)) {}
+
+    BlockSystem build() {
+        std::vector<Draft> drafts = draft_blocks();
+        sort_by_place(drafts, 1e-9 * frame_.box.upper.norm());
+        number_vertices(drafts);
+        system_.origin = frame_.origin;
+        system_.lower = frame_.box.lower;
+        system_.upper = frame_.box.upper;
+        for (const BoundarySides& named : spec_.boundaries) system_.boundaries.push_back({named.name, {}});
+        for (Draft& draft : drafts) add_block(draft);
+        join_interfaces();
+        system_.spacing = lattice_spacing(spec_);
+        if (system_.spacing == 0.0) {
+            const double total = std::accumulate(system_.blocks.begin(), system_.blocks.end(), 0.0,
+                                                 [](double sum, const Block& b) { return sum + b.area; });
+            system_.spacing = std::sqrt(total / system_.n_blocks());
+        }
+        return std::move(system_);
+    }
+
+private:
+    std::vector<Draft> draft_blocks() {
+        std::vector<Draft> drafts;
+        for (int f = 0; f < map_.n_faces(); ++f) {
+            if (map_.half_edges_of(f).empty()) continue;
+            Draft draft;
+            draft.loops = map_.loops(f);
+            std::stable_partition(draft.loops.begin(), draft.loops.end(),
+                                  [this](const auto& loop) { return map_.loop_area(loop) > 0.0; });
+            for (auto& loop : draft.loops) start_at_lower_left(loop);
+            for (const auto& loop : draft.loops) {
+                for (const int h : loop) draft.block.edges.push_back({.start = map_.start(h), .end = map_.end(h)});
+            }
+            compute_block_moments(map_.positions, draft.block);
+            drafts.push_back(std::move(draft));
+        }
+        return drafts;
+    }
+
+    void start_at_lower_left(std::vector<int>& loop) const {
+        const auto place = [this](int h) {
+            const Vec2& p = map_.positions[map_.start(h)];
+            return std::pair(p.y(), p.x());
+        };
+        std::rotate(loop.begin(),
+                    std::min_element(loop.begin(), loop.end(), [&](int a, int b) { return place(a) < place(b); }),
+                    loop.end());
+    }
+
+    void number_vertices(const std::vector<Draft>& drafts) {
+        number_of_vertex_.assign(map_.positions.size(), -1);
+        for (const Draft& draft : drafts) {
+            for (const Edge& edge : draft.block.edges) {
+                if (number_of_vertex_[edge.start] >= 0) continue;
+                number_of_vertex_[edge.start] = static_cast<int>(system_.vertices.size());
+                system_.vertices.push_back(map_.positions[edge.start]);
+            }
+        }
+    }
+
+    void add_block(Draft& draft) {
+        const int number = system_.n_blocks();
+        Block& block = draft.block;
+        block.material = material_at(spec_, frame_.origin + block.centroid);
+        int at = 0;
+        for (const auto& loop : draft.loops) {
+            block.loop_starts.push_back(at);
+            for (const int h : loop) {
+                Edge& edge = block.edges[at];
+                edge.start = number_of_vertex_[edge.start];
+                edge.end = number_of_vertex_[edge.end];
+                const int side = map_.source(h);
+                if (side < numbers_.n_sides) edge.boundary = boundary_of_side_[side];
+                if (edge.boundary >= 0) system_.boundaries[edge.boundary].edges.push_back({number, at});
+                side_of_half_edge_.resize(map_.half_edges.size(), {-1, -1});
+                side_of_half_edge_[h] = {number, at};
+                order_.push_back(h);
+                ++at;
+            }
+        }
+        system_.blocks.push_back(std::move(block));
+    }
+
+    void join_interfaces() {
+        for (const int h : order_) {
+            const auto [a, edge_a] = side_of_half_edge_[h];
+            const auto [b, edge_b] = side_of_half_edge_[PlanarMap::twin(h)];
+            if (b < 0 || b < a) continue;
+            const int source = map_.source(h);
+            Interface joint{.block_a = a, .edge_a = edge_a, .block_b = b, .edge_b = edge_b};
+            if (source < numbers_.tessellation) {
+                joint.origin = EdgeOrigin::fracture;
+                joint.fracture = source - numbers_.first_fracture;
+                joint.interface_type = spec_.fractures[joint.fracture].interface_type;
+            } else {
+                joint.origin = EdgeOrigin::tessellation;
+                joint.interface_type = spec_.tessellation->interface_type;
+            }
+            const int number = system_.n_interfaces();
+            system_.blocks[a].edges[edge_a].interface = number;
+            system_.blocks[b].edges[edge_b].interface = number;
+            system_.interfaces.push_back(joint);
+        }
+    }
+
+    const GeometrySpec& spec_;
+    const LocalFrame& frame_;
+    const SourceNumbers& numbers_;
+    PlanarMap& map_;
+    std::vector<int> boundary_of_side_;
+    std::vector<int> number_of_vertex_;
+    std::vector<std::pair<int, int>> side_of_half_edge_; ///< (block, edge); (-1, -1) outside
+    std::vector<int> order_;                             ///< half-edges in the order of blocks and edges
+    BlockSystem system_;
+};
+
+double interior_angle(const Vec2& arriving, const Vec2& leaving) {
+    return std::numbers::pi - std::atan2(cross(arriving, leaving), arriving.dot(leaving));
+}
+
+void measure(const BlockSystem& system, CutReport& report) {
+    report.smallest_area = std::numeric_limits<double>::infinity();
+    report.smallest_edge = std::numeric_limits<double>::infinity();
+    report.smallest_angle = 2.0 * std::numbers::pi;
+    const auto along = [&system](const Edge& edge) -> Vec2 {
+        return edge_end(system, edge) - edge_start(system, edge);
+    };
+    for (const Block& block : system.blocks) {
+        report.smallest_area = std::min(report.smallest_area, block.area);
+        for (std::size_t l = 0; l < block.loop_starts.size(); ++l) {
+            const int first = block.loop_starts[l];
+            const int last =
+                l + 1 < block.loop_starts.size() ? block.loop_starts[l + 1] : static_cast<int>(block.edges.size());
+            for (int i = first; i < last; ++i) {
+                const int following = i + 1 < last ? i + 1 : first;
+                const Vec2 arriving = along(block.edges[i]);
+                report.smallest_edge = std::min(report.smallest_edge, arriving.norm());
+                report.smallest_angle =
+                    std::min(report.smallest_angle, interior_angle(arriving, along(block.edges[following])));
+            }
+        }
+    }
+}
+
+} // namespace
+
+double lattice_spacing(const GeometrySpec& spec) {
+    return spec.tessellation ? spec.tessellation->hexagons.spacing : spec.reference_spacing;
+}
+
+CutBody cut_blocks(const GeometrySpec& spec) {
+    check_spec(spec);
+    const SourceNumbers numbers = number_sources(spec);
+    const LocalFrame frame = local_frame(spec.domain);
+
+    CutBody body;
+    Cuts cuts = cuts_of(spec, frame, numbers);
+    body.report.joined_ends = cuts.joined_ends;
+    PlanarMap map = arrange(cuts.segments);
+    take_outside_away(map, numbers);
+    body.report.pruned_ends = count_free_pieces(map, numbers, 2.0 * resolution(spec, frame));
+    map.remove_edges_inside_faces();
+
+    MendReport mended = mend(map, mend_limits(spec, frame, numbers));
+    body.report.collapsed_edges = mended.collapsed_edges;
+    for (const auto& piece : mended.merged) body.report.merged.push_back({frame.origin + piece.at, piece.area});
+
+    body.system = SystemBuilder(spec, frame, numbers, map).build();
+    measure(body.system, body.report);
+    return body;
+}
+
+} // namespace kluft

@@ -1,0 +1,36 @@
+#include "kluft/blocks/block_system.hpp"
+
+#include <cmath>
+
+namespace kluft {
+
+void compute_block_moments(const std::vector<Vec2>& vertices, Block& block) {
+    block.area = 0.0;
+    block.centroid.setZero();
+    block.second_moment.setZero();
+    block.size = 0.0;
+    if (block.edges.empty()) return;
+
+    // About the first vertex, so that the place of the block costs no digits. For the triangle (0, a, b), with twice
+    // its area w = a x b: integral of X = w (a + b)/6, of X X^T = w/24 (a a^T + b b^T + (a + b)(a + b)^T).
+    const Vec2 from = vertices[block.edges.front().start];
+    double twice = 0.0;
+    Vec2 first = Vec2::Zero();
+    Mat2 second = Mat2::Zero();
+    for (const Edge& edge : block.edges) {
+        const Vec2 a = vertices[edge.start] - from;
+        const Vec2 b = vertices[edge.end] - from;
+        const double w = cross(a, b);
+        const Vec2 sum = a + b;
+        twice += w;
+        first += w / 6.0 * sum;
+        second += w / 24.0 * (a * a.transpose() + b * b.transpose() + sum * sum.transpose());
+    }
+    block.area = 0.5 * twice;
+    const Vec2 centre = first / block.area;
+    block.centroid = from + centre;
+    block.size = std::sqrt(block.area);
+    block.second_moment = second - block.area * (centre * centre.transpose());
+}
+
+} // namespace kluft

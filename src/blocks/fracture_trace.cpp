@@ -1,0 +1,98 @@
+#include "kluft/blocks/fracture_trace.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+
+#include "kluft/geometry/predicates.hpp"
+#include "kluft/geometry/segment_grid.hpp"
+
+namespace kluft {
+
+namespace {
+
+SegmentGrid grid_of(const std::vector<SourceSegment>& segments) {
+    std::vector<SegmentGrid::Segment> pairs;
+    pairs.reserve(segments.size());
+    for (const SourceSegment& segment : segments) pairs.emplace_back(segment.a, segment.b);
+    return SegmentGrid(std::move(pairs));
+}
+
+/// Whether a segment is one of those that follow the first point of `points` within `arc` along the trace.
+bool follows_closely(const std::vector<Vec2>& points, const SourceSegment& segment, double arc) {
+    double along = 0.0;
+    for (std::size_t i = 0; i + 1 < points.size() && along <= arc; ++i) {
+        const bool same = (segment.a == points[i] && segment.b == points[i + 1]) ||
+                          (segment.b == points[i] && segment.a == points[i + 1]);
+        if (same) return true;
+        along += (points[i + 1] - points[i]).norm();
+    }
+    return false;
+}
+
+/// Whether the trace meets ab already, at the latest `arc` after its first point.
+bool meets_soon(const std::vector<Vec2>& points, const Vec2& a, const Vec2& b, double arc) {
+    double along = 0.0;
+    for (std::size_t i = 0; i + 1 < points.size() && along <= arc; ++i) {
+        if (segments_meet(points[i], points[i + 1], a, b)) return true;
+        along += (points[i + 1] - points[i]).norm();
+    }
+    return false;
+}
+
+/// From p across the segment ab, where the foot of p lies inside it.
+std::optional<Vec2> point_across(const Vec2& p, const Vec2& a, const Vec2& b, double missing) {
+    const int side = orientation(a, b, p);
+    const Vec2 towards = static_cast<double>(side) * right_normal(b - a).normalized();
+    const double scale = std::max({a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff(), p.cwiseAbs().maxCoeff()});
+    double past = std::max(missing, 4.0 * std::numeric_limits<double>::epsilon() * scale);
+    for (int attempt = 0; attempt < 8; ++attempt, past *= 2.0) {
+        const Vec2 q = p + (missing + past) * towards;
+        if (q != p && segments_meet(p, q, a, b)) return q;
+    }
+    return std::nullopt;
+}
+
+/// The segment from the first point of `points` to what it nearly meets.
+std::optional<SourceSegment> bridge(const std::vector<Vec2>& points, int source,
+                                    const std::vector<SourceSegment>& segments, const SegmentGrid& grid, double reach) {
+    const Vec2& p = points.front();
+    int nearest = -1;
+    double missing = reach;
+    const Vec2 around(reach, reach);
+    for (const int i : grid.near({p - around, p + around})) {
+        const SourceSegment& other = segments[i];
+        if (other.source == source && follows_closely(points, other, 4.0 * reach)) continue;
+        const double distance = distance_to_segment(p, other.a, other.b);
+        if (distance > missing) continue;
+        if (meets_soon(points, other.a, other.b, 4.0 * reach)) return std::nullopt;
+        missing = distance;
+        nearest = i;
+    }
+    if (nearest < 0) return std::nullopt;
+    const auto& [a, b, ignored] = segments[nearest];
+    if ((p - a).dot(b - a) <= 0.0) return SourceSegment{p, a, source};
+    if ((p - b).dot(a - b) <= 0.0) return SourceSegment{p, b, source};
+    const auto across = point_across(p, a, b, missing);
+    if (!across) return std::nullopt;
+    return SourceSegment{p, *across, source};
+}
+
+} // namespace
+
+std::vector<SourceSegment> bridge_ends(const std::vector<SourceTrace>& traces,
+                                       const std::vector<SourceSegment>& segments, double reach) {
+    const SegmentGrid grid = grid_of(segments);
+    std::vector<SourceSegment> bridges;
+    for (const SourceTrace& trace : traces) {
+        if (trace.points.front() == trace.points.back()) continue;
+        std::vector<Vec2> points = trace.points;
+        for (int side = 0; side < 2; ++side) {
+            if (const auto found = bridge(points, trace.source, segments, grid, reach)) bridges.push_back(*found);
+            std::reverse(points.begin(), points.end());
+        }
+    }
+    return bridges;
+}
+
+} // namespace kluft

@@ -1,0 +1,319 @@
+#include "kluft/blocks/map_mender.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <queue>
+#include <tuple>
+#include <unordered_set>
+#include <utility>
+
+#include "kluft/geometry/predicates.hpp"
+
+namespace kluft {
+
+namespace {
+
+constexpr int outside = PlanarMap::outside;
+
+// What a vertex is worth when an edge collapses: one for each fracture edge at it, and
+constexpr int worth_of_outline = 1 << 10;
+constexpr int worth_of_corner = 1 << 20;
+
+/// An edge as two vertices and where they are.
+struct Segment {
+    int a = 0;
+    int b = 0;
+    Vec2 start;
+    Vec2 end;
+};
+
+/// Whether edges that share no more than vertices have more than these in common.
+bool in_conflict(const Segment& first, const Segment& second) {
+    const bool a_shared = first.a == second.a || first.a == second.b;
+    const bool b_shared = first.b == second.a || first.b == second.b;
+    if (a_shared && b_shared) return true;
+    if (!a_shared && !b_shared) return segments_meet(first.start, first.end, second.start, second.end);
+    const Vec2& common = a_shared ? first.start : first.end;
+    const Vec2& tip = a_shared ? first.end : first.start;
+    const bool starts_there = second.a == (a_shared ? first.a : first.b);
+    const Vec2& other_tip = starts_there ? second.end : second.start;
+    return orientation(common, tip, other_tip) == 0 && (tip - common).dot(other_tip - common) >= 0.0;
+}
+
+Vec2 face_centroid(PlanarMap& map, int face) {
+    const std::vector<int>& list = map.half_edges_of(face);
+    const Vec2 from = map.positions[map.start(list.front())];
+    Vec2 moment = Vec2::Zero();
+    Vec2 mean = Vec2::Zero();
+    double twice = 0.0;
+    for (const int h : list) {
+        const Vec2 a = map.positions[map.start(h)] - from;
+        const Vec2 b = map.positions[map.end(h)] - from;
+        twice += cross(a, b);
+        moment += cross(a, b) * (a + b);
+        mean += a;
+    }
+    mean /= static_cast<double>(list.size());
+    const Vec2 centroid = moment / (3.0 * twice);
+    const bool degenerate = !centroid.allFinite() || twice <= 0.0;
+    return from + (degenerate ? mean : centroid);
+}
+
+class Mender {
+public:
+    Mender(PlanarMap& map, const MendLimits& limits) : map_(map), limits_(limits) {}
+
+    MendReport run() {
+        straighten();
+        bool changed = true;
+        while (changed) {
+            changed = merge_slivers();
+            straighten();
+            changed = collapse_short_edges() || changed;
+            straighten();
+            if (!changed) changed = merge_broken_faces();
+        }
+        return std::move(report_);
+    }
+
+private:
+    [[nodiscard]] bool is_outline(int h) const { return map_.source(h) < limits_.first_fracture; }
+    [[nodiscard]] bool is_tessellation(int h) const { return map_.source(h) >= limits_.tessellation; }
+
+    void straighten() {
+        for (int v = 0; v < static_cast<int>(map_.positions.size()); ++v) {
+            if (goes_straight_on(v)) map_.dissolve_vertex(v);
+        }
+    }
+
+    [[nodiscard]] bool goes_straight_on(int v) const {
+        if (map_.degree(v, 3) != 2) return false;
+        const int leaving = map_.outgoing[v];
+        const int arriving = map_.previous(leaving);
+        if (map_.source(leaving) != map_.source(arriving)) return false;
+        if (map_.cycle_length(leaving, 4) < 4 || map_.cycle_length(map_.twin(leaving), 4) < 4) return false;
+        const Vec2& a = map_.positions[map_.start(arriving)];
+        const Vec2& b = map_.positions[map_.end(leaving)];
+        const Vec2& p = map_.positions[v];
+        return (p - a).dot(b - p) > 0.0 && distance_to_segment(p, a, b) <= limits_.collinear;
+    }
+
+    /// The half-edge across which a face goes into its neighbour; -1 if it has no neighbour.
+    int way_out(int face) {
+        int best = -1;
+        const auto worth = [this](int h) { return std::pair(is_tessellation(h), map_.length(h)); };
+        for (const int h : map_.half_edges_of(face)) {
+            if (map_.face(map_.twin(h)) == outside) continue;
+            if (best < 0 || worth(h) > worth(best)) best = h;
+        }
+        return best;
+    }
+
+    /// Returns the face that is left, or -1 if the face has no neighbour.
+    int merge_away(int face) {
+        const int exit = way_out(face);
+        if (exit < 0) return -1;
+        report_.merged.push_back({face_centroid(map_, face), std::max(0.0, map_.area(face))});
+        int kept = map_.face(map_.twin(exit));
+        if (map_.faces[kept].size() < map_.faces[face].size()) std::swap(kept, face);
+        map_.merge_faces(kept, face);
+        return kept;
+    }
+
+    bool merge_slivers() {
+        using Entry = std::pair<double, int>;
+        std::priority_queue<Entry, std::vector<Entry>, std::greater<>> slivers;
+        const auto judge = [&](int face) {
+            if (map_.half_edges_of(face).empty()) return;
+            const double area = map_.area(face);
+            if (area < limits_.area) slivers.emplace(area, face);
+        };
+        for (int f = 0; f < map_.n_faces(); ++f) judge(f);
+        bool merged = false;
+        while (!slivers.empty()) {
+            const auto [area, face] = slivers.top();
+            slivers.pop();
+            if (map_.half_edges_of(face).empty() || map_.area(face) != area) continue;
+            const int kept = merge_away(face);
+            if (kept < 0) continue;
+            merged = true;
+            judge(kept);
+        }
+        return merged;
+    }
+
+    bool merge_broken_faces() {
+        bool merged = false;
+        for (int f = 0; f < map_.n_faces(); ++f) {
+            if (map_.half_edges_of(f).empty() || face_is_simple(map_, f)) continue;
+            merged = merge_away(f) >= 0 || merged;
+        }
+        return merged;
+    }
+
+    /// Corners of the domain must stay, vertices on its outline must stay on it, and a fracture should stay straight.
+    [[nodiscard]] int worth(int v) const {
+        int n_fracture = 0;
+        int side = -1;
+        bool corner = false;
+        for (const int h : map_.star(v)) {
+            if (is_outline(h)) {
+                corner = corner || (side >= 0 && side != map_.source(h));
+                side = map_.source(h);
+            } else if (!is_tessellation(h)) {
+                ++n_fracture;
+            }
+        }
+        return (corner ? worth_of_corner : 0) + (side >= 0 ? worth_of_outline : 0) + n_fracture;
+    }
+
+    bool collapse_short_edges() {
+        using Entry = std::tuple<double, int>;
+        std::priority_queue<Entry, std::vector<Entry>, std::greater<>> short_edges;
+        const auto judge = [&](int e) {
+            const double length = map_.length(2 * e);
+            if (length < limits_.edge) short_edges.emplace(length, e);
+        };
+        for (int e = 0; e < map_.n_edges(); ++e) {
+            if (map_.alive[e] != 0) judge(e);
+        }
+        bool collapsed = false;
+        while (!short_edges.empty()) {
+            const auto [length, e] = short_edges.top();
+            short_edges.pop();
+            if (map_.alive[e] == 0 || map_.length(2 * e) != length) continue;
+            const int kept = collapse(e);
+            if (kept < 0) continue;
+            collapsed = true;
+            ++report_.collapsed_edges;
+            for (const int h : map_.star(kept)) judge(PlanarMap::edge_of(h));
+        }
+        return collapsed;
+    }
+
+    /// Returns the vertex that remains, or -1 where the edge has to stay.
+    int collapse(int e) {
+        const int h = 2 * e;
+        const int worth_start = worth(map_.start(h));
+        const int worth_end = worth(map_.end(h));
+        if (worth_start >= worth_end && can_contract(h)) return map_.contract_edge(h);
+        if (worth_end >= worth_start && can_contract(h + 1)) return map_.contract_edge(h + 1);
+        return -1;
+    }
+
+    /// Whether the end of h may move to its start.
+    bool can_contract(int h) {
+        if (map_.cycle_length(h, 4) < 4 || map_.cycle_length(map_.twin(h), 4) < 4) return false;
+        const int kept = map_.start(h);
+        const int lost = map_.end(h);
+        const int at_stake = worth(lost);
+        if (at_stake >= worth_of_corner || (at_stake >= worth_of_outline && !is_outline(h))) return false;
+        return !joined_otherwise(h) && !pinches(h) && star_fits(kept, lost);
+    }
+
+    /// Whether a third vertex is joined to both ends of h, or a second edge joins these.
+    [[nodiscard]] bool joined_otherwise(int h) const {
+        std::unordered_set<int> around;
+        for (const int k : map_.star(map_.start(h))) {
+            if (k != h) around.insert(map_.end(k));
+        }
+        for (const int k : map_.star(map_.end(h))) {
+            if (k == map_.twin(h)) continue;
+            if (map_.end(k) == map_.start(h) || around.contains(map_.end(k))) return true;
+        }
+        return false;
+    }
+
+    /// Whether some face would pass the remaining vertex more than once.
+    bool pinches(int h) {
+        const int u = map_.start(h);
+        const int v = map_.end(h);
+        std::vector<int> around;
+        for (const int w : {u, v}) {
+            for (const int k : map_.star(w)) {
+                if (map_.face(k) != outside) around.push_back(map_.face(k));
+            }
+        }
+        std::sort(around.begin(), around.end());
+        around.erase(std::unique(around.begin(), around.end()), around.end());
+        return std::any_of(around.begin(), around.end(), [&](int f) {
+            const auto& list = map_.half_edges_of(f);
+            const auto corners = std::count_if(list.begin(), list.end(),
+                                               [&](int k) { return map_.start(k) == u || map_.start(k) == v; });
+            const int sides = (map_.face(h) == f ? 1 : 0) + (map_.face(map_.twin(h)) == f ? 1 : 0);
+            return corners - sides != 1;
+        });
+    }
+
+    /// An edge after `lost` has moved to `kept`.
+    [[nodiscard]] Segment moved(int h, int kept, int lost) const {
+        const int a = map_.start(h) == lost ? kept : map_.start(h);
+        const int b = map_.end(h) == lost ? kept : map_.end(h);
+        return {a, b, map_.positions[a], map_.positions[b]};
+    }
+
+    bool star_fits(int kept, int lost) {
+        for (const int spoke : map_.star(lost)) {
+            if (map_.end(spoke) == kept) continue;
+            const Segment segment = moved(spoke, kept, lost);
+            for (const int f : {map_.face(spoke), map_.face(map_.twin(spoke))}) {
+                if (f != outside && !segment_fits(segment, spoke, f, kept, lost)) return false;
+            }
+            if (map_.face(spoke) != outside && !(moved_area(map_.face(spoke), kept, lost) > 0.0)) return false;
+        }
+        return true;
+    }
+
+    bool segment_fits(const Segment& segment, int spoke, int face, int kept, int lost) {
+        for (const int h : map_.half_edges_of(face)) {
+            if (PlanarMap::edge_of(h) == PlanarMap::edge_of(spoke)) continue;
+            const Segment other = moved(h, kept, lost);
+            if (other.a == other.b) continue;
+            if (in_conflict(segment, other)) return false;
+        }
+        return true;
+    }
+
+    double moved_area(int face, int kept, int lost) {
+        double twice = 0.0;
+        const Vec2 from = map_.positions[kept];
+        for (const int h : map_.half_edges_of(face)) {
+            const Segment segment = moved(h, kept, lost);
+            twice += cross(segment.start - from, segment.end - from);
+        }
+        return 0.5 * twice;
+    }
+
+    PlanarMap& map_;
+    MendLimits limits_;
+    MendReport report_;
+};
+
+} // namespace
+
+bool face_is_simple(PlanarMap& map, int face) {
+    int n_positive = 0;
+    for (const auto& loop : map.loops(face)) {
+        if (loop.size() < 3) return false;
+        const double area = map.loop_area(loop);
+        if (area == 0.0) return false;
+        n_positive += area > 0.0 ? 1 : 0;
+    }
+    if (n_positive != 1) return false;
+    const std::vector<int>& list = map.half_edges_of(face);
+    const auto segment = [&map](int h) {
+        return Segment{map.start(h), map.end(h), map.positions[map.start(h)], map.positions[map.end(h)]};
+    };
+    for (std::size_t i = 0; i < list.size(); ++i) {
+        const Segment first = segment(list[i]);
+        if (first.start == first.end) return false;
+        for (std::size_t j = i + 1; j < list.size(); ++j) {
+            if (in_conflict(first, segment(list[j]))) return false;
+        }
+    }
+    return true;
+}
+
+MendReport mend(PlanarMap& map, const MendLimits& limits) { return Mender(map, limits).run(); }
+
+} // namespace kluft

@@ -1,0 +1,54 @@
+#include "kluft/constitutive/block_elasticity.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+
+namespace kluft {
+
+namespace {
+
+struct Polar {
+    Mat2 rotation;
+    double trace; ///< tr S
+};
+
+Polar polar(const Mat2& f) {
+    const double x = f(0, 0) + f(1, 1);
+    const double y = f(1, 0) - f(0, 1);
+    const double trace = std::hypot(x, y);
+    Polar result{Mat2::Identity(), trace};
+    if (trace > 0.0) result.rotation << x / trace, -y / trace, y / trace, x / trace;
+    return result;
+}
+
+} // namespace
+
+Mat2 first_piola_stress(const Mat2& f, const ElasticModuli& moduli) {
+    const auto [rotation, trace] = polar(f);
+    return 2.0 * moduli.mu * (f - rotation) + moduli.lambda * (trace - 2.0) * rotation;
+}
+
+double strain_energy_density(const Mat2& f, const ElasticModuli& moduli) {
+    const auto [rotation, trace] = polar(f);
+    return moduli.mu * (f - rotation).squaredNorm() + 0.5 * moduli.lambda * (trace - 2.0) * (trace - 2.0);
+}
+
+Mat2 cauchy_stress(const Mat2& f, const ElasticModuli& moduli) {
+    const Mat2 stress = first_piola_stress(f, moduli) * f.transpose() / f.determinant();
+    return 0.5 * (stress + stress.transpose());
+}
+
+Mat4 elastic_tangent(const Mat2& f, const ElasticModuli& moduli, bool positive) {
+    const auto [rotation, trace] = polar(f);
+    const Eigen::Vector4d r(rotation(0, 0), rotation(1, 0), rotation(0, 1), rotation(1, 1));
+    const Eigen::Vector4d spin(rotation(0, 1), rotation(1, 1), -rotation(0, 0),
+                               -rotation(1, 0)); // R W, W = [0 -1; 1 0]
+    double along_spin = trace > 0.0 ? (moduli.lambda * (trace - 2.0) - 2.0 * moduli.mu) / trace : -moduli.mu;
+    if (positive) along_spin = std::max(along_spin, -moduli.mu); // 2 mu + 2 along_spin is the eigenvalue
+    return 2.0 * moduli.mu * Mat4::Identity() + moduli.lambda * r * r.transpose() +
+           along_spin * spin * spin.transpose();
+}
+
+} // namespace kluft

@@ -1,0 +1,197 @@
+#include "kluft/equilibrium/open_close_solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kluft {
+
+namespace {
+
+constexpr int iterations_before_halving = 8; ///< then the norm must fall, or it is searched on
+constexpr int max_search_residuals = 8;
+constexpr double accepted_end_slope = 0.3; ///< of |g(0)|: the full step is taken
+constexpr double accepted_root_slope = 0.1;
+
+double typical_diagonal(const BlockMatrix& matrix) {
+    const BlockPattern& pattern = *matrix.pattern;
+    double sum = 0.0;
+    for (int b = 0; b < pattern.n_blocks(); ++b) sum += matrix.values[pattern.find(b, b)].trace();
+    return sum / (n_block_unknowns * pattern.n_blocks());
+}
+
+int largest_block(const Eigen::VectorXd& forces) {
+    int worst = 0;
+    double largest = -1.0;
+    for (int b = 0; b < forces.size() / n_block_unknowns; ++b) {
+        const double size = forces.segment<n_block_unknowns>(n_block_unknowns * b).squaredNorm();
+        if (size > largest) {
+            largest = size;
+            worst = b;
+        }
+    }
+    return worst;
+}
+
+} // namespace
+
+double OpenCloseSolver::free_norm(const EquilibriumProblem& problem, const Residual& residual) {
+    scratch_ = residual.forces;
+    problem.constraints.project(scratch_);
+    return scratch_.norm();
+}
+
+double OpenCloseSolver::slope_at(const EquilibriumProblem& problem, EquilibriumEvaluator& evaluator,
+                                 const Eigen::VectorXd& q, double s) {
+    position_ = q + s * increment_;
+    evaluator.residual(position_, trial_);
+    problem.constraints.project(trial_.forces);
+    return trial_.forces.dot(increment_);
+}
+
+/// Root of g(s) = R(q + s dq).dq on (0, 1] by the Illinois variant of regula falsi.
+double OpenCloseSolver::step_along_root(const EquilibriumProblem& problem, EquilibriumEvaluator& evaluator,
+                                        const Eigen::VectorXd& q, double slope_at_zero) {
+    const double scale = std::abs(slope_at_zero);
+    double high = 1.0;
+    double g_high = slope_at(problem, evaluator, q, high);
+    if (g_high <= accepted_end_slope * scale) return high;
+    double low = 0.0;
+    double g_low = slope_at_zero;
+    double s = high;
+    for (int i = 0; i < max_search_residuals; ++i) {
+        s = std::clamp(high - g_high * (high - low) / (g_high - g_low), low + 0.05 * (high - low),
+                       high - 0.05 * (high - low));
+        const double g = slope_at(problem, evaluator, q, s);
+        if (std::abs(g) < accepted_root_slope * scale) break;
+        if (g > 0.0) {
+            high = s;
+            g_high = g;
+            g_low *= 0.5;
+        } else {
+            low = s;
+            g_low = g;
+            g_high *= 0.5;
+        }
+    }
+    return s;
+}
+
+double OpenCloseSolver::step_by_halving(const EquilibriumProblem& problem, EquilibriumEvaluator& evaluator,
+                                        const Eigen::VectorXd& q, double norm_at_zero) {
+    double best = 1.0;
+    double best_norm = -1.0;
+    double s = 1.0;
+    for (int i = 0; i < max_search_residuals; ++i, s *= 0.5) {
+        position_ = q + s * increment_;
+        evaluator.residual(position_, trial_);
+        const double norm = free_norm(problem, trial_);
+        if (best_norm < 0.0 || norm < best_norm) {
+            best = s;
+            best_norm = norm;
+        }
+        if (norm < (1.0 - 1e-4 * s) * norm_at_zero) break;
+    }
+    return best;
+}
+
+void OpenCloseSolver::limit_increment(const BlockSystem& system) {
+    double largest_motion = 0.0;
+    for (int b = 0; b < system.n_blocks(); ++b) {
+        auto block = increment_.segment<n_block_unknowns>(n_block_unknowns * b);
+        const double change = block.tail<4>().norm();
+        const double limit = options_.strain_limit * system.blocks[b].size;
+        if (change > limit) block.tail<4>() *= limit / change;
+        largest_motion = std::max(largest_motion, block.head<2>().norm());
+    }
+    const double limit = options_.motion_limit * system.spacing;
+    if (largest_motion > limit) increment_ *= limit / largest_motion;
+}
+
+OpenCloseSummary OpenCloseSolver::iterate(const EquilibriumProblem& problem, const BlockPattern& pattern,
+                                          TangentKind kind, Eigen::VectorXd& q) {
+    const BlockSystem& system = *problem.system;
+    EquilibriumEvaluator evaluator(problem, pattern);
+    OpenCloseSummary summary;
+    double previous_norm = -1.0;
+    for (;;) {
+        evaluator.residual(q, residual_);
+        problem.constraints.correction(q, prescribed_);
+        const double norm = free_norm(problem, residual_);
+        summary.force_scale = residual_.force_scale;
+        summary.residual_ratio = residual_.force_scale > 0.0 ? norm / residual_.force_scale : 0.0;
+        const double missing = prescribed_.lpNorm<Eigen::Infinity>();
+        const bool held = missing <= 1e-13 * (system.spacing + q.lpNorm<Eigen::Infinity>());
+        if (held && norm <= options_.tolerance * residual_.force_scale + residual_.roundoff) {
+            summary.termination = Termination::converged;
+            return summary;
+        }
+        summary.worst_block = largest_block(scratch_);
+        if (summary.iterations >= options_.max_iterations) return summary;
+
+        evaluator.tangent(q, kind, matrix_);
+        right_side_ = -residual_.forces;
+        if (!held) {
+            matrix_.multiply(prescribed_, scratch_);
+            right_side_ -= scratch_;
+        }
+        problem.constraints.project(right_side_);
+        problem.constraints.project(matrix_, typical_diagonal(matrix_));
+        const auto factorization = kind == TangentKind::exact ? Factorization::lu : Factorization::cholesky;
+        if (!linear_solver_.factorize(matrix_, factorization)) {
+            summary.termination = Termination::singular;
+            return summary;
+        }
+        linear_solver_.solve(right_side_, increment_);
+        ++summary.iterations;
+        problem.constraints.project(increment_);
+        if (!held) increment_ += prescribed_;
+        limit_increment(system);
+
+        double s = 1.0;
+        if (held) {
+            scratch_ = residual_.forces;
+            problem.constraints.project(scratch_);
+            const double slope = scratch_.dot(increment_);
+            const bool stalls = summary.iterations > iterations_before_halving && norm >= previous_norm;
+            s = slope < 0.0 && !stalls ? step_along_root(problem, evaluator, q, slope)
+                                       : step_by_halving(problem, evaluator, q, norm);
+        }
+        q += s * increment_;
+        previous_norm = norm;
+    }
+}
+
+OpenCloseSummary OpenCloseSolver::solve(const EquilibriumProblem& problem, const BlockPattern& pattern,
+                                        Eigen::VectorXd& q) {
+    return iterate(problem, pattern, options_.tangent, q);
+}
+
+OpenCloseSummary OpenCloseSolver::solve_lagged(EquilibriumProblem& problem, const BlockPattern& pattern,
+                                               Eigen::VectorXd& q) {
+    OpenCloseSummary total;
+    for (int round = 0; round < options_.max_lagged_rounds; ++round) {
+        std::vector<double> limits;
+        limits.reserve(problem.contacts.size());
+        for (int i = 0; i < static_cast<int>(problem.contacts.size()); ++i) {
+            const double pressure = -contact_traction(problem, i, q).normal;
+            limits.push_back(shear_limit((*problem.laws)[problem.contacts[i].law], pressure).value);
+        }
+        problem.frozen_limits = std::move(limits);
+        OpenCloseSummary summary = iterate(problem, pattern, TangentKind::symmetric, q);
+        problem.frozen_limits.clear();
+        total.iterations += summary.iterations;
+        total.termination = summary.termination;
+        if (!summary.converged()) break;
+
+        EquilibriumEvaluator(problem, pattern).residual(q, residual_);
+        const double norm = free_norm(problem, residual_);
+        total.force_scale = residual_.force_scale;
+        total.residual_ratio = residual_.force_scale > 0.0 ? norm / residual_.force_scale : 0.0;
+        total.worst_block = largest_block(scratch_);
+        if (norm <= options_.tolerance * residual_.force_scale + residual_.roundoff) return total;
+        total.termination = Termination::max_iterations;
+    }
+    return total;
+}
+
+} // namespace kluft

@@ -1,0 +1,91 @@
+#include "kluft/output/atomic_file.hpp"
+
+#include <cerrno>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+
+#include <fcntl.h>
+
+#include "file_descriptor.hpp"
+#include "kluft/core/diagnostics.hpp"
+
+namespace kluft {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+fs::path directory_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
+
+void write_directly(const fs::path& path, std::string_view content) {
+    FileDescriptor file(path, O_WRONLY);
+    file.write(content);
+    file.close();
+}
+
+void write_and_rename(const fs::path& path, std::string_view content) {
+    const fs::path part = partial_name(path);
+    try {
+        FileDescriptor file(part, O_WRONLY | O_CREAT | O_TRUNC);
+        file.write(content);
+        file.sync();
+        file.close();
+        if (std::rename(part.c_str(), path.c_str()) != 0) throw_system_error(path, "cannot rename to it", errno);
+    } catch (...) {
+        std::error_code ignored;
+        fs::remove(part, ignored);
+        throw;
+    }
+    FileDescriptor(directory_of(path), O_RDONLY | O_DIRECTORY).sync();
+}
+
+/// The file that a symbolic link leads to, also when that does not exist yet.
+fs::path followed(const fs::path& path) {
+    std::error_code error;
+    if (!fs::is_symlink(fs::symlink_status(path, error))) return path;
+    const fs::path target = fs::weakly_canonical(path, error);
+    return error ? path : target;
+}
+
+} // namespace
+
+fs::path partial_name(const fs::path& path) { return path.string() + ".part"; }
+
+void write_file(const fs::path& path, std::string_view content) {
+    const fs::path target = followed(path);
+    std::error_code error;
+    const fs::file_status status = fs::status(target, error);
+    if (fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status))
+        write_directly(target, content);
+    else
+        write_and_rename(target, content);
+}
+
+std::string read_file(const fs::path& path) {
+    std::error_code error;
+    if (fs::is_directory(path, error)) throw InputError(path.string() + ": expected a file, found a directory");
+    std::ifstream file(path, std::ios::binary);
+    if (!file) throw InputError(path.string() + ": cannot read: " + std::generic_category().message(errno));
+    std::string content{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+    if (file.bad()) throw InputError(path.string() + ": cannot read to the end");
+    return content;
+}
+
+void make_directory(const fs::path& path) {
+    std::error_code error;
+    fs::create_directories(path, error);
+    if (error) throw_system_error(path, "cannot make the directory", error.value());
+    if (!fs::is_directory(path, error)) throw_system_error(path, "cannot make the directory", ENOTDIR);
+}
+
+void remove_file(const fs::path& path) {
+    for (const fs::path& each : {path, partial_name(path)}) {
+        std::error_code error;
+        fs::remove(each, error);
+        if (error && error != std::errc::not_a_directory) throw_system_error(each, "cannot remove", error.value());
+    }
+}
+
+} // namespace kluft

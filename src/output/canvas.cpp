@@ -1,0 +1,217 @@
+#include "kluft/output/canvas.hpp"
+
+#include <array>
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include <cairo-svg.h>
+#include <cairo.h>
+
+#include "kluft/core/diagnostics.hpp"
+
+namespace kluft {
+
+namespace {
+
+constexpr double full_turn = 2.0 * std::numbers::pi;
+
+struct DestroySurface {
+    void operator()(cairo_surface_t* surface) const { cairo_surface_destroy(surface); }
+};
+struct DestroyContext {
+    void operator()(cairo_t* context) const { cairo_destroy(context); }
+};
+using Surface = std::unique_ptr<cairo_surface_t, DestroySurface>;
+using Context = std::unique_ptr<cairo_t, DestroyContext>;
+
+void check(cairo_status_t status) {
+    if (status != CAIRO_STATUS_SUCCESS)
+        throw ResourceError(std::string("cannot draw a picture: ") + cairo_status_to_string(status));
+}
+
+cairo_status_t collect(void* bytes, const unsigned char* part, unsigned length) noexcept {
+    try {
+        static_cast<std::string*>(bytes)->append(reinterpret_cast<const char*>(part), length);
+        return CAIRO_STATUS_SUCCESS;
+    } catch (...) {
+        return CAIRO_STATUS_NO_MEMORY;
+    }
+}
+
+void draw_on(cairo_surface_t* surface, double width, double height, double scale,
+             const std::function<void(Canvas&)>& draw) {
+    check(cairo_surface_status(surface));
+    const Context context(cairo_create(surface));
+    cairo_scale(context.get(), scale, scale);
+    Canvas canvas(context.get(), width, height);
+    canvas.fill_page({1.0, 1.0, 1.0, 1.0});
+    draw(canvas);
+    check(cairo_status(context.get()));
+}
+
+} // namespace
+
+Colour series_colour(std::size_t index) {
+    constexpr std::array colours{colour(0x0072B2), colour(0xD55E00), colour(0x009E73), colour(0xCC79A7),
+                                 colour(0xE69F00), colour(0x56B4E9), colour(0x333333)};
+    return colours[index % colours.size()];
+}
+
+void Canvas::set(const Colour& colour) {
+    cairo_set_source_rgba(context_, colour.red, colour.green, colour.blue, colour.alpha);
+}
+
+void Canvas::set(const Stroke& stroke) {
+    set(stroke.colour);
+    cairo_set_line_width(context_, stroke.width);
+    cairo_set_dash(context_, stroke.dash.data(), static_cast<int>(stroke.dash.size()), 0.0);
+    cairo_set_line_cap(context_, stroke.round_caps ? CAIRO_LINE_CAP_ROUND : CAIRO_LINE_CAP_BUTT);
+    cairo_set_line_join(context_, CAIRO_LINE_JOIN_ROUND);
+}
+
+void Canvas::set_font(const TextStyle& style) {
+    cairo_select_font_face(context_, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL,
+                           style.bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
+    cairo_set_font_size(context_, style.size);
+}
+
+void Canvas::trace(const std::vector<std::vector<Vec2>>& loops) {
+    for (const auto& loop : loops) {
+        if (loop.empty()) continue;
+        cairo_move_to(context_, loop.front().x(), loop.front().y());
+        for (std::size_t i = 1; i < loop.size(); ++i) cairo_line_to(context_, loop[i].x(), loop[i].y());
+        cairo_close_path(context_);
+    }
+}
+
+void Canvas::fill_page(const Colour& page) {
+    set(page);
+    cairo_paint(context_);
+}
+
+void Canvas::fill_rectangle(const Vec2& corner, const Vec2& size, const Colour& fill) {
+    set(fill);
+    cairo_rectangle(context_, corner.x(), corner.y(), size.x(), size.y());
+    cairo_fill(context_);
+}
+
+void Canvas::stroke_rectangle(const Vec2& corner, const Vec2& size, const Stroke& stroke) {
+    set(stroke);
+    cairo_rectangle(context_, corner.x(), corner.y(), size.x(), size.y());
+    cairo_stroke(context_);
+}
+
+void Canvas::fill_polygon(const std::vector<std::vector<Vec2>>& loops, const Colour& fill) {
+    set(fill);
+    trace(loops);
+    cairo_set_fill_rule(context_, CAIRO_FILL_RULE_EVEN_ODD);
+    cairo_fill(context_);
+}
+
+void Canvas::stroke_polygon(const std::vector<std::vector<Vec2>>& loops, const Stroke& stroke) {
+    set(stroke);
+    trace(loops);
+    cairo_stroke(context_);
+}
+
+void Canvas::line(const Vec2& from, const Vec2& to, const Stroke& stroke) { segments({{from, to}}, stroke); }
+
+void Canvas::polyline(const std::vector<Vec2>& points, const Stroke& stroke) {
+    set(stroke);
+    for (const Vec2& point : points) cairo_line_to(context_, point.x(), point.y());
+    cairo_stroke(context_);
+}
+
+void Canvas::segments(const std::vector<std::pair<Vec2, Vec2>>& lines, const Stroke& stroke) {
+    set(stroke);
+    // Cairo's time grows faster than the number of segments of one path.
+    constexpr std::size_t segments_per_path = 500;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        cairo_move_to(context_, lines[i].first.x(), lines[i].first.y());
+        cairo_line_to(context_, lines[i].second.x(), lines[i].second.y());
+        if (i % segments_per_path == segments_per_path - 1) cairo_stroke(context_);
+    }
+    cairo_stroke(context_);
+}
+
+void Canvas::circle(const Vec2& centre, double radius, const Colour& fill, const Stroke& stroke) {
+    cairo_new_path(context_);
+    cairo_arc(context_, centre.x(), centre.y(), radius, 0.0, full_turn);
+    set(fill);
+    cairo_fill_preserve(context_);
+    set(stroke);
+    cairo_stroke(context_);
+}
+
+void Canvas::arc(const Vec2& centre, double radius, double from, double to, const Stroke& stroke) {
+    set(stroke);
+    cairo_new_path(context_);
+    cairo_arc(context_, centre.x(), centre.y(), radius, from, to);
+    cairo_stroke(context_);
+}
+
+void Canvas::text(const Vec2& at, const std::string& text, const TextStyle& style) {
+    set_font(style);
+    set(style.colour);
+    const auto share = [](Align align) { return align == Align::low ? 0.0 : align == Align::middle ? 0.5 : 1.0; };
+    constexpr double capital_height = 0.73; // of DejaVu Sans, as a fraction of the font size
+    cairo_save(context_);
+    cairo_translate(context_, at.x(), at.y());
+    cairo_rotate(context_, style.angle);
+    const double x = -share(style.across) * text_width(text, style);
+    const double y = (1.0 - share(style.down)) * capital_height * style.size;
+    if (style.halo > 0.0) {
+        cairo_move_to(context_, x, y);
+        cairo_text_path(context_, text.c_str());
+        set(Stroke{{1.0, 1.0, 1.0, 0.85}, 2.0 * style.halo});
+        cairo_stroke(context_);
+        set(style.colour);
+    }
+    cairo_move_to(context_, x, y);
+    cairo_show_text(context_, text.c_str());
+    cairo_restore(context_);
+    cairo_new_path(context_);
+}
+
+double Canvas::text_width(const std::string& text, const TextStyle& style) {
+    set_font(style);
+    cairo_text_extents_t extents;
+    cairo_text_extents(context_, text.c_str(), &extents);
+    return extents.x_advance;
+}
+
+void Canvas::begin_clip(const Vec2& corner, const Vec2& size) {
+    cairo_save(context_);
+    cairo_rectangle(context_, corner.x(), corner.y(), size.x(), size.y());
+    cairo_clip(context_);
+}
+
+void Canvas::end_clip() { cairo_restore(context_); }
+
+PictureFormat picture_format(const std::filesystem::path& path) {
+    const std::string extension = path.extension();
+    if (extension == ".png") return PictureFormat::png;
+    if (extension == ".svg") return PictureFormat::svg;
+    throw InputError(path.string() + ": expected a picture's name that ends in .png or .svg");
+}
+
+std::string draw_picture(PictureFormat format, double width, double height, double pixels_per_point,
+                         const std::function<void(Canvas&)>& draw) {
+    std::string bytes;
+    if (format == PictureFormat::svg) {
+        const Surface surface(cairo_svg_surface_create_for_stream(collect, &bytes, width, height));
+        draw_on(surface.get(), width, height, 1.0, draw);
+        cairo_surface_finish(surface.get());
+        check(cairo_surface_status(surface.get()));
+    } else {
+        const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24,
+                                                         static_cast<int>(std::lround(width * pixels_per_point)),
+                                                         static_cast<int>(std::lround(height * pixels_per_point))));
+        draw_on(surface.get(), width, height, pixels_per_point, draw);
+        check(cairo_surface_write_to_png_stream(surface.get(), collect, &bytes));
+    }
+    return bytes;
+}
+
+} // namespace kluft

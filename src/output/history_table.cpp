@@ -1,0 +1,161 @@
+#include "kluft/output/history_table.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <iterator>
+#include <string_view>
+#include <type_traits>
+
+#include <fmt/format.h>
+
+#include "kluft/core/diagnostics.hpp"
+#include "kluft/output/atomic_file.hpp"
+
+namespace kluft {
+
+namespace {
+
+/// Calls visit(name, member) for each column in order. Record: StepRecord, const or not.
+template <class Record, class Visit>
+requires std::is_same_v<std::remove_const_t<Record>, StepRecord>
+void visit_columns(Record& record, Visit&& visit) {
+    visit("step", record.step);
+    visit("stage", record.stage);
+    visit("load_factor", record.load_factor);
+    visit("axial_strain", record.axial_strain);
+    visit("axial_stress", record.axial_stress);
+    visit("lateral_strain", record.lateral_strain);
+    visit("lateral_stress", record.lateral_stress);
+    visit("differential_stress", record.differential_stress);
+    visit("volumetric_strain", record.volumetric_strain);
+    visit("cracks_tension", record.cracks_tension);
+    visit("cracks_shear", record.cracks_shear);
+    visit("open", record.open);
+    visit("sliding", record.sliding);
+    visit("locked", record.locked);
+    visit("open_close_iterations", record.open_close_iterations);
+    visit("crack_passes", record.crack_passes);
+    visit("unbalanced_ratio", record.unbalanced_ratio);
+    visit("balanced", record.balanced);
+    visit("elapsed_s", record.elapsed_s);
+}
+
+template <class Record, class Visit>
+requires std::is_same_v<std::remove_const_t<Record>, CrackRecord>
+void visit_columns(Record& crack, Visit&& visit) {
+    visit("step", crack.step);
+    visit("pass", crack.pass);
+    visit("interface", crack.interface);
+    visit("x", crack.x);
+    visit("y", crack.y);
+    visit("mode", crack.mode);
+    visit("p1", crack.p1);
+    visit("p3", crack.p3);
+    visit("axial_strain", crack.axial_strain);
+}
+
+std::string cell(int value) { return fmt::format("{}", value); }
+std::string cell(double value) { return fmt::format("{:.17g}", value); }
+std::string cell(bool value) { return value ? "1" : "0"; }
+std::string cell(CrackMode mode) { return mode == CrackMode::tension ? "tension" : "shear"; }
+
+template <class Record> std::string header_of() {
+    std::string line;
+    Record record;
+    visit_columns(record, [&](std::string_view name, auto&) { fmt::format_to(std::back_inserter(line), ",{}", name); });
+    return line.substr(1);
+}
+
+template <class Record> std::string row_of(const Record& record) {
+    std::string line;
+    visit_columns(record, [&](std::string_view, const auto& value) { line += ',' + cell(value); });
+    return line.substr(1);
+}
+
+template <class Number> bool parse_number(std::string_view text, Number& value) {
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    return error == std::errc() && end == text.data() + text.size();
+}
+
+/// Each returns what was expected when the text is something else, otherwise nothing.
+std::string_view parse(std::string_view text, int& value) { return parse_number(text, value) ? "" : "an integer"; }
+std::string_view parse(std::string_view text, double& value) { return parse_number(text, value) ? "" : "a number"; }
+std::string_view parse(std::string_view text, bool& value) {
+    value = text == "1";
+    return text == "0" || text == "1" ? "" : "0 or 1";
+}
+std::string_view parse(std::string_view text, CrackMode& mode) {
+    mode = text == "tension" ? CrackMode::tension : CrackMode::shear;
+    return text == "tension" || text == "shear" ? "" : "tension or shear";
+}
+
+std::vector<std::string_view> split(std::string_view line) {
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    std::vector<std::string_view> cells;
+    while (true) {
+        const std::size_t comma = line.find(',');
+        cells.push_back(line.substr(0, comma));
+        if (comma == std::string_view::npos) return cells;
+        line.remove_prefix(comma + 1);
+    }
+}
+
+/// For each column of Record its index in the file.
+template <class Record>
+std::vector<std::size_t> column_order(const std::string& path, const std::vector<std::string_view>& names) {
+    std::vector<std::size_t> order;
+    std::vector<std::string> missing;
+    Record record;
+    visit_columns(record, [&](std::string_view name, auto&) {
+        const auto found = std::find(names.begin(), names.end(), name);
+        if (found == names.end()) missing.push_back(fmt::format("{}:1: no column '{}'", path, name));
+        order.push_back(static_cast<std::size_t>(found - names.begin()));
+    });
+    if (!missing.empty()) throw InputError(missing);
+    return order;
+}
+
+template <class Record>
+Record parse_row(const std::string& place, std::string_view line, std::size_t n_columns,
+                 const std::vector<std::size_t>& order) {
+    const auto cells = split(line);
+    if (cells.size() != n_columns)
+        throw InputError(fmt::format("{}: expected {} columns, found {}", place, n_columns, cells.size()));
+    Record record;
+    std::size_t column = 0;
+    visit_columns(record, [&](std::string_view name, auto& value) {
+        const std::string_view text = cells[order[column++]];
+        const std::string_view expected = parse(text, value);
+        if (!expected.empty())
+            throw InputError(fmt::format("{}: {}: expected {}, found '{}'", place, name, expected, text.substr(0, 40)));
+    });
+    return record;
+}
+
+template <class Record> std::vector<Record> read_table(const std::filesystem::path& path) {
+    const std::string content = read_file(path);
+    std::string_view rest = content;
+    if (rest.find('\n') == std::string_view::npos)
+        throw InputError(fmt::format("{}:1: expected a line of column names", path.string()));
+    const auto names = split(rest.substr(0, rest.find('\n')));
+    const auto order = column_order<Record>(path.string(), names);
+    std::vector<Record> records;
+    rest.remove_prefix(rest.find('\n') + 1);
+    for (std::size_t line = 2, end = rest.find('\n'); end != std::string_view::npos; end = rest.find('\n'), ++line) {
+        const std::string place = fmt::format("{}:{}", path.string(), line);
+        records.push_back(parse_row<Record>(place, rest.substr(0, end), names.size(), order));
+        rest.remove_prefix(end + 1);
+    }
+    return records;
+}
+
+} // namespace
+
+std::string history_header() { return header_of<StepRecord>(); }
+std::string cracks_header() { return header_of<CrackRecord>(); }
+std::string table_row(const StepRecord& record) { return row_of(record); }
+std::string table_row(const CrackRecord& crack) { return row_of(crack); }
+std::vector<StepRecord> read_history(const std::filesystem::path& path) { return read_table<StepRecord>(path); }
+std::vector<CrackRecord> read_cracks(const std::filesystem::path& path) { return read_table<CrackRecord>(path); }
+
+} // namespace kluft

@@ -1,0 +1,267 @@
+#include "kluft/output/state_file.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <hdf5.h>
+
+#include "kluft/core/diagnostics.hpp"
+#include "kluft/output/atomic_file.hpp"
+
+namespace kluft {
+
+namespace {
+
+constexpr int format_version = 1;
+constexpr std::string_view format_name = "kluft state";
+
+/// What went wrong inside HDF5; the callers add the file's name.
+struct Hdf5Failure {
+    std::string what;
+};
+
+hid_t checked(hid_t id, const std::string& what) {
+    if (id < 0) throw Hdf5Failure{what};
+    return id;
+}
+
+/// Owns an HDF5 identifier of any kind.
+class Identifier {
+public:
+    Identifier(hid_t id, herr_t (*close)(hid_t), const std::string& what) : id_(checked(id, what)), close_(close) {}
+    Identifier(const Identifier&) = delete;
+    Identifier& operator=(const Identifier&) = delete;
+    ~Identifier() { close_(id_); }
+    operator hid_t() const { return id_; }
+
+private:
+    hid_t id_;
+    herr_t (*close_)(hid_t);
+};
+
+/// HDF5 prints its error stack by default; here every result is looked at instead.
+class SilentErrors {
+public:
+    SilentErrors() {
+        H5Eget_auto2(H5E_DEFAULT, &function_, &client_);
+        H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+    }
+    SilentErrors(const SilentErrors&) = delete;
+    SilentErrors& operator=(const SilentErrors&) = delete;
+    ~SilentErrors() { H5Eset_auto2(H5E_DEFAULT, function_, client_); }
+
+private:
+    H5E_auto2_t function_ = nullptr;
+    void* client_ = nullptr;
+};
+
+/// Access to a file in memory, with no file behind it.
+Identifier memory_access() {
+    constexpr std::size_t increment = 1U << 20U;
+    const hid_t id = H5Pcreate(H5P_FILE_ACCESS);
+    if (id >= 0 && H5Pset_fapl_core(id, increment, false) < 0) {
+        H5Pclose(id);
+        throw Hdf5Failure{"no memory driver"};
+    }
+    return {id, H5Pclose, "no access properties"};
+}
+
+Identifier text_type(std::size_t size) {
+    const hid_t id = H5Tcopy(H5T_C_S1);
+    if (id >= 0) H5Tset_size(id, std::max<std::size_t>(size, 1));
+    return {id, H5Tclose, "no text type"};
+}
+
+void write_text(hid_t file, const char* name, std::string_view text) {
+    const Identifier type = text_type(text.size());
+    const Identifier space(H5Screate(H5S_SCALAR), H5Sclose, name);
+    const Identifier attribute(H5Acreate2(file, name, type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose, name);
+    const std::string padded = text.empty() ? std::string(1, '\0') : std::string(text);
+    checked(H5Awrite(attribute, type, padded.data()), name);
+}
+
+std::string read_text(hid_t file, const char* name) {
+    const Identifier attribute(H5Aopen(file, name, H5P_DEFAULT), H5Aclose, std::string("no ") + name);
+    const Identifier stored(H5Aget_type(attribute), H5Tclose, name);
+    if (H5Tget_class(stored) != H5T_STRING || H5Tis_variable_str(stored) > 0) throw Hdf5Failure{name};
+    std::string text(H5Tget_size(stored), '\0');
+    checked(H5Aread(attribute, stored, text.data()), name);
+    return text.substr(0, text.find('\0'));
+}
+
+template <class Number> hid_t memory_type();
+template <> hid_t memory_type<double>() { return H5T_NATIVE_DOUBLE; }
+template <> hid_t memory_type<int>() { return H5T_NATIVE_INT; }
+template <> hid_t memory_type<std::uint8_t>() { return H5T_NATIVE_UINT8; }
+
+template <class Number> void write_array(hid_t file, const char* name, const Number* values, std::size_t size) {
+    const hsize_t extent = size;
+    const Identifier space(H5Screate_simple(1, &extent, nullptr), H5Sclose, name);
+    const Identifier creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, name);
+    if (size > 0) {
+        constexpr hsize_t largest_chunk = 65536;
+        const hsize_t chunk = std::min(extent, largest_chunk);
+        checked(H5Pset_chunk(creation, 1, &chunk), name);
+        checked(H5Pset_fletcher32(creation), name);
+    }
+    const hid_t type = memory_type<Number>();
+    const Identifier set(H5Dcreate2(file, name, type, space, H5P_DEFAULT, creation, H5P_DEFAULT), H5Dclose, name);
+    if (size > 0) checked(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), name);
+}
+
+template <class Number> std::vector<Number> read_array(hid_t file, const char* name) {
+    const Identifier set(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose, std::string("no ") + name);
+    const Identifier space(H5Dget_space(set), H5Sclose, name);
+    const hssize_t size = H5Sget_simple_extent_npoints(space);
+    if (size < 0) throw Hdf5Failure{name};
+    std::vector<Number> values(static_cast<std::size_t>(size));
+    if (size > 0) checked(H5Dread(set, memory_type<Number>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), name);
+    return values;
+}
+
+template <class Number> Number read_scalar(hid_t file, const char* name) {
+    const auto values = read_array<Number>(file, name);
+    if (values.size() != 1) throw Hdf5Failure{name};
+    return values.front();
+}
+
+/// Stores the members of a state one by one.
+struct Writer {
+    hid_t file;
+
+    void operator()(const char* name, const int& value) { write_array(file, name, &value, 1); }
+    void operator()(const char* name, const double& value) { write_array(file, name, &value, 1); }
+    void operator()(const char* name, const bool& value) {
+        const int number = value ? 1 : 0;
+        write_array(file, name, &number, 1);
+    }
+    void operator()(const char* name, const Eigen::VectorXd& v) {
+        write_array(file, name, v.data(), static_cast<std::size_t>(v.size()));
+    }
+    void operator()(const char* name, const std::vector<double>& v) { write_array(file, name, v.data(), v.size()); }
+    void operator()(const char* name, const std::vector<InterfaceStatus>& v) {
+        std::vector<std::uint8_t> codes;
+        for (const InterfaceStatus status : v) codes.push_back(static_cast<std::uint8_t>(status));
+        write_array(file, name, codes.data(), codes.size());
+    }
+    /// Keys five integers each, histories two numbers each.
+    void operator()(const char* name, const std::vector<ContactMemory>& v) {
+        std::vector<int> keys;
+        std::vector<double> histories;
+        for (const auto& [key, history] : v) {
+            keys.insert(keys.end(), {key.block_a, key.edge_a, key.block_b, key.edge_b, key.point});
+            histories.insert(histories.end(), {history.shear_trial, history.dilation});
+        }
+        write_array(file, (std::string(name) + "_keys").c_str(), keys.data(), keys.size());
+        write_array(file, (std::string(name) + "_histories").c_str(), histories.data(), histories.size());
+    }
+};
+
+/// Fetches the members of a state one by one.
+struct Reader {
+    hid_t file;
+
+    void operator()(const char* name, int& value) { value = read_scalar<int>(file, name); }
+    void operator()(const char* name, double& value) { value = read_scalar<double>(file, name); }
+    void operator()(const char* name, bool& value) { value = read_scalar<int>(file, name) != 0; }
+    void operator()(const char* name, Eigen::VectorXd& v) {
+        const auto values = read_array<double>(file, name);
+        v = Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+    }
+    void operator()(const char* name, std::vector<double>& v) { v = read_array<double>(file, name); }
+    void operator()(const char* name, std::vector<InterfaceStatus>& v) {
+        v.clear();
+        for (const std::uint8_t code : read_array<std::uint8_t>(file, name)) {
+            if (code > static_cast<std::uint8_t>(InterfaceStatus::shear_crack)) throw Hdf5Failure{name};
+            v.push_back(static_cast<InterfaceStatus>(code));
+        }
+    }
+    void operator()(const char* name, std::vector<ContactMemory>& v) {
+        const auto keys = read_array<int>(file, (std::string(name) + "_keys").c_str());
+        const auto histories = read_array<double>(file, (std::string(name) + "_histories").c_str());
+        if (keys.size() % 5 != 0 || keys.size() / 5 * 2 != histories.size()) throw Hdf5Failure{name};
+        v.resize(keys.size() / 5);
+        for (std::size_t i = 0; i < v.size(); ++i) {
+            const int* const key = &keys[5 * i];
+            v[i].key = {key[0], key[1], key[2], key[3], key[4]};
+            v[i].history = {histories[2 * i], histories[2 * i + 1]};
+        }
+    }
+};
+
+/// Calls visit(name, member) for every member of a state. Members: State, const or not.
+template <class Members, class Visit> void visit_members(Members& state, Visit&& visit) {
+    visit("stage", state.stage);
+    visit("step_in_stage", state.step_in_stage);
+    visit("step", state.step);
+    visit("load_factor", state.load_factor);
+    visit("displacement", state.displacement);
+    visit("stage_start_displacement", state.stage_start_displacement);
+    visit("reference_displacement", state.reference_displacement);
+    visit("reference_set", state.reference_set);
+    visit("interfaces", state.interfaces);
+    visit("bond_shear", state.bond_shear);
+    visit("contacts", state.contacts);
+    visit("boundary_pressure", state.boundary_pressure);
+    visit("boundary_axial", state.boundary_axial);
+    visit("unbalanced_ratio", state.unbalanced_ratio);
+    visit("unbalanced_in_succession", state.unbalanced_in_succession);
+}
+
+std::string file_image(const State& state, const std::string& fingerprint) {
+    const Identifier access = memory_access();
+    const Identifier file(H5Fcreate("state", H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose, "no file");
+    write_text(file, "format", format_name);
+    write_text(file, "fingerprint", fingerprint);
+    write_array(file, "format_version", &format_version, 1);
+    visit_members(state, Writer{file});
+    checked(H5Fflush(file, H5F_SCOPE_GLOBAL), "not flushed");
+    const ssize_t size = H5Fget_file_image(file, nullptr, 0);
+    if (size <= 0) throw Hdf5Failure{"no image"};
+    std::string image(static_cast<std::size_t>(size), '\0');
+    if (H5Fget_file_image(file, image.data(), image.size()) != size) throw Hdf5Failure{"no image"};
+    return image;
+}
+
+State state_in_image(std::string& image, const std::string& place, const std::string& expected_fingerprint) {
+    const Identifier access = memory_access();
+    checked(H5Pset_file_image(access, image.data(), image.size()), "no image");
+    const Identifier file(H5Fopen("state", H5F_ACC_RDONLY, access), H5Fclose, "not a whole HDF5 file");
+    if (read_text(file, "format") != format_name) throw Hdf5Failure{"no state in it"};
+    const int version = read_scalar<int>(file, "format_version");
+    if (version != format_version)
+        throw InputError(place + ": expected a state of version " + std::to_string(format_version) + ", found " +
+                         std::to_string(version));
+    if (read_text(file, "fingerprint") != expected_fingerprint)
+        throw InputError(place + ": belongs to another scene, or the scene was changed since it was saved");
+    State state;
+    visit_members(state, Reader{file});
+    return state;
+}
+
+} // namespace
+
+void write_state(const std::filesystem::path& path, const State& state, const std::string& fingerprint) {
+    const SilentErrors silent;
+    try {
+        write_file(path, file_image(state, fingerprint));
+    } catch (const Hdf5Failure& failure) {
+        throw ResourceError(path.string() + ": cannot store the state in memory: " + failure.what);
+    }
+}
+
+State read_state(const std::filesystem::path& path, const std::string& expected_fingerprint) {
+    const SilentErrors silent;
+    std::string image = read_file(path);
+    try {
+        return state_in_image(image, path.string(), expected_fingerprint);
+    } catch (const Hdf5Failure& failure) {
+        throw InputError(path.string() + ": expected a saved state, found a damaged or foreign file (" + failure.what +
+                         ")");
+    }
+}
+
+} // namespace kluft

@@ -1,0 +1,282 @@
+#include "kluft/output/summary.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+#include <sys/resource.h>
+
+#include "kluft/core/diagnostics.hpp"
+#include "kluft/output/atomic_file.hpp"
+
+namespace kluft {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Rows = std::vector<StepRecord>;
+
+constexpr double elastic_share = 0.3;    // of the peak differential stress
+constexpr double fall_after_peak = 0.01; // of the peak
+constexpr double residual_share = 0.1;   // of the strain
+
+Rows balanced_rows(const Rows& rows) {
+    Rows balanced;
+    for (const StepRecord& row : rows)
+        if (row.balanced && std::isfinite(row.axial_stress) && std::isfinite(row.axial_strain)) balanced.push_back(row);
+    return balanced;
+}
+
+bool falls_after_peak(const Rows& balanced, double peak) {
+    const auto at =
+        std::find_if(balanced.begin(), balanced.end(), [&](const StepRecord& row) { return row.axial_stress >= peak; });
+    return std::any_of(at, balanced.end(), [&](const StepRecord& row) {
+        return row.axial_stress <= peak - fall_after_peak * std::abs(peak);
+    });
+}
+
+std::optional<double> residual_stress(const Rows& history, std::optional<int> platen_stage) {
+    const Rows rows = balanced_rows(platen_rows(history, platen_stage.value_or(0)));
+    if (rows.empty()) return std::nullopt;
+    const double first = rows.front().axial_strain;
+    const double last = rows.back().axial_strain;
+    const double range = std::abs(last - first);
+    double sum = 0.0;
+    int n_rows = 0;
+    // From the end backwards, so that a strain that turns back does not bring earlier rows in.
+    for (auto row = rows.rbegin(); row != rows.rend(); ++row) {
+        constexpr double rounding = 1e-9;
+        if (std::abs(last - row->axial_strain) > (residual_share + rounding) * range) break;
+        sum += row->axial_stress;
+        ++n_rows;
+    }
+    return sum / n_rows;
+}
+
+/// Slope of the least-squares line through (x, y).
+std::optional<double> slope(const std::vector<std::pair<double, double>>& points) {
+    const auto n = static_cast<double>(points.size());
+    if (points.size() < 2) return std::nullopt;
+    double x_mean = 0.0;
+    double y_mean = 0.0;
+    for (const auto& [x, y] : points) {
+        x_mean += x / n;
+        y_mean += y / n;
+    }
+    double xx = 0.0;
+    double xy = 0.0;
+    for (const auto& [x, y] : points) {
+        xx += (x - x_mean) * (x - x_mean);
+        xy += (x - x_mean) * (y - y_mean);
+    }
+    const double result = xy / xx;
+    return std::isfinite(result) ? std::optional(result) : std::nullopt;
+}
+
+StepRecord interpolated(const StepRecord& a, const StepRecord& b, double share) {
+    StepRecord row = b;
+    row.axial_strain = std::lerp(a.axial_strain, b.axial_strain, share);
+    row.lateral_strain = std::lerp(a.lateral_strain, b.lateral_strain, share);
+    row.differential_stress = std::lerp(a.differential_stress, b.differential_stress, share);
+    return row;
+}
+
+/// The rows from the platen's start until the differential stress first exceeds `limit`.
+Rows elastic_rows(const Rows& rows, double limit) {
+    const auto above =
+        std::find_if(rows.begin(), rows.end(), [&](const StepRecord& row) { return row.differential_stress > limit; });
+    Rows elastic(rows.begin(), above);
+    if (elastic.size() == 1 && above != rows.end()) {
+        const double from = elastic.front().differential_stress;
+        elastic.push_back(interpolated(elastic.front(), *above, (limit - from) / (above->differential_stress - from)));
+    }
+    return elastic;
+}
+
+void add_elastic_constants(const Rows& equilibria, const Rows& history, int platen_stage, Plane plane,
+                           CurveNumbers& numbers) {
+    double peak = -std::numeric_limits<double>::infinity();
+    for (const StepRecord& row : balanced_rows(platen_rows(equilibria, platen_stage)))
+        peak = std::max(peak, row.differential_stress);
+    const Rows rows = balanced_rows(platen_rows(history, platen_stage));
+    if (!std::isfinite(peak) || rows.empty()) return;
+    std::vector<std::pair<double, double>> stress, lateral;
+    for (const StepRecord& row : elastic_rows(rows, elastic_share * peak)) {
+        stress.emplace_back(row.axial_strain, row.differential_stress);
+        lateral.emplace_back(row.axial_strain, -row.lateral_strain);
+    }
+    numbers.axial_modulus = slope(stress);
+    numbers.lateral_ratio = slope(lateral);
+    if (!numbers.axial_modulus || !numbers.lateral_ratio) return;
+    const double ratio = *numbers.lateral_ratio;
+    const double nu = plane == Plane::strain ? ratio / (1.0 + ratio) : ratio;
+    const double modulus = plane == Plane::strain ? *numbers.axial_modulus * (1.0 - nu * nu) : *numbers.axial_modulus;
+    if (!std::isfinite(nu) || !std::isfinite(modulus)) return;
+    numbers.youngs_modulus = modulus;
+    numbers.poissons_ratio = nu;
+}
+
+void add_counts(const Rows& history, CurveNumbers& numbers) {
+    for (const StepRecord& row : history) {
+        numbers.unbalanced_steps += row.balanced ? 0 : 1;
+        numbers.open_close_iterations += row.open_close_iterations;
+    }
+    if (history.empty()) return;
+    numbers.steps = history.back().step;
+    numbers.cracks_tension = history.back().cracks_tension;
+    numbers.cracks_shear = history.back().cracks_shear;
+}
+
+Json number(const std::optional<double>& value) {
+    return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
+}
+
+constexpr std::array statuses{
+    std::pair{RunStatus::done, "done"}, std::pair{RunStatus::no_equilibrium, "no_equilibrium"},
+    std::pair{RunStatus::collapsed, "collapsed"}, std::pair{RunStatus::out_of_resources, "out_of_resources"},
+    std::pair{RunStatus::interrupted, "interrupted"}};
+
+RunStatus status_of(const std::string& name) {
+    for (const auto& [status, text] : statuses)
+        if (name == text) return status;
+    throw InputError("status: expected done, no_equilibrium, collapsed, out_of_resources or interrupted, found '" +
+                     name + "'");
+}
+
+std::optional<double> optional_number(const Json& json, const char* key) {
+    const Json& value = json.at(key);
+    return value.is_null() ? std::nullopt : std::optional(value.get<double>());
+}
+
+void read_numbers(const Json& json, CurveNumbers& numbers) {
+    numbers.peak_stress = optional_number(json, "peak_stress");
+    numbers.peak_strain = optional_number(json, "peak_strain");
+    numbers.peak_reached = json.at("peak_reached").get<bool>();
+    numbers.residual_stress = optional_number(json, "residual_stress");
+    numbers.youngs_modulus = optional_number(json, "youngs_modulus");
+    numbers.poissons_ratio = optional_number(json, "poissons_ratio");
+    numbers.axial_modulus = optional_number(json, "axial_modulus");
+    numbers.lateral_ratio = optional_number(json, "lateral_ratio");
+    json.at("cracks_tension").get_to(numbers.cracks_tension);
+    json.at("cracks_shear").get_to(numbers.cracks_shear);
+    json.at("steps").get_to(numbers.steps);
+    json.at("unbalanced_steps").get_to(numbers.unbalanced_steps);
+    json.at("open_close_iterations").get_to(numbers.open_close_iterations);
+}
+
+RunSummary summary_in(const Json& json) {
+    RunSummary summary;
+    summary.status = status_of(json.at("status").get<std::string>());
+    json.at("title").get_to(summary.title);
+    read_numbers(json, summary.numbers);
+    if (!json.at("platen_stage").is_null()) summary.platen_stage = json.at("platen_stage").get<int>();
+    json.at("blocks").get_to(summary.blocks);
+    json.at("interfaces").get_to(summary.interfaces);
+    json.at("unknowns").get_to(summary.unknowns);
+    json.at("factorizations").get_to(summary.factorizations);
+    json.at("analyses").get_to(summary.analyses);
+    summary.elapsed_s = optional_number(json, "elapsed_s").value_or(0.0);
+    json.at("peak_memory_bytes").get_to(summary.peak_memory_bytes);
+    json.at("version").get_to(summary.version);
+    json.at("seconds").get_to(summary.seconds);
+    json.at("message").get_to(summary.message);
+    return summary;
+}
+
+} // namespace
+
+std::vector<StepRecord> platen_rows(const std::vector<StepRecord>& rows, int platen_stage) {
+    auto first =
+        std::find_if(rows.begin(), rows.end(), [&](const StepRecord& row) { return row.stage >= platen_stage; });
+    if (first != rows.begin() && first != rows.end()) --first;
+    return {first, rows.end()};
+}
+
+std::optional<StepRecord> peak_row(const std::vector<StepRecord>& rows) {
+    const Rows balanced = balanced_rows(rows);
+    const auto peak = std::max_element(balanced.begin(), balanced.end(), [](const StepRecord& a, const StepRecord& b) {
+        return a.axial_stress < b.axial_stress;
+    });
+    return peak == balanced.end() ? std::nullopt : std::optional(*peak);
+}
+
+CurveNumbers curve_numbers(const std::vector<StepRecord>& equilibria, const std::vector<StepRecord>& history,
+                           std::optional<int> platen_stage, Plane plane) {
+    CurveNumbers numbers;
+    const Rows& all = equilibria.empty() ? history : equilibria;
+    if (const auto peak = peak_row(all)) {
+        numbers.peak_stress = peak->axial_stress;
+        numbers.peak_strain = peak->axial_strain;
+        numbers.peak_reached = falls_after_peak(balanced_rows(all), peak->axial_stress);
+    }
+    if (numbers.peak_reached) numbers.residual_stress = residual_stress(history, platen_stage);
+    if (platen_stage) add_elastic_constants(all, history, *platen_stage, plane, numbers);
+    add_counts(history, numbers);
+    return numbers;
+}
+
+std::string status_name(RunStatus status) {
+    for (const auto& [each, text] : statuses)
+        if (status == each) return text;
+    return "";
+}
+
+std::string summary_json(const RunSummary& summary) {
+    const CurveNumbers& numbers = summary.numbers;
+    Json json;
+    json["status"] = status_name(summary.status);
+    json["title"] = summary.title;
+    json["peak_stress"] = number(numbers.peak_stress);
+    json["peak_strain"] = number(numbers.peak_strain);
+    json["peak_reached"] = numbers.peak_reached;
+    json["residual_stress"] = number(numbers.residual_stress);
+    json["youngs_modulus"] = number(numbers.youngs_modulus);
+    json["poissons_ratio"] = number(numbers.poissons_ratio);
+    json["axial_modulus"] = number(numbers.axial_modulus);
+    json["lateral_ratio"] = number(numbers.lateral_ratio);
+    json["cracks_tension"] = numbers.cracks_tension;
+    json["cracks_shear"] = numbers.cracks_shear;
+    json["blocks"] = summary.blocks;
+    json["interfaces"] = summary.interfaces;
+    json["unknowns"] = summary.unknowns;
+    json["steps"] = numbers.steps;
+    json["unbalanced_steps"] = numbers.unbalanced_steps;
+    json["open_close_iterations"] = numbers.open_close_iterations;
+    json["factorizations"] = summary.factorizations;
+    json["analyses"] = summary.analyses;
+    json["elapsed_s"] = number(summary.elapsed_s);
+    json["peak_memory_bytes"] = summary.peak_memory_bytes;
+    json["platen_stage"] = summary.platen_stage ? Json(*summary.platen_stage) : Json(nullptr);
+    json["version"] = summary.version;
+    json["message"] = summary.message;
+    json["seconds"] = Json::object();
+    for (const auto& [stage, seconds] : summary.seconds) json["seconds"][stage] = number(seconds);
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
+void write_summary(const std::filesystem::path& path, const RunSummary& summary) {
+    write_file(path, summary_json(summary));
+}
+
+RunSummary read_summary(const std::filesystem::path& path) {
+    const std::string text = read_file(path);
+    try {
+        return summary_in(Json::parse(text));
+    } catch (const Json::exception& error) {
+        throw InputError(path.string() + ": expected the summary of a run: " + error.what());
+    } catch (const InputError& error) {
+        throw InputError(path.string() + ": " + error.what());
+    }
+}
+
+std::int64_t peak_memory_bytes() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    constexpr std::int64_t bytes_per_unit = 1024; // Linux counts kibibytes
+    return usage.ru_maxrss * bytes_per_unit;
+}
+
+} // namespace kluft

@@ -1,0 +1,253 @@
+#include "kluft/output/vtu.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <iterator>
+#include <optional>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "file_descriptor.hpp"
+#include "kluft/output/atomic_file.hpp"
+#include "kluft/output/block_outline.hpp"
+#include "vtu_document.hpp"
+
+namespace kluft {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::uint8_t vtk_line = 3;
+constexpr std::uint8_t vtk_polygon = 7;
+
+void append_xyz(std::vector<double>& values, const Vec2& v) { values.insert(values.end(), {v.x(), v.y(), 0.0}); }
+
+void add_stamp(VtuDocument& document, const StepRecord& record, std::string_view about) {
+    document.add_field("about", std::vector<std::string>{std::string(about)});
+    document.add_field("step", static_cast<std::int32_t>(record.step));
+    document.add_field("axial_strain", record.axial_strain);
+}
+
+void add_block_shapes(VtuDocument& document, const BlockSystem& system, const FieldRecord& fields) {
+    std::vector<double> points;
+    std::vector<double> displacement;
+    std::vector<std::int64_t> connectivity;
+    std::vector<std::int64_t> ends;
+    std::int64_t first = 0;
+    for (const Block& block : system.blocks) {
+        for (const Edge& edge : block.edges) append_xyz(points, system.origin + edge_start(system, edge));
+        for (const int edge : keyhole_polygon(system, block)) connectivity.push_back(first + edge);
+        ends.push_back(static_cast<std::int64_t>(connectivity.size()));
+        first += static_cast<std::int64_t>(block.edges.size());
+    }
+    for (const Vec2& u : fields.displacement) append_xyz(displacement, u);
+    document.add_points(points);
+    document.add_cells(connectivity, ends, vtk_polygon);
+    document.add_point_vectors("displacement", displacement);
+}
+
+void add_block_fields(VtuDocument& document, const BlockSystem& system, const FieldRecord& fields) {
+    std::vector<double> xx, yy, xy, major, minor;
+    for (const Mat2& stress : fields.stress) {
+        xx.push_back(stress(0, 0));
+        yy.push_back(stress(1, 1));
+        xy.push_back(0.5 * (stress(0, 1) + stress(1, 0)));
+        const auto [p1, p3] = principal_compression(stress);
+        major.push_back(p1);
+        minor.push_back(p3);
+    }
+    std::vector<std::int32_t> material, index;
+    for (const Block& block : system.blocks) {
+        material.push_back(block.material);
+        index.push_back(static_cast<std::int32_t>(index.size()));
+    }
+    document.add_cell_field("stress_xx", xx);
+    document.add_cell_field("stress_yy", yy);
+    document.add_cell_field("stress_xy", xy);
+    document.add_cell_field("sigma_1", major);
+    document.add_cell_field("sigma_3", minor);
+    document.add_cell_field("material", material);
+    document.add_cell_field("block", index);
+}
+
+void add_interface_shapes(VtuDocument& document, const BlockSystem& system, const FieldRecord& fields) {
+    const auto first = first_vertices(system);
+    std::vector<double> points;
+    std::vector<double> displacement;
+    std::vector<std::int64_t> connectivity;
+    std::vector<std::int64_t> ends;
+    for (const Interface& interface : system.interfaces) {
+        const Edge& edge = system.blocks[interface.block_a].edges[interface.edge_a];
+        const InterfaceMotion motion = interface_motion(system, first, fields.displacement, interface);
+        append_xyz(points, system.origin + edge_start(system, edge));
+        append_xyz(points, system.origin + edge_end(system, edge));
+        append_xyz(displacement, 0.5 * (motion.start_a + motion.start_b));
+        append_xyz(displacement, 0.5 * (motion.end_a + motion.end_b));
+        for (int i = 0; i < 2; ++i) connectivity.push_back(static_cast<std::int64_t>(connectivity.size()));
+        ends.push_back(static_cast<std::int64_t>(connectivity.size()));
+    }
+    document.add_points(points);
+    document.add_cells(connectivity, ends, vtk_line);
+    document.add_point_vectors("displacement", displacement);
+}
+
+std::int32_t mode_code(const FieldRecord::InterfaceFields& fields) {
+    if (!fields.broken) return 0;
+    return fields.mode == CrackMode::tension ? 1 : 2;
+}
+
+std::int32_t state_code(ContactState state) {
+    switch (state) {
+    case ContactState::open:
+        return 0;
+    case ContactState::sliding:
+        return 1;
+    case ContactState::locked:
+        return 2;
+    }
+    return 2;
+}
+
+void add_interface_fields(VtuDocument& document, const BlockSystem& system, const FieldRecord& fields) {
+    std::vector<std::int32_t> state, bonded, mode, fracture, index;
+    std::vector<double> normal, shear, gap, slip;
+    for (const auto& each : fields.interfaces) {
+        state.push_back(state_code(each.state));
+        bonded.push_back(each.bonded ? 1 : 0);
+        mode.push_back(mode_code(each));
+        normal.push_back(each.normal_traction);
+        shear.push_back(each.shear_traction);
+        gap.push_back(each.gap);
+        slip.push_back(each.slip);
+    }
+    for (const Interface& interface : system.interfaces) {
+        fracture.push_back(interface.fracture);
+        index.push_back(static_cast<std::int32_t>(index.size()));
+    }
+    document.add_cell_field("state", state);
+    document.add_cell_field("bonded", bonded);
+    document.add_cell_field("crack_mode", mode);
+    document.add_cell_field("normal_traction", normal);
+    document.add_cell_field("shear_traction", shear);
+    document.add_cell_field("gap", gap);
+    document.add_cell_field("slip", slip);
+    document.add_cell_field("mapped_fracture", fracture);
+    document.add_cell_field("interface", index);
+}
+
+std::string file_name(std::string_view part, int step) { return fmt::format("{}_{:06}.vtu", part, step); }
+
+/// The load step in the name of a field file of the given part.
+std::optional<int> step_of(const std::string& name, std::string_view part) {
+    const std::string prefix = std::string(part) + '_';
+    if (!name.starts_with(prefix)) return std::nullopt;
+    int step = 0;
+    const char* const end = name.data() + name.size();
+    const auto result = std::from_chars(name.data() + prefix.size(), end, step);
+    if (result.ec != std::errc()) return std::nullopt;
+    const std::string_view rest(result.ptr, end);
+    return rest == ".vtu" || rest == ".vtu.part" ? std::optional(step) : std::nullopt;
+}
+
+/// The files of a series in `directory`/fields with their load steps.
+std::vector<std::pair<fs::path, int>> field_files(const fs::path& directory) {
+    std::vector<std::pair<fs::path, int>> files;
+    std::error_code none;
+    for (const auto& entry : fs::directory_iterator(directory / "fields", none)) {
+        const std::string name = entry.path().filename();
+        for (const std::string_view part : {"blocks", "interfaces"})
+            if (const auto step = step_of(name, part)) files.emplace_back(entry.path(), *step);
+    }
+    return files;
+}
+
+} // namespace
+
+std::pair<double, double> principal_compression(const Mat2& stress) {
+    const double mean = 0.5 * (stress(0, 0) + stress(1, 1));
+    const double shear = 0.5 * (stress(0, 1) + stress(1, 0));
+    const double radius = std::hypot(0.5 * (stress(0, 0) - stress(1, 1)), shear);
+    return {radius - mean, -radius - mean};
+}
+
+std::string blocks_vtu(const BlockSystem& system, const FieldRecord& fields,
+                       const std::vector<std::string>& material_names, const StepRecord& record) {
+    VtuDocument document(first_vertices(system).back(), system.blocks.size());
+    add_stamp(document, record,
+              "SI units. stress_xx, stress_yy, stress_xy: positive in tension; sigma_1, sigma_3: principal stresses, "
+              "positive in compression. Points: before loading; warp by displacement to see the blocks deformed.");
+    document.add_field("material_names", material_names);
+    add_block_shapes(document, system, fields);
+    add_block_fields(document, system, fields);
+    return document.content();
+}
+
+std::string interfaces_vtu(const BlockSystem& system, const FieldRecord& fields, const StepRecord& record) {
+    VtuDocument document(2 * system.interfaces.size(), system.interfaces.size());
+    add_stamp(document, record,
+              "SI units. state: 0 open, 1 sliding, 2 locked; crack_mode: 0 none, 1 tension, 2 shear; normal_traction: "
+              "positive in tension; gap: positive when open. Points: before loading.");
+    add_interface_shapes(document, system, fields);
+    add_interface_fields(document, system, fields);
+    return document.content();
+}
+
+FieldSeries::FieldSeries(fs::path directory) : directory_(std::move(directory)) {}
+
+FieldSeries FieldSeries::create(const fs::path& directory) {
+    remove(directory);
+    make_directory(directory / "fields");
+    FieldSeries series(directory);
+    series.write_series();
+    return series;
+}
+
+FieldSeries FieldSeries::resume(const fs::path& directory, int last_step) {
+    make_directory(directory / "fields");
+    FieldSeries series(directory);
+    for (const auto& [file, step] : field_files(directory)) {
+        const bool whole = file.extension() == ".vtu";
+        if (step > last_step || !whole)
+            remove_file(file);
+        else if (file.filename().string().starts_with("interfaces")) // the later of the two
+            series.steps_.push_back(step);
+    }
+    std::sort(series.steps_.begin(), series.steps_.end());
+    series.write_series();
+    return series;
+}
+
+void FieldSeries::remove(const fs::path& directory) {
+    remove_file(directory / "fields.pvd");
+    for (const auto& [file, step] : field_files(directory)) remove_file(file);
+    std::error_code ignored;
+    fs::remove(directory / "fields", ignored); // only when nothing else is in it
+}
+
+void FieldSeries::add(const BlockSystem& system, const FieldRecord& fields,
+                      const std::vector<std::string>& material_names, const StepRecord& record) {
+    const fs::path folder = directory_ / "fields";
+    write_file(folder / file_name("blocks", record.step), blocks_vtu(system, fields, material_names, record));
+    write_file(folder / file_name("interfaces", record.step), interfaces_vtu(system, fields, record));
+    if (steps_.empty() || steps_.back() != record.step) steps_.push_back(record.step);
+    write_series();
+}
+
+void FieldSeries::write_series() const {
+    std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n";
+    for (const int step : steps_) {
+        int part = 0;
+        for (const std::string_view name : {"blocks", "interfaces"})
+            fmt::format_to(std::back_inserter(text),
+                           "<DataSet timestep=\"{}\" group=\"\" part=\"{}\" file=\"fields/{}\"/>\n", step, part++,
+                           file_name(name, step));
+    }
+    write_file(directory_ / "fields.pvd", text + "</Collection>\n</VTKFile>\n");
+}
+
+} // namespace kluft

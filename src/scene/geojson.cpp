@@ -1,0 +1,162 @@
+#include "kluft/scene/geojson.hpp"
+
+#include <cmath>
+#include <fstream>
+#include <string>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "kluft/core/diagnostics.hpp"
+
+namespace kluft {
+
+namespace {
+
+using nlohmann::json;
+
+/// Where in a file something is said, as the errors name it.
+struct Place {
+    std::string file;
+    int feature = -1; ///< -1 for a bare geometry
+
+    [[noreturn]] void fail(const std::string& what) const {
+        throw InputError(feature < 0 ? fmt::format("{}: {}", file, what)
+                                     : fmt::format("{}: feature {}: {}", file, feature, what));
+    }
+};
+
+struct PlacedGeometry {
+    const json* geometry = nullptr;
+    Place place;
+};
+
+json parse_file(const std::filesystem::path& file) {
+    std::ifstream stream(file);
+    if (!stream) throw InputError(fmt::format("{}: the file cannot be opened", file.string()));
+    try {
+        return json::parse(stream);
+    } catch (const json::parse_error& error) {
+        throw InputError(fmt::format("{}: not valid JSON: {}", file.string(), error.what()));
+    }
+}
+
+std::string type_of(const json& object, const Place& place) {
+    if (!object.is_object()) place.fail("expected a GeoJSON object");
+    const auto type = object.find("type");
+    if (type == object.end() || !type->is_string()) place.fail("expected a GeoJSON object with a \"type\"");
+    return type->get<std::string>();
+}
+
+void add_feature(std::vector<PlacedGeometry>& geometries, const json& feature, const Place& place) {
+    if (type_of(feature, place) != "Feature") place.fail("expected \"type\": \"Feature\"");
+    const auto geometry = feature.find("geometry");
+    if (geometry == feature.end()) place.fail("expected a \"geometry\"");
+    if (!geometry->is_null()) geometries.push_back({&*geometry, place});
+}
+
+std::vector<PlacedGeometry> geometries_of(const json& root, const std::string& file) {
+    std::vector<PlacedGeometry> geometries;
+    const Place place{file};
+    const std::string type = type_of(root, place);
+    if (type == "FeatureCollection") {
+        const auto features = root.find("features");
+        if (features == root.end() || !features->is_array()) place.fail("expected a list of \"features\"");
+        int index = 0;
+        for (const json& feature : *features) add_feature(geometries, feature, {file, index++});
+    } else if (type == "Feature") {
+        add_feature(geometries, root, {file, 0});
+    } else {
+        geometries.push_back({&root, place});
+    }
+    return geometries;
+}
+
+const json& coordinates_of(const json& geometry, const Place& place) {
+    const auto coordinates = geometry.find("coordinates");
+    if (coordinates == geometry.end() || !coordinates->is_array()) place.fail("expected a list of \"coordinates\"");
+    return *coordinates;
+}
+
+Vec2 point_of(const json& position, const Place& place) {
+    const bool sound =
+        position.is_array() && position.size() >= 2 && position[0].is_number() && position[1].is_number();
+    if (!sound) place.fail(fmt::format("expected a position [x, y], got {}", position.dump()));
+    const Vec2 point(position[0].get<double>(), position[1].get<double>());
+    if (!point.allFinite()) place.fail(fmt::format("the position {} is not finite", position.dump()));
+    return point;
+}
+
+/// The points without those equal to the one before.
+std::vector<Vec2> points_of(const json& list, const Place& place) {
+    if (!list.is_array()) place.fail("expected a list of positions");
+    std::vector<Vec2> points;
+    for (const json& position : list) {
+        const Vec2 point = point_of(position, place);
+        if (points.empty() || point != points.back()) points.push_back(point);
+    }
+    return points;
+}
+
+Polygon ring_of(const json& list, const Place& place) {
+    Polygon ring = points_of(list, place);
+    if (ring.size() < 4)
+        place.fail("expected a ring of at least three different points, the first repeated at the end");
+    if (ring.front() != ring.back()) place.fail("a ring does not end at its first point");
+    ring.pop_back();
+    return ring;
+}
+
+MappedArea area_of(const json& rings, const Place& place) {
+    if (!rings.is_array() || rings.empty()) place.fail("expected a polygon with at least one ring");
+    MappedArea area;
+    area.outline = ring_of(rings[0], place);
+    for (std::size_t i = 1; i < rings.size(); ++i) area.holes.push_back(ring_of(rings[i], place));
+    return area;
+}
+
+std::vector<Vec2> trace_of(const json& list, const Place& place) {
+    std::vector<Vec2> trace = points_of(list, place);
+    if (trace.size() < 2) place.fail("expected a trace of at least two different points");
+    return trace;
+}
+
+} // namespace
+
+MappedArea read_geojson_area(const std::filesystem::path& file) {
+    const json root = parse_file(file);
+    std::vector<MappedArea> areas;
+    for (const auto& [geometry, place] : geometries_of(root, file.string())) {
+        const std::string type = type_of(*geometry, place);
+        if (type == "Polygon") {
+            areas.push_back(area_of(coordinates_of(*geometry, place), place));
+        } else if (type == "MultiPolygon") {
+            for (const json& part : coordinates_of(*geometry, place)) areas.push_back(area_of(part, place));
+        } else {
+            place.fail(fmt::format("expected a Polygon, got {}", type));
+        }
+    }
+    if (areas.size() != 1) {
+        throw InputError(fmt::format("{}: expected one polygon, the domain, got {}", file.string(), areas.size()));
+    }
+    return std::move(areas.front());
+}
+
+std::vector<std::vector<Vec2>> read_geojson_traces(const std::filesystem::path& file) {
+    const json root = parse_file(file);
+    std::vector<std::vector<Vec2>> traces;
+    for (const auto& [geometry, place] : geometries_of(root, file.string())) {
+        const std::string type = type_of(*geometry, place);
+        if (type == "LineString") {
+            traces.push_back(trace_of(coordinates_of(*geometry, place), place));
+        } else if (type == "MultiLineString") {
+            for (const json& part : coordinates_of(*geometry, place)) traces.push_back(trace_of(part, place));
+        } else {
+            place.fail(fmt::format("expected a LineString or a MultiLineString, got {}", type));
+        }
+    }
+    if (traces.empty()) throw InputError(fmt::format("{}: no traces", file.string()));
+    return traces;
+}
+
+} // namespace kluft

@@ -1,0 +1,89 @@
+#include "kluft/scene/outline.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kluft/core/vector.hpp"
+
+namespace kluft {
+
+namespace {
+
+int n_sides_of(const Polygon& polygon) { return static_cast<int>(polygon.size()); }
+
+Vec2 side_direction(const Polygon& polygon, int side) {
+    return polygon[(side + 1) % n_sides_of(polygon)] - polygon[side];
+}
+
+Facing facing_of(const Vec2& normal) {
+    if (std::abs(normal.x()) > std::abs(normal.y())) return normal.x() > 0.0 ? Facing::right : Facing::left;
+    return normal.y() > 0.0 ? Facing::top : Facing::bottom;
+}
+
+/// Whether the segments a0-a1 and b0-b1 properly cross.
+bool cross_properly(const Vec2& a0, const Vec2& a1, const Vec2& b0, const Vec2& b1) {
+    const double b0_side = cross(a1 - a0, b0 - a0);
+    const double b1_side = cross(a1 - a0, b1 - a0);
+    const double a0_side = cross(b1 - b0, a0 - b0);
+    const double a1_side = cross(b1 - b0, a1 - b0);
+    const double round_off = 1e-12 * (a1 - a0).norm() * (b1 - b0).norm();
+    const auto opposite = [&](double p, double q) {
+        return (p > round_off && q < -round_off) || (p < -round_off && q > round_off);
+    };
+    return opposite(b0_side, b1_side) && opposite(a0_side, a1_side);
+}
+
+} // namespace
+
+std::string_view facing_name(Facing facing) {
+    switch (facing) {
+    case Facing::left:
+        return "left";
+    case Facing::right:
+        return "right";
+    case Facing::top:
+        return "top";
+    case Facing::bottom:
+        return "bottom";
+    }
+    return "";
+}
+
+double signed_area(const Polygon& polygon) {
+    double twice = 0.0;
+    for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
+        twice += cross(polygon[i] - polygon[0], polygon[i + 1] - polygon[0]);
+    return 0.5 * twice;
+}
+
+Polygon counter_clockwise(const Polygon& polygon) {
+    Polygon result = polygon;
+    if (signed_area(polygon) < 0.0) std::reverse(result.begin() + 1, result.end());
+    return result;
+}
+
+int counter_clockwise_side(int side, int n_sides, bool was_clockwise) {
+    return was_clockwise ? n_sides - 1 - side : side;
+}
+
+std::vector<int> sides_facing(const Polygon& polygon, Facing facing) {
+    std::vector<int> sides;
+    for (int i = 0; i < n_sides_of(polygon); ++i) {
+        const Vec2 direction = side_direction(polygon, i);
+        if (direction.norm() > 0.0 && facing_of(right_normal(direction)) == facing) sides.push_back(i);
+    }
+    return sides;
+}
+
+std::optional<std::pair<int, int>> crossing_sides(const Polygon& polygon, int most_sides) {
+    const int n = n_sides_of(polygon);
+    if (n >= most_sides) return std::nullopt;
+    for (int i = 0; i < n; ++i)
+        for (int j = i + 2; j < n; ++j) {
+            if (i == 0 && j == n - 1) continue;
+            if (cross_properly(polygon[i], polygon[i + 1], polygon[j], polygon[(j + 1) % n])) return std::pair{i, j};
+        }
+    return std::nullopt;
+}
+
+} // namespace kluft

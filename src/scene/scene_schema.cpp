@@ -1,0 +1,818 @@
+#include "kluft/scene/scene_schema.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "kluft/core/nearest_name.hpp"
+
+namespace kluft {
+
+namespace {
+
+constexpr Range positive{.least = 0.0, .open_below = true};
+constexpr Range not_negative{.least = 0.0};
+constexpr Range below_ninety{.least = 0.0, .most = 90.0, .open_above = true};
+constexpr Range between_zero_and_one{.least = 0.0, .most = 1.0, .open_below = true, .open_above = true};
+constexpr Range positive_integer{.least = 1.0, .most = 2147483647.0};
+constexpr Range natural{.least = 0.0, .most = 2147483647.0};
+
+std::vector<KeyRule> analysis_rules() {
+    return {
+        {.path = "analysis", .type = KeyType::mapping, .doc = "What is computed."},
+        {.path = "analysis.plane",
+         .type = KeyType::choice,
+         .choices = {"strain", "stress"},
+         .fallback = "strain",
+         .doc = "Plane strain (a slice of a long body) or plane stress (a thin plate)."},
+        {.path = "analysis.integrator",
+         .type = KeyType::choice,
+         .choices = {"implicit"},
+         .unavailable = {"explicit"},
+         .fallback = "implicit",
+         .doc = "How the body moves from one state to the next. Only `implicit` in this version."},
+        {.path = "analysis.kinematics",
+         .type = KeyType::choice,
+         .choices = {"affine"},
+         .unavailable = {"rigid"},
+         .fallback = "affine",
+         .doc = "How a block moves and deforms: `affine` is six unknowns. Only `affine` in this version."},
+        {.path = "analysis.gravity",
+         .type = KeyType::gravity,
+         .measure = Measure::acceleration,
+         .fallback = "0",
+         .doc = "Acceleration of gravity: a number >= 0 acts downwards (towards -y), `[gx, gy]` anywhere. Needs "
+                "densities."},
+    };
+}
+
+std::vector<KeyRule> material_rules() {
+    return {
+        {.path = "materials",
+         .type = KeyType::named,
+         .required = true,
+         .least_items = 1,
+         .doc = "Rocks by name. Names are made of letters, digits, `_` and `-`."},
+        {.path = "materials.*", .type = KeyType::mapping, .doc = "One rock."},
+        {.path = "materials.*.density",
+         .type = KeyType::number,
+         .measure = Measure::density,
+         .range = not_negative,
+         .fallback = "0",
+         .doc = "Mass density. Required where there is gravity."},
+        {.path = "materials.*.youngs_modulus",
+         .type = KeyType::number,
+         .measure = Measure::stress,
+         .range = positive,
+         .required = true,
+         .doc =
+             "Young's modulus: of the rock where the tessellation's interface has a `stiffness_ratio`, of the blocks "
+             "where its stiffnesses are given."},
+        {.path = "materials.*.poissons_ratio",
+         .type = KeyType::number,
+         .range = {.least = 0.0, .most = 0.5, .open_above = true},
+         .required = true,
+         .doc = "Poisson's ratio, of the same body as `youngs_modulus`."},
+        {.path = "materials.*.cohesion",
+         .type = KeyType::number,
+         .measure = Measure::stress,
+         .range = not_negative,
+         .fallback_note = "no strength",
+         .doc = "Cohesion c of the intact rock. The three strengths are given together or not at all; potential cracks "
+                "without strengths of their own need them."},
+        {.path = "materials.*.friction_angle",
+         .type = KeyType::number,
+         .measure = Measure::angle,
+         .range = below_ninety,
+         .fallback_note = "no strength",
+         .doc = "Friction angle phi of the intact rock."},
+        {.path = "materials.*.tensile_strength",
+         .type = KeyType::number,
+         .measure = Measure::stress,
+         .range = not_negative,
+         .fallback_note = "no strength",
+         .doc =
+             "Tensile strength of the intact rock, positive. More than c cot(phi) is reduced to that with a warning."},
+    };
+}
+
+std::vector<KeyRule> stiffness_rules() {
+    return {
+        {.path = "interfaces.*.normal_stiffness",
+         .type = KeyType::number,
+         .measure = Measure::stiffness,
+         .range = positive,
+         .doc = "Normal stiffness k_n. Together with `shear_stiffness`, and with no other stiffness key."},
+        {.path = "interfaces.*.shear_stiffness",
+         .type = KeyType::number,
+         .measure = Measure::stiffness,
+         .range = positive,
+         .doc = "Shear stiffness k_s."},
+        {.path = "interfaces.*.normal_stiffness_times_spacing",
+         .type = KeyType::number,
+         .measure = Measure::stress,
+         .range = positive,
+         .doc = "k_n d, with d the tessellation's spacing, or `geometry.reference_spacing` without a tessellation: the "
+                "same body on any spacing. Together with `shear_stiffness_times_spacing`, and with no other stiffness "
+                "key."},
+        {.path = "interfaces.*.shear_stiffness_times_spacing",
+         .type = KeyType::number,
+         .measure = Measure::stress,
+         .range = positive,
+         .doc = "k_s d."},
+        {.path = "interfaces.*.stiffness_ratio",
+         .type = KeyType::number,
+         .range = positive,
+         .fallback_note = "10, where no other stiffness key is given",
+         .doc = "k_n d/E with E of the material. With it `youngs_modulus` and `poissons_ratio` are those of the rock: "
+                "the blocks' own moduli follow so that the tessellated body has them. 5 to 20 is the good range."},
+        {.path = "interfaces.*.shear_ratio",
+         .type = KeyType::number,
+         .range = positive,
+         .fallback_note = "0.5, where no other stiffness key is given",
+         .doc = "k_s/k_n, together with `stiffness_ratio`."},
+    };
+}
+
+std::vector<KeyRule> interface_rules() {
+    std::vector<KeyRule> rules{
+        {.path = "interfaces",
+         .type = KeyType::named,
+         .doc = "Kinds of interfaces between blocks, by name. Stiffness is given in one of three ways: "
+                "`normal_stiffness` and `shear_stiffness`; or the same two `..._times_spacing`; or `stiffness_ratio` "
+                "and `shear_ratio`."},
+        {.path = "interfaces.*", .type = KeyType::mapping, .doc = "One kind of interface."},
+        {.path = "interfaces.*.kind",
+         .type = KeyType::choice,
+         .choices = {"fracture", "potential_crack"},
+         .required = true,
+         .doc = "`fracture`: Coulomb friction, no tension. `potential_crack`: bonded and elastic until it fails, then "
+                "the fracture named by `fails_to`."},
+    };
+    const auto stiffness = stiffness_rules();
+    rules.insert(rules.end(), stiffness.begin(), stiffness.end());
+    const std::vector<KeyRule> strength{
+        {.path = "interfaces.*.friction_angle",
+         .type = KeyType::number,
+         .measure = Measure::angle,
+         .range = below_ninety,
+         .fallback = "0",
+         .doc = "Friction angle: of Coulomb's law for a fracture, of the strength for a potential crack."},
+        {.path = "interfaces.*.cohesion",
+         .type = KeyType::number,
+         .measure = Measure::stress,
+         .range = not_negative,
+         .fallback = "0",
+         .doc = "Cohesion: of Coulomb's law for a fracture, of the strength for a potential crack."},
+        {.path = "interfaces.*.tensile_strength",
+         .type = KeyType::number,
+         .measure = Measure::stress,
+         .range = not_negative,
+         .fallback_note = "that of the weaker adjacent material",
+         .doc = "Tensile strength of a potential crack, positive; a fracture has none. A potential crack gives "
+                "`cohesion`, `friction_angle` and `tensile_strength` together, or none of them and takes those of the "
+                "weaker adjacent material."},
+        {.path = "interfaces.*.dilation_angle",
+         .type = KeyType::number,
+         .measure = Measure::angle,
+         .range = below_ninety,
+         .fallback = "0",
+         .doc = "Opening per slip of a fracture, as an angle; not above the friction angle."},
+        {.path = "interfaces.*.fails_to",
+         .type = KeyType::text,
+         .fallback_note = "the only fracture among the interfaces",
+         .doc = "Interface (of kind fracture) whose law a potential crack follows after its failure."},
+        {.path = "interfaces.*.cohesion_onset",
+         .type = KeyType::number,
+         .measure = Measure::stress,
+         .range = not_negative,
+         .fallback_note = "0.01 c",
+         .doc = "t_r: a fracture's cohesion grows linearly from 0 at opening to its full value at this compressive "
+                "normal traction. Larger values ease convergence and weaken fractures under small stress."},
+        {.path = "interfaces.*.contact_rounding",
+         .type = KeyType::number,
+         .measure = Measure::stress,
+         .range = not_negative,
+         .fallback_note = "1e-3 of the largest boundary or self-weight stress",
+         .doc = "g_0 k_n: normal traction over which the corner between open and closed is rounded; 0 for none."},
+        {.path = "interfaces.*.friction_rounding",
+         .type = KeyType::number,
+         .range = {.least = 0.0, .most = 0.5},
+         .fallback = "0.05",
+         .doc = "Half-width of the rounding between stick and slip, as a fraction of the friction limit; 0 for none."},
+    };
+    rules.insert(rules.end(), strength.begin(), strength.end());
+    return rules;
+}
+
+std::vector<KeyRule> domain_rules() {
+    return {
+        {.path = "geometry", .type = KeyType::mapping, .required = true, .doc = "The body and its cuts."},
+        {.path = "geometry.domain",
+         .type = KeyType::mapping,
+         .required = true,
+         .doc = "The outline: one of `rectangle`, `polygon` and `file`."},
+        {.path = "geometry.domain.rectangle",
+         .type = KeyType::mapping,
+         .doc = "An upright rectangle. Its boundaries are named `bottom`, `right`, `top` and `left`."},
+        {.path = "geometry.domain.rectangle.width",
+         .type = KeyType::number,
+         .measure = Measure::length,
+         .range = positive,
+         .required = true,
+         .doc = "Extent in x."},
+        {.path = "geometry.domain.rectangle.height",
+         .type = KeyType::number,
+         .measure = Measure::length,
+         .range = positive,
+         .required = true,
+         .doc = "Extent in y."},
+        {.path = "geometry.domain.rectangle.origin",
+         .type = KeyType::point,
+         .measure = Measure::length,
+         .fallback = "[0, 0]",
+         .doc = "Lower left corner."},
+        {.path = "geometry.domain.polygon",
+         .type = KeyType::points,
+         .measure = Measure::length,
+         .least_items = 3,
+         .doc = "Corners of a simple polygon in order, either way round. Side i of it goes from corner i to the next, "
+                "counted from 0."},
+        {.path = "geometry.domain.file",
+         .type = KeyType::text,
+         .doc = "GeoJSON file with one polygon (and its holes), relative to the scene file."},
+    };
+}
+
+std::vector<KeyRule> cut_rules() {
+    return {
+        {.path = "geometry.fractures", .type = KeyType::list, .fallback = "[]", .doc = "Mapped fractures."},
+        {.path = "geometry.fractures.#", .type = KeyType::mapping, .doc = "One trace, or one file of traces."},
+        {.path = "geometry.fractures.#.name",
+         .type = KeyType::text,
+         .fallback_note = "`fracture 1`, `fracture 2`, ...",
+         .doc = "For messages and output."},
+        {.path = "geometry.fractures.#.trace",
+         .type = KeyType::points,
+         .measure = Measure::length,
+         .least_items = 2,
+         .doc = "Points of a polyline. What lies outside the domain is clipped, dangling ends are pruned. Either "
+                "`trace` or `file`."},
+        {.path = "geometry.fractures.#.file",
+         .type = KeyType::text,
+         .doc = "GeoJSON file with the traces as lines, relative to the scene file."},
+        {.path = "geometry.fractures.#.interface",
+         .type = KeyType::text,
+         .fallback_note = "the only interface",
+         .doc = "Kind of interface along the trace."},
+        {.path = "geometry.tessellation",
+         .type = KeyType::mapping,
+         .fallback_note = "none",
+         .doc = "A net of regular hexagons between the fractures."},
+        {.path = "geometry.tessellation.hexagons", .type = KeyType::mapping, .required = true, .doc = "The net."},
+        {.path = "geometry.tessellation.hexagons.spacing",
+         .type = KeyType::number,
+         .measure = Measure::length,
+         .range = positive,
+         .required = true,
+         .doc = "d: distance of centres, which is also the distance across flats."},
+        {.path = "geometry.tessellation.hexagons.rotation",
+         .type = KeyType::number,
+         .measure = Measure::angle,
+         .fallback = "0",
+         .doc = "Counter-clockwise; at 0 the flats are vertical."},
+        {.path = "geometry.tessellation.hexagons.offset",
+         .type = KeyType::point,
+         .measure = Measure::length,
+         .fallback = "[0, 0]",
+         .doc = "Of one hexagon's centre from the lower left corner of the domain's box."},
+        {.path = "geometry.tessellation.hexagons.jitter",
+         .type = KeyType::number,
+         .range = {.least = 0.0, .most = 0.25, .open_above = true},
+         .fallback = "0",
+         .doc = "Largest random displacement of a vertex as a fraction of the spacing."},
+        {.path = "geometry.tessellation.hexagons.seed",
+         .type = KeyType::integer,
+         .range = {.least = 0.0, .most = 9007199254740991.0},
+         .fallback = "1",
+         .doc = "Of the jitter: the same seed gives the same net."},
+        {.path = "geometry.tessellation.interface",
+         .type = KeyType::text,
+         .fallback_note = "the only interface",
+         .doc = "Kind of interface along the hexagons' edges."},
+        {.path = "geometry.tessellation.region",
+         .type = KeyType::points,
+         .measure = Measure::length,
+         .fallback_note = "everywhere",
+         .least_items = 3,
+         .doc = "Polygon inside which there are hexagons."},
+        {.path = "geometry.reference_spacing",
+         .type = KeyType::number,
+         .measure = Measure::length,
+         .range = positive,
+         .fallback_note = "none",
+         .doc = "d for `..._times_spacing` and `stiffness_ratio` where there is no tessellation."},
+        {.path = "geometry.minimum_area",
+         .type = KeyType::number,
+         .range = {.least = 0.0, .most = 0.5},
+         .fallback = "0.05",
+         .doc = "Pieces smaller than this fraction of a hexagon are merged with a neighbour."},
+        {.path = "geometry.material",
+         .type = KeyType::text,
+         .fallback_note = "the only material",
+         .doc = "Material of the body."},
+        {.path = "geometry.regions", .type = KeyType::list, .fallback = "[]", .doc = "Parts made of another material."},
+        {.path = "geometry.regions.#", .type = KeyType::mapping, .doc = "One part."},
+        {.path = "geometry.regions.#.polygon",
+         .type = KeyType::points,
+         .measure = Measure::length,
+         .required = true,
+         .least_items = 3,
+         .doc = "Blocks with their centroid inside belong to it."},
+        {.path = "geometry.regions.#.material", .type = KeyType::text, .required = true, .doc = "Its material."},
+    };
+}
+
+std::vector<KeyRule> loading_rules() {
+    return {
+        {.path = "boundaries",
+         .type = KeyType::named,
+         .fallback_note = "free outline",
+         .doc = "Named parts of the outline. A rectangle has `bottom`, `right`, `top`, `left`, and here they only get "
+                "supports. Any other domain has the same four (each side belongs to the direction that its outward "
+                "normal points to, within 45 degrees) unless a boundary here has `sides` or `facing`; then exactly "
+                "the boundaries given here exist, and sides in none of them are free."},
+        {.path = "boundaries.*", .type = KeyType::mapping, .doc = "One boundary."},
+        {.path = "boundaries.*.support",
+         .type = KeyType::choice,
+         .choices = {"none", "smooth", "fixed"},
+         .fallback = "none",
+         .doc = "Held in every stage: `smooth` against motion normal to the boundary, `fixed` against any motion."},
+        {.path = "boundaries.*.sides",
+         .type = KeyType::integers,
+         .range = natural,
+         .least_items = 1,
+         .doc = "Sides of the domain's polygon that belong to it, counted from 0 as the polygon is given. Not for "
+                "rectangles."},
+        {.path = "boundaries.*.facing",
+         .type = KeyType::choice,
+         .choices = {"left", "right", "top", "bottom"},
+         .doc = "All sides whose outward normal points within 45 degrees of this direction. Not for rectangles."},
+        {.path = "stages",
+         .type = KeyType::list,
+         .required = true,
+         .least_items = 1,
+         .doc = "Loading, one stage after the other. Pressures, strains, stresses and displacements are positive in "
+                "compression (inward) and grow linearly over the steps of a stage."},
+        {.path = "stages.#", .type = KeyType::mapping, .doc = "One stage: a pressure, a platen, or both."},
+        {.path = "stages.#.name",
+         .type = KeyType::text,
+         .fallback_note = "`stage 0`, `stage 1`, ...",
+         .doc = "For messages and output."},
+        {.path = "stages.#.pressure",
+         .type = KeyType::named,
+         .doc = "Pressure on boundaries by name. It follows the surface; boundaries not named keep theirs."},
+        {.path = "stages.#.pressure.*",
+         .type = KeyType::number,
+         .measure = Measure::stress,
+         .doc = "At the end of the stage."},
+        {.path = "stages.#.displacement",
+         .type = KeyType::mapping,
+         .doc = "A platen moves a boundary; the opposite one rests on a fixed platen. One of `displacement`, `strain` "
+                "and `stress`."},
+        {.path = "stages.#.displacement.boundary", .type = KeyType::text, .required = true, .doc = "What is moved."},
+        {.path = "stages.#.displacement.value",
+         .type = KeyType::number,
+         .measure = Measure::length,
+         .required = true,
+         .doc = "Inward displacement in this stage."},
+        {.path = "stages.#.strain", .type = KeyType::mapping, .doc = "The same, given as engineering strain."},
+        {.path = "stages.#.strain.boundary", .type = KeyType::text, .required = true, .doc = "What is moved."},
+        {.path = "stages.#.strain.value",
+         .type = KeyType::number,
+         .range = {.least = -0.5, .most = 0.5},
+         .required = true,
+         .doc = "Displacement in this stage as a fraction of the body's length."},
+        {.path = "stages.#.stress", .type = KeyType::mapping, .doc = "The same, controlled by the platen's stress."},
+        {.path = "stages.#.stress.boundary", .type = KeyType::text, .required = true, .doc = "What is moved."},
+        {.path = "stages.#.stress.value",
+         .type = KeyType::number,
+         .measure = Measure::stress,
+         .required = true,
+         .doc = "Mean stress on the platen at the end of the stage."},
+        {.path = "stages.#.platens",
+         .type = KeyType::choice,
+         .choices = {"smooth", "rough"},
+         .fallback = "smooth",
+         .doc = "`smooth` platens leave the tangential motion free, to `rough` ones the body sticks."},
+        {.path = "stages.#.steps",
+         .type = KeyType::integer,
+         .range = positive_integer,
+         .fallback = "1",
+         .doc = "Load steps of the stage."},
+    };
+}
+
+std::vector<KeyRule> option_rules() {
+    return {
+        {.path = "cracks", .type = KeyType::mapping, .doc = "How potential cracks fail."},
+        {.path = "cracks.criterion",
+         .type = KeyType::choice,
+         .choices = {"principal_stress", "interface_traction"},
+         .fallback = "principal_stress",
+         .doc = "Compared with the strength: the mean stress of the two adjacent blocks, or the interface's own "
+                "traction. They are not interchangeable."},
+        {.path = "cracks.update",
+         .type = KeyType::choice,
+         .choices = {"event", "critical_first", "all", "single"},
+         .fallback = "event",
+         .doc = "`event` cuts the step where the first potential crack fails. At the end of a step, again and again, "
+                "`all` fails those with f >= 1, `critical_first` those with f >= 0.95 f_max, `single` the worst one."},
+        {.path = "cracks.every",
+         .type = KeyType::integer,
+         .range = positive_integer,
+         .fallback = "1",
+         .doc = "Load steps between two checks."},
+        {.path = "cracks.event_tolerance",
+         .type = KeyType::number,
+         .range = between_zero_and_one,
+         .fallback = "0.02",
+         .doc = "Of f at an event: 1e-3 is accurate, 2e-2 costs half."},
+        {.path = "solver", .type = KeyType::mapping, .doc = "How equilibrium is found."},
+        {.path = "solver.tolerance",
+         .type = KeyType::number,
+         .range = between_zero_and_one,
+         .fallback = "1e-5",
+         .doc = "Largest residual force, relative to the reference force of contacts and loads."},
+        {.path = "solver.balance",
+         .type = KeyType::number,
+         .range = between_zero_and_one,
+         .fallback = "1e-3",
+         .doc = "Largest share of the mass-like term in the reference force of a balanced step."},
+        {.path = "solver.viscosity",
+         .type = KeyType::number,
+         .range = not_negative,
+         .fallback = "0.05",
+         .doc = "Size of the mass-like term, eta H^2/E with the body's height H and modulus E."},
+        {.path = "solver.max_iterations",
+         .type = KeyType::integer,
+         .range = positive_integer,
+         .fallback = "20",
+         .doc = "Open-close iterations per attempt."},
+        {.path = "solver.max_cuts",
+         .type = KeyType::integer,
+         .range = natural,
+         .fallback = "2",
+         .doc = "Halvings of a step before relaxation."},
+        {.path = "solver.max_unbalanced_steps",
+         .type = KeyType::integer,
+         .range = positive_integer,
+         .fallback = "10",
+         .doc = "Successive unbalanced steps that end a run."},
+        {.path = "solver.tangent",
+         .type = KeyType::choice,
+         .choices = {"unsymmetric", "symmetric"},
+         .fallback = "unsymmetric",
+         .doc = "The exact tangent, or its symmetric part (more iterations, cheaper each)."},
+        {.path = "solver.repeatable",
+         .type = KeyType::boolean,
+         .fallback = "false",
+         .doc = "Bit-identical runs for any number of threads."},
+        {.path = "output", .type = KeyType::mapping, .doc = "What a run writes beside its tables."},
+        {.path = "output.fields",
+         .type = KeyType::boolean,
+         .fallback = "true",
+         .doc = "Write `fields.pvd` and `fields/*.vtu` for ParaView."},
+        {.path = "output.fields_every",
+         .type = KeyType::integer,
+         .range = natural,
+         .fallback = "0",
+         .doc = "Load steps between two field files; 0: the first and the last state of each stage."},
+        {.path = "output.pictures",
+         .type = KeyType::boolean,
+         .fallback = "true",
+         .doc = "Write `curve` and `blocks` as `.png` and `.svg`."},
+        {.path = "output.checkpoint_every",
+         .type = KeyType::integer,
+         .range = natural,
+         .fallback = "0",
+         .doc = "Load steps between two states saved; 0: at the end of each stage."},
+    };
+}
+
+std::vector<KeyRule> all_rules() {
+    std::vector<KeyRule> rules{
+        {.path = "kluft",
+         .type = KeyType::integer,
+         .range = {.least = 1.0, .most = 1.0},
+         .required = true,
+         .doc = "Version of the scene format."},
+        {.path = "title", .type = KeyType::text, .fallback_note = "none", .doc = "One line for plots and logs."},
+        {.path = "extends",
+         .type = KeyType::text,
+         .fallback_note = "none",
+         .doc = "Another scene, relative to this file, that this one changes."},
+    };
+    for (const auto& part : {analysis_rules(), material_rules(), interface_rules(), domain_rules(), cut_rules(),
+                             loading_rules(), option_rules()})
+        rules.insert(rules.end(), part.begin(), part.end());
+    return rules;
+}
+
+std::string join(std::string_view pattern, std::string_view key) {
+    return pattern.empty() ? std::string(key) : fmt::format("{}.{}", pattern, key);
+}
+
+std::string number_text(double value) { return fmt::format("{:.15g}", value); }
+
+/// " > 0", " >= 0 and < 0.5", " from -0.5 to 0.5", "".
+std::string range_text(const Range& range, bool whole) {
+    const bool below = std::isfinite(range.least);
+    const bool above = std::isfinite(range.most) && !(whole && range.most >= 2147483647.0);
+    if (below && above && range.least == range.most) return " equal to " + number_text(range.least);
+    if (below && above && !range.open_below && !range.open_above)
+        return fmt::format(" from {} to {}", number_text(range.least), number_text(range.most));
+    std::string text;
+    if (below) text += (range.open_below ? " > " : " >= ") + number_text(range.least);
+    if (below && above) text += " and";
+    if (above) text += (range.open_above ? " < " : " <= ") + number_text(range.most);
+    return text;
+}
+
+std::string unit_text(Measure measure) {
+    return measure == Measure::fraction ? std::string{} : fmt::format(" in {}", unit_name(measure));
+}
+
+bool inside(double value, double least, double most, const Range& range) {
+    return (range.open_below ? value > least : value >= least) && (range.open_above ? value < most : value <= most);
+}
+
+/// What is wrong with one number of a key; "" if nothing.
+std::string number_problem(const SceneNode& node, const KeyRule& rule) {
+    if (!node.is_scalar()) return found_text(node);
+    if (node.quoted && read_number(node.text)) return found_text(node) + ", which is text";
+    const QuantityReading reading = read_quantity(node.text, rule.measure);
+    if (!reading.value) return found_text(node) + reading.problem;
+    const double least = si_value(rule.range.least, rule.measure);
+    const double most = si_value(rule.range.most, rule.measure);
+    return inside(*reading.value, least, most, rule.range) ? std::string{} : found_text(node);
+}
+
+std::string integer_problem(const SceneNode& node, const KeyRule& rule) {
+    if (!node.is_scalar() || node.quoted) return found_text(node);
+    const auto value = read_integer(node.text);
+    if (!value) return found_text(node) + read_quantity(node.text, Measure::fraction).problem;
+    return inside(static_cast<double>(*value), rule.range.least, rule.range.most, rule.range) ? std::string{}
+                                                                                              : found_text(node);
+}
+
+bool is_name(std::string_view text) {
+    return !text.empty() && text.size() <= 64 && std::all_of(text.begin(), text.end(), [](char c) {
+        const auto u = static_cast<unsigned char>(c);
+        return (u >= 'a' && u <= 'z') || (u >= 'A' && u <= 'Z') || (u >= '0' && u <= '9') || u == '_' || u == '-' ||
+               u >= 0x80;
+    });
+}
+
+/// Walks a scene along the table.
+class SchemaCheck {
+public:
+    explicit SchemaCheck(SceneErrors& errors) : errors_(errors) {}
+
+    void check(const SceneNode& node, const KeyRule& rule, const std::string& path) {
+        switch (rule.type) {
+        case KeyType::mapping:
+            check_mapping(node, rule.path, path, expected_text(rule));
+            break;
+        case KeyType::named:
+            check_named(node, rule, path);
+            break;
+        case KeyType::list:
+            check_list(node, rule, path);
+            break;
+        case KeyType::point:
+            check_point(node, rule, path, expected_text(rule));
+            break;
+        case KeyType::points:
+            check_points(node, rule, path);
+            break;
+        case KeyType::integers:
+            check_integers(node, rule, path);
+            break;
+        case KeyType::gravity:
+            check_gravity(node, rule, path);
+            break;
+        default:
+            check_scalar(node, rule, path);
+            break;
+        }
+    }
+
+    void check_mapping(const SceneNode& node, std::string_view pattern, const std::string& path,
+                       const std::string& expected) {
+        if (!node.is_mapping()) return fail(node, path, expected, found_text(node));
+        const auto valid = child_keys(pattern);
+        std::vector<std::string> meant;
+        for (std::size_t i = 0; i < node.keys.size(); ++i) {
+            const std::string& key = node.keys[i].text;
+            if (const KeyRule* rule = find_rule(join(pattern, key)); rule != nullptr && is_key(key)) {
+                check(node.items[i], *rule, joined_path(path, key));
+                continue;
+            }
+            std::vector<std::string> unused;
+            std::copy_if(valid.begin(), valid.end(), std::back_inserter(unused),
+                         [&](const std::string& name) { return node.find(name) == nullptr; });
+            const std::string near = nearest_name(key, unused);
+            meant.push_back(near);
+            errors_.add(node.keys[i].at, joined_path(path, key),
+                        fmt::format("expected one of {}, found {}{}", listed(valid), in_quotes(key),
+                                    near.empty() ? suggestion(key, valid) : suggestion(key, {near})));
+        }
+        for (const auto& key : valid) {
+            const KeyRule* rule = find_rule(join(pattern, key));
+            if (!rule->required || node.find(key) != nullptr) continue;
+            if (std::find(meant.begin(), meant.end(), key) != meant.end()) continue;
+            fail(node, joined_path(path, key), expected_text(*rule), "nothing");
+        }
+    }
+
+private:
+    void fail(const SceneNode& node, const std::string& path, const std::string& expected, const std::string& found) {
+        errors_.add(node.at, path, fmt::format("expected {}, found {}", expected, found));
+    }
+
+    /// '*' and '#' are patterns, no keys.
+    static bool is_key(std::string_view key) { return key.find_first_of("*#.") == std::string_view::npos; }
+
+    void check_named(const SceneNode& node, const KeyRule& rule, const std::string& path) {
+        if (!node.is_mapping()) return fail(node, path, expected_text(rule), found_text(node));
+        if (static_cast<int>(node.items.size()) < rule.least_items) fail(node, path, expected_text(rule), "none");
+        const KeyRule* item = find_rule(join(rule.path, "*"));
+        for (std::size_t i = 0; i < node.keys.size(); ++i) {
+            const std::string& name = node.keys[i].text;
+            if (!is_name(name))
+                errors_.add(node.keys[i].at, joined_path(path, name),
+                            fmt::format("expected a name of letters, digits, '_' and '-', found {}", in_quotes(name)));
+            check(node.items[i], *item, joined_path(path, name));
+        }
+    }
+
+    void check_list(const SceneNode& node, const KeyRule& rule, const std::string& path) {
+        if (!node.is_list()) return fail(node, path, expected_text(rule), found_text(node));
+        if (static_cast<int>(node.items.size()) < rule.least_items)
+            fail(node, path, expected_text(rule), "an empty list");
+        const KeyRule* item = find_rule(join(rule.path, "#"));
+        for (std::size_t i = 0; i < node.items.size(); ++i)
+            check(node.items[i], *item, joined_path(path, std::to_string(i)));
+    }
+
+    void check_point(const SceneNode& node, const KeyRule& rule, const std::string& path, const std::string& expected) {
+        if (!node.is_list() || node.items.size() != 2) return fail(node, path, expected, found_text(node));
+        for (std::size_t i = 0; i < 2; ++i) {
+            const std::string problem = number_problem(node.items[i], rule);
+            if (!problem.empty())
+                fail(node.items[i], joined_path(path, std::to_string(i)), "a number" + unit_text(rule.measure),
+                     problem);
+        }
+    }
+
+    void check_points(const SceneNode& node, const KeyRule& rule, const std::string& path) {
+        const bool enough = node.is_list() && static_cast<int>(node.items.size()) >= rule.least_items;
+        if (!enough) return fail(node, path, expected_text(rule), found_text(node));
+        for (std::size_t i = 0; i < node.items.size(); ++i)
+            check_point(node.items[i], rule, joined_path(path, std::to_string(i)),
+                        fmt::format("a point [x, y]{}", unit_text(rule.measure)));
+    }
+
+    void check_integers(const SceneNode& node, const KeyRule& rule, const std::string& path) {
+        const bool enough = node.is_list() && static_cast<int>(node.items.size()) >= rule.least_items;
+        if (!enough) return fail(node, path, expected_text(rule), found_text(node));
+        for (std::size_t i = 0; i < node.items.size(); ++i) {
+            const std::string problem = integer_problem(node.items[i], rule);
+            if (!problem.empty())
+                fail(node.items[i], joined_path(path, std::to_string(i)), "an integer" + range_text(rule.range, true),
+                     problem);
+        }
+    }
+
+    void check_gravity(const SceneNode& node, const KeyRule& rule, const std::string& path) {
+        if (node.is_list()) return check_point(node, rule, path, expected_text(rule));
+        KeyRule downwards = rule;
+        downwards.range = not_negative;
+        const std::string problem = number_problem(node, downwards);
+        if (!problem.empty()) fail(node, path, expected_text(rule), problem);
+    }
+
+    void check_scalar(const SceneNode& node, const KeyRule& rule, const std::string& path) {
+        const std::string problem = scalar_problem(node, rule);
+        if (!problem.empty()) fail(node, path, expected_text(rule), problem);
+    }
+
+    SceneErrors& errors_;
+};
+
+} // namespace
+
+const std::vector<KeyRule>& scene_schema() {
+    static const std::vector<KeyRule> rules = all_rules();
+    return rules;
+}
+
+const KeyRule* find_rule(std::string_view pattern) {
+    static const auto index = [] {
+        std::map<std::string_view, const KeyRule*> rules;
+        for (const auto& rule : scene_schema()) rules.emplace(rule.path, &rule);
+        return rules;
+    }();
+    const auto found = index.find(pattern);
+    return found == index.end() ? nullptr : found->second;
+}
+
+std::string child_pattern(std::string_view pattern, std::string_view key) {
+    for (const std::string_view name : {key, std::string_view("*"), std::string_view("#")}) {
+        std::string child = join(pattern, name);
+        if (find_rule(child) != nullptr) return child;
+    }
+    return {};
+}
+
+std::vector<std::string> child_keys(std::string_view pattern) {
+    std::vector<std::string> keys;
+    const std::string prefix = pattern.empty() ? std::string{} : std::string(pattern) + ".";
+    for (const auto& rule : scene_schema()) {
+        if (!rule.path.starts_with(prefix)) continue;
+        const std::string_view rest = rule.path.substr(prefix.size());
+        if (rest.find('.') == std::string_view::npos) keys.emplace_back(rest);
+    }
+    return keys;
+}
+
+std::string expected_text(const KeyRule& rule) {
+    const std::string unit = unit_text(rule.measure);
+    switch (rule.type) {
+    case KeyType::mapping:
+        return fmt::format("a mapping of {}", listed(child_keys(rule.path)));
+    case KeyType::named:
+        return rule.least_items > 0 ? "a mapping of names, at least one" : "a mapping of names";
+    case KeyType::list:
+        return rule.least_items > 0 ? "a list of at least one" : "a list";
+    case KeyType::number:
+        return "a number" + range_text(rule.range, false) + unit;
+    case KeyType::integer:
+        return "an integer" + range_text(rule.range, true);
+    case KeyType::boolean:
+        return "true or false";
+    case KeyType::text:
+        return "text";
+    case KeyType::choice:
+        return rule.choices.size() == 1 ? rule.choices[0] : "one of " + listed(rule.choices);
+    case KeyType::point:
+        return "a point [x, y]" + unit;
+    case KeyType::points:
+        return fmt::format("a list of at least {} points [x, y]{}", rule.least_items, unit);
+    case KeyType::integers:
+        return "a list of at least one integer" + range_text(rule.range, true);
+    case KeyType::gravity:
+        return "a number >= 0 (downwards) or [gx, gy]" + unit;
+    }
+    return {};
+}
+
+std::string found_text(const SceneNode& node) {
+    switch (node.kind) {
+    case SceneNode::Kind::nothing:
+        return "nothing";
+    case SceneNode::Kind::scalar:
+        return in_quotes(node.text);
+    case SceneNode::Kind::list:
+        return node.items.empty() ? "an empty list" : fmt::format("a list of {}", node.items.size());
+    case SceneNode::Kind::mapping:
+        return node.items.empty() ? "an empty mapping" : "a mapping";
+    }
+    return {};
+}
+
+std::string scalar_problem(const SceneNode& node, const KeyRule& rule) {
+    if (rule.type == KeyType::number) return number_problem(node, rule);
+    if (rule.type == KeyType::integer) return integer_problem(node, rule);
+    if (!node.is_scalar()) return found_text(node);
+    if (rule.type == KeyType::boolean)
+        return !node.quoted && (node.text == "true" || node.text == "false") ? std::string{} : found_text(node);
+    if (rule.type == KeyType::choice) {
+        if (std::find(rule.choices.begin(), rule.choices.end(), node.text) != rule.choices.end()) return {};
+        const bool reserved =
+            std::find(rule.unavailable.begin(), rule.unavailable.end(), node.text) != rule.unavailable.end();
+        if (reserved) return found_text(node) + ", which is not available in this version";
+        return found_text(node) + suggestion(node.text, rule.choices);
+    }
+    return node.text.empty() ? found_text(node) : std::string{};
+}
+
+void check_against_schema(const SceneNode& root, SceneErrors& errors) {
+    SchemaCheck(errors).check_mapping(root, {}, {}, "a mapping that begins with kluft: 1");
+}
+
+} // namespace kluft

@@ -1,0 +1,288 @@
+#include "kluft/scene/scene_tree.hpp"
+
+#include <algorithm>
+#include <set>
+#include <sstream>
+#include <utility>
+
+#include <fmt/format.h>
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/exceptions.h>
+#include <yaml-cpp/parser.h>
+
+#include "kluft/core/diagnostics.hpp"
+
+namespace kluft {
+
+namespace {
+
+constexpr std::size_t widest_line = 160;
+constexpr std::size_t longest_quote = 60;
+constexpr std::size_t most_messages = 1000;
+constexpr int deepest_level = 32;
+
+bool continues_character(char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; }
+
+/// Control characters could move the cursor or colour the terminal.
+std::string printable(std::string_view text) {
+    std::string result(text);
+    for (char& c : result)
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = c == '\t' ? ' ' : '?';
+    return result;
+}
+
+/// text[from, from + length), both ends moved to whole UTF-8 characters.
+std::string_view window(std::string_view text, std::size_t from, std::size_t length) {
+    while (from > 0 && from < text.size() && continues_character(text[from])) --from;
+    std::size_t end = std::min(text.size(), from + length);
+    while (end < text.size() && end > from && continues_character(text[end])) --end;
+    return text.substr(from, end - from);
+}
+
+/// Stops yaml-cpp in the middle of a document.
+struct TooDeep {};
+
+/// Builds the tree from yaml-cpp's events.
+class TreeBuilder : public YAML::EventHandler {
+public:
+    TreeBuilder(int source, const TextPosition& origin, std::string_view text, SceneErrors& errors)
+        : source_(source), origin_(origin), text_(text), errors_(errors) {}
+
+    SceneNode root;
+    int n_documents = 0;
+
+    void OnDocumentStart(const YAML::Mark& mark) override {
+        if (++n_documents == 2) errors_.add(position(mark), {}, "expected one document, found a second one");
+    }
+    void OnDocumentEnd() override {}
+
+    void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+        refuse_anchor(mark, anchor);
+        SceneNode node = node_at(mark, SceneNode::Kind::nothing);
+        const auto at = static_cast<std::size_t>(std::max(mark.pos, 0));
+        node.removes = at < text_.size() && (text_[at] == '~' || (text_[at] | 0x20) == 'n');
+        insert(std::move(node));
+    }
+    void OnAlias(const YAML::Mark& mark, YAML::anchor_t /*anchor*/) override {
+        errors_.add(position(mark), {}, "expected a value, found an alias (*name), which scenes do not have");
+        insert(node_at(mark, SceneNode::Kind::nothing));
+    }
+    void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                  const std::string& value) override {
+        refuse_anchor(mark, anchor);
+        refuse_tag(mark, tag);
+        SceneNode node = node_at(mark, SceneNode::Kind::scalar);
+        node.text = value;
+        node.quoted = tag == "!";
+        insert(std::move(node));
+    }
+    void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                         YAML::EmitterStyle::value /*style*/) override {
+        open(mark, tag, anchor, SceneNode::Kind::list);
+    }
+    void OnSequenceEnd() override { close(); }
+    void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                    YAML::EmitterStyle::value /*style*/) override {
+        open(mark, tag, anchor, SceneNode::Kind::mapping);
+    }
+    void OnMapEnd() override { close(); }
+
+private:
+    [[nodiscard]] TextPosition position(const YAML::Mark& mark) const {
+        const int line = std::max(mark.line, 0);
+        const int column = std::max(mark.column, 0);
+        return {source_, origin_.line + line, line == 0 ? origin_.column + column : column + 1};
+    }
+    [[nodiscard]] SceneNode node_at(const YAML::Mark& mark, SceneNode::Kind kind) const {
+        SceneNode node;
+        node.kind = kind;
+        node.at = position(mark);
+        return node;
+    }
+    void refuse_anchor(const YAML::Mark& mark, YAML::anchor_t anchor) {
+        if (anchor != 0)
+            errors_.add(position(mark), {}, "expected a value, found an anchor (&name), which scenes do not have");
+    }
+    void refuse_tag(const YAML::Mark& mark, const std::string& tag) {
+        if (!tag.empty() && tag != "?" && tag != "!")
+            errors_.add(position(mark), {},
+                        fmt::format("expected a value, found the tag {}, which scenes do not have", in_quotes(tag)));
+    }
+    void open(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, SceneNode::Kind kind) {
+        refuse_anchor(mark, anchor);
+        refuse_tag(mark, tag);
+        if (static_cast<int>(open_.size()) >= deepest_level) {
+            errors_.add(position(mark), {}, fmt::format("expected at most {} levels of nesting", deepest_level));
+            throw TooDeep{};
+        }
+        open_.push_back(node_at(mark, kind));
+    }
+    void close() {
+        SceneNode node = std::move(open_.back());
+        open_.pop_back();
+        if (node.keys.size() > node.items.size()) node.keys.resize(node.items.size());
+        insert(std::move(node));
+    }
+    /// Hands a complete node to the container in progress: as a key where a mapping waits for one.
+    void insert(SceneNode node) {
+        if (open_.empty()) {
+            if (n_documents == 1) root = std::move(node);
+            return;
+        }
+        SceneNode& parent = open_.back();
+        if (parent.is_mapping() && parent.keys.size() == parent.items.size()) {
+            if (!node.is_scalar()) errors_.add(node.at, {}, "expected a word as the key, found something else");
+            parent.keys.push_back({node.text, node.at});
+        } else {
+            parent.items.push_back(std::move(node));
+        }
+    }
+
+    int source_;
+    TextPosition origin_;
+    std::string_view text_;
+    SceneErrors& errors_;
+    std::vector<SceneNode> open_;
+};
+
+/// yaml-cpp keeps both entries of a duplicate key; the first one stays.
+void remove_duplicates(SceneNode& node, const std::string& path, SceneErrors& errors) {
+    std::set<std::string, std::less<>> seen;
+    for (std::size_t i = 0; i < node.items.size();) {
+        const std::string name = node.is_mapping() ? node.keys[i].text : std::to_string(i);
+        if (node.is_mapping() && !seen.insert(name).second) {
+            errors.add(node.keys[i].at, joined_path(path, name),
+                       fmt::format("expected each key once, found {} again", in_quotes(name)));
+            node.keys.erase(node.keys.begin() + static_cast<std::ptrdiff_t>(i));
+            node.items.erase(node.items.begin() + static_cast<std::ptrdiff_t>(i));
+            continue;
+        }
+        remove_duplicates(node.items[i], joined_path(path, name), errors);
+        ++i;
+    }
+}
+
+std::vector<std::string> split_lines(std::string_view text) {
+    std::vector<std::string> lines;
+    while (!text.empty()) {
+        const std::size_t end = text.find('\n');
+        lines.emplace_back(text.substr(0, end));
+        if (end == std::string_view::npos) break;
+        text.remove_prefix(end + 1);
+    }
+    return lines;
+}
+
+} // namespace
+
+const SceneNode* SceneNode::find(std::string_view key) const {
+    const auto found = std::find_if(keys.begin(), keys.end(), [&](const SceneKey& k) { return k.text == key; });
+    return found == keys.end() ? nullptr : &items[static_cast<std::size_t>(found - keys.begin())];
+}
+
+SceneNode* SceneNode::find(std::string_view key) { return const_cast<SceneNode*>(std::as_const(*this).find(key)); }
+
+int SceneSources::add_file(const std::filesystem::path& file, std::string_view text) {
+    sources_.push_back({printable(file.string()), split_lines(text)});
+    return static_cast<int>(sources_.size()) - 1;
+}
+
+int SceneSources::add_override(const std::string& assignment) {
+    sources_.push_back({"--set " + printable(window(assignment, 0, widest_line)), {}});
+    return static_cast<int>(sources_.size()) - 1;
+}
+
+std::string SceneSources::place(const TextPosition& at) const {
+    const Source& source = sources_.at(at.source);
+    return source.lines.empty() ? source.name : fmt::format("{}:{}:{}", source.name, at.line, at.column);
+}
+
+std::string SceneSources::line(const TextPosition& at) const {
+    const auto& lines = sources_.at(at.source).lines;
+    if (at.line < 1 || at.line > static_cast<int>(lines.size())) return {};
+    std::string_view text = lines[at.line - 1];
+    while (!text.empty() && (text.back() == '\r' || text.back() == ' ')) text.remove_suffix(1);
+    if (text.size() <= widest_line) return printable(text);
+    const auto column = static_cast<std::size_t>(std::max(at.column - 1, 0));
+    const std::size_t from = column < widest_line / 2 ? 0 : std::min(column - widest_line / 2, text.size());
+    return (from > 0 ? "..." : "") + printable(window(text, from, widest_line)) + "...";
+}
+
+void SceneErrors::add(const TextPosition& at, const std::string& path, const std::string& what) {
+    std::string message = sources_.place(at) + ": ";
+    if (!path.empty()) message += printable(path) + ": ";
+    message += what;
+    const std::string line = sources_.line(at);
+    if (!line.empty()) message += "\n  " + line;
+    errors_.push_back({at, std::move(message)});
+}
+
+void SceneErrors::throw_if_any() const {
+    if (errors_.empty()) return;
+    std::vector<Error> sorted = errors_;
+    std::stable_sort(sorted.begin(), sorted.end(), [](const Error& a, const Error& b) {
+        return std::tie(a.at.source, a.at.line, a.at.column) < std::tie(b.at.source, b.at.line, b.at.column);
+    });
+    std::vector<std::string> messages;
+    for (auto& error : sorted) {
+        if (messages.size() == most_messages) {
+            messages.push_back(fmt::format("and {} more", sorted.size() - most_messages));
+            break;
+        }
+        messages.push_back(std::move(error.message));
+    }
+    throw InputError(std::move(messages));
+}
+
+std::string in_quotes(std::string_view text) {
+    const bool whole = text.size() <= longest_quote;
+    return "'" + printable(whole ? text : window(text, 0, longest_quote)) + (whole ? "'" : "...'");
+}
+
+std::string joined_path(const std::string& path, std::string_view key) {
+    return path.empty() ? std::string(key) : path + "." + std::string(key);
+}
+
+SceneNode parse_scene_tree(std::string_view text, int source, const TextPosition& origin, SceneErrors& errors) {
+    std::istringstream stream{std::string(text)};
+    TreeBuilder builder(source, origin, text, errors);
+    try {
+        YAML::Parser parser(stream);
+        while (builder.n_documents < 2 && parser.HandleNextDocument(builder)) {
+        }
+    } catch (const YAML::Exception& error) {
+        const TextPosition at{source, origin.line + std::max(error.mark.line, 0),
+                              std::max(error.mark.column, 0) + (error.mark.line > 0 ? 1 : origin.column)};
+        errors.add(at, {}, "expected YAML, found what is none: " + error.msg);
+        return {};
+    } catch (const TooDeep&) {
+        return {};
+    }
+    remove_duplicates(builder.root, {}, errors);
+    return std::move(builder.root);
+}
+
+void merge_scene_trees(SceneNode& base, SceneNode over) {
+    if (!base.is_mapping() || !over.is_mapping()) {
+        base = std::move(over);
+        return;
+    }
+    base.at = over.at;
+    for (std::size_t i = 0; i < over.keys.size(); ++i) {
+        const auto& key = over.keys[i];
+        SceneNode* existing = base.find(key.text);
+        if (existing == nullptr) {
+            base.keys.push_back(key);
+            base.items.push_back(std::move(over.items[i]));
+        } else if (over.items[i].removes) {
+            const auto index = existing - base.items.data();
+            base.keys.erase(base.keys.begin() + index);
+            base.items.erase(base.items.begin() + index);
+        } else {
+            base.keys[static_cast<std::size_t>(existing - base.items.data())] = key;
+            merge_scene_trees(*existing, std::move(over.items[i]));
+        }
+    }
+}
+
+} // namespace kluft

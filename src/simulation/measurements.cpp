@@ -1,0 +1,204 @@
+#include "kluft/simulation/measurements.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kluft/kinematics/affine.hpp"
+#include "kluft/simulation/stage_loads.hpp"
+
+namespace kluft {
+
+namespace {
+
+int uppermost_boundary(const BlockSystem& system) {
+    int best = -1;
+    double most_upward = 0.5;
+    for (int i = 0; i < static_cast<int>(system.boundaries.size()); ++i) {
+        const double up = boundary_frame(system, i).normal.y();
+        if (up > most_upward) {
+            most_upward = up;
+            best = i;
+        }
+    }
+    return best;
+}
+
+/// Severity of a state, to name an interface by its worst point.
+int severity(ContactState state) {
+    if (state == ContactState::open) return 0;
+    return state == ContactState::locked ? 1 : 2;
+}
+
+struct PairOfEdges {
+    int block_a, edge_a, block_b, edge_b;
+    bool operator==(const PairOfEdges&) const = default;
+};
+
+PairOfEdges edges_of(const ContactKey& key) { return {key.block_a, key.edge_a, key.block_b, key.edge_b}; }
+
+} // namespace
+
+Gauges make_gauges(const Model& model) {
+    const BlockSystem& system = model.system;
+    Gauges gauges;
+    for (std::size_t s = 0; s < model.loads.stages.size(); ++s) {
+        const auto& motion = model.loads.stages[s].motion;
+        if (!motion) continue;
+        gauges.moved = motion->boundary;
+        gauges.first_platen_stage = static_cast<int>(s);
+        break;
+    }
+    if (gauges.moved < 0) gauges.moved = uppermost_boundary(system);
+    if (gauges.moved < 0) return gauges;
+    gauges.axial_normal = boundary_frame(system, gauges.moved).normal;
+    gauges.lateral_normal = {gauges.axial_normal.y(), -gauges.axial_normal.x()};
+    gauges.opposite = opposite_boundary(system, gauges.moved);
+    const Vec2 base = gauges.opposite >= 0 ? mean_position(system, gauges.opposite) : system.lower;
+    gauges.length = std::abs(gauges.axial_normal.dot(mean_position(system, gauges.moved) - base));
+    for (const double side : {1.0, -1.0}) {
+        int best = -1;
+        double most_lateral = 0.7;
+        for (int i = 0; i < static_cast<int>(system.boundaries.size()); ++i) {
+            const double cosine = side * gauges.lateral_normal.dot(boundary_frame(system, i).normal);
+            if (cosine > most_lateral) {
+                most_lateral = cosine;
+                best = i;
+            }
+        }
+        if (best >= 0) gauges.lateral.push_back(best);
+    }
+    gauges.width = boundary_frame(system, gauges.moved).length;
+    if (gauges.lateral.size() == 2) {
+        gauges.width = std::abs(gauges.lateral_normal.dot(mean_position(system, gauges.lateral[0]) -
+                                                          mean_position(system, gauges.lateral[1])));
+    } else {
+        gauges.lateral.clear();
+    }
+    return gauges;
+}
+
+Strains measure_strains(const Model& model, const Gauges& gauges, const Eigen::VectorXd& q,
+                        const Eigen::VectorXd& reference) {
+    Strains strains;
+    if (gauges.moved < 0) return strains;
+    const Eigen::VectorXd change = reference.size() == q.size() ? Eigen::VectorXd(q - reference) : q;
+    const auto closure = [&](int a, int b, const Vec2& normal) {
+        double shortening = -normal.dot(mean_displacement(model.system, change, a));
+        if (b >= 0) shortening += normal.dot(mean_displacement(model.system, change, b));
+        return shortening;
+    };
+    strains.axial = closure(gauges.moved, gauges.opposite, gauges.axial_normal) / gauges.length;
+    if (gauges.lateral.size() == 2) {
+        strains.lateral = closure(gauges.lateral[0], gauges.lateral[1], gauges.lateral_normal) / gauges.width;
+    }
+    return strains;
+}
+
+double boundary_stress(const EquilibriumProblem& problem, const Eigen::VectorXd& residual, int boundary, bool held,
+                       double current_length, const Vec2& normal) {
+    if (!held) return problem.pressures[boundary];
+    return -normal.dot(problem.constraints.reaction(residual, boundary)) / current_length;
+}
+
+ContactCounts count_contacts(const Model& model, const State& state, const EquilibriumProblem& problem,
+                             const Eigen::VectorXd& q) {
+    ContactCounts counts;
+    const auto add = [&](ContactState worst) {
+        ++(worst == ContactState::open ? counts.open : worst == ContactState::sliding ? counts.sliding : counts.locked);
+    };
+    std::vector<char> seen(model.system.interfaces.size(), 0);
+    for (int first = 0; first < static_cast<int>(problem.contacts.size());) {
+        int last = first;
+        ContactState worst = ContactState::open;
+        const ContactPoint& head = problem.contacts[first];
+        while (last < static_cast<int>(problem.contacts.size()) &&
+               edges_of(problem.contacts[last].key) == edges_of(head.key)) {
+            const ContactState s = contact_traction(problem, last, q).state;
+            if (severity(s) > severity(worst)) worst = s;
+            ++last;
+        }
+        if (head.interface >= 0) {
+            seen[head.interface] = 1;
+            add(worst);
+        } else if (worst != ContactState::open) {
+            add(worst);
+        }
+        first = last;
+    }
+    for (int i = 0; i < model.system.n_interfaces(); ++i) {
+        if (state.interfaces[i] == InterfaceStatus::potential_crack) {
+            ++counts.locked;
+        } else if (!seen[i]) {
+            ++counts.open;
+        }
+    }
+    return counts;
+}
+
+std::vector<InterfaceTraction> bond_tractions(const Model& model, const EquilibriumProblem& problem,
+                                              const Eigen::VectorXd& q) {
+    std::vector<InterfaceTraction> tractions(model.system.interfaces.size());
+    for (int i = 0; i < static_cast<int>(problem.bonds.size()); ++i) {
+        const auto traction = bond_traction(problem, i, q);
+        tractions[problem.bonds[i].interface].normal += 0.5 * traction.normal;
+        tractions[problem.bonds[i].interface].shear += 0.5 * traction.shear;
+    }
+    return tractions;
+}
+
+FieldRecord field_record(const Model& model, const State& state, const EquilibriumProblem& problem) {
+    const BlockSystem& system = model.system;
+    const Eigen::VectorXd& q = state.displacement;
+    FieldRecord fields;
+    fields.stress = block_stresses(system, model.moduli, q);
+    for (int b = 0; b < system.n_blocks(); ++b) {
+        for (const Edge& edge : system.blocks[b].edges) {
+            const Vec2 xi = block_coordinates(system.blocks[b], edge_start(system, edge));
+            fields.displacement.push_back(displacement_at(q, b, xi));
+        }
+    }
+    fields.interfaces.resize(system.interfaces.size());
+    for (int i = 0; i < system.n_interfaces(); ++i) {
+        const Interface& interface = system.interfaces[i];
+        const Edge& edge = system.blocks[interface.block_a].edges[interface.edge_a];
+        auto& record = fields.interfaces[i];
+        record.bonded = state.interfaces[i] == InterfaceStatus::potential_crack;
+        record.broken = state.interfaces[i] == InterfaceStatus::tension_crack ||
+                        state.interfaces[i] == InterfaceStatus::shear_crack;
+        record.mode = state.interfaces[i] == InterfaceStatus::shear_crack ? CrackMode::shear : CrackMode::tension;
+        record.state = record.bonded ? ContactState::locked : ContactState::open;
+        const Vec2 middle = 0.5 * (edge_start(system, edge) + edge_end(system, edge));
+        const auto moved = [&](int b) { return displacement_at(q, b, block_coordinates(system.blocks[b], middle)); };
+        const Vec2 relative = moved(interface.block_b) - moved(interface.block_a);
+        const Vec2 along = (current_position(system, q, interface.block_a, edge.end) -
+                            current_position(system, q, interface.block_a, edge.start))
+                               .normalized();
+        record.gap = right_normal(along).dot(relative);
+        record.slip = along.dot(relative);
+    }
+    const auto bonds = bond_tractions(model, problem, q);
+    for (int i = 0; i < system.n_interfaces(); ++i) {
+        if (!fields.interfaces[i].bonded) continue;
+        fields.interfaces[i].normal_traction = bonds[i].normal;
+        fields.interfaces[i].shear_traction = bonds[i].shear;
+    }
+    std::vector<double> lengths(system.interfaces.size(), 0.0);
+    for (int i = 0; i < static_cast<int>(problem.contacts.size()); ++i) {
+        const ContactPoint& point = problem.contacts[i];
+        if (point.interface < 0) continue;
+        const auto traction = contact_traction(problem, i, q);
+        auto& record = fields.interfaces[point.interface];
+        if (severity(traction.state) > severity(record.state)) record.state = traction.state;
+        record.normal_traction += point.weight * traction.normal;
+        record.shear_traction += point.weight * traction.shear;
+        lengths[point.interface] += point.weight;
+    }
+    for (int i = 0; i < system.n_interfaces(); ++i) {
+        if (lengths[i] == 0.0) continue;
+        fields.interfaces[i].normal_traction /= lengths[i];
+        fields.interfaces[i].shear_traction /= lengths[i];
+    }
+    return fields;
+}
+
+} // namespace kluft

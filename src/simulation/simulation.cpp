@@ -1,0 +1,693 @@
+#include "kluft/simulation/simulation.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+#include <Eigen/Eigenvalues>
+#include <fmt/format.h>
+
+#include "kluft/contact/bonds.hpp"
+#include "kluft/contact/detection.hpp"
+#include "kluft/core/diagnostics.hpp"
+#include "kluft/equilibrium/open_close_solver.hpp"
+#include "kluft/fracture/crack_check.hpp"
+#include "kluft/kinematics/affine.hpp"
+#include "kluft/simulation/measurements.hpp"
+#include "kluft/simulation/stage_loads.hpp"
+
+namespace kluft {
+
+namespace {
+
+/// Largest opening at which a contact point is kept, relative to the lattice spacing. Twice this is less than the
+/// distance of hexagons that are not neighbours, so that an undeformed net has no pairs but its own.
+constexpr double contact_reach = 0.1;
+constexpr int max_balance_rounds = 12;
+constexpr double least_balance_progress = 0.7; ///< of the viscous share per round, else the body is moving
+constexpr double first_relaxation = 4.0;       ///< eta of a relaxation relative to the ordinary one
+constexpr double largest_relaxation = 1024.0;
+constexpr int max_relaxation_steps = 60;
+constexpr int max_event_trials = 12;
+constexpr double largest_useful_index = 10.0; ///< of f in the search for an event: a strength of zero gives infinity
+constexpr double critical_share = 0.95;       ///< of f_max in `critical_first`
+
+struct Interrupted {};
+struct NoEquilibrium {
+    int worst_block;
+    double residual_ratio;
+};
+
+using Clock = std::chrono::steady_clock;
+
+class Stopwatch {
+public:
+    explicit Stopwatch(double& total) : total_(total) {}
+    ~Stopwatch() { total_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
+    Stopwatch(const Stopwatch&) = delete;
+    Stopwatch& operator=(const Stopwatch&) = delete;
+
+private:
+    double& total_;
+    Clock::time_point start_ = Clock::now();
+};
+
+std::vector<char> bonded_interfaces(const State& state) {
+    std::vector<char> bonded(state.interfaces.size());
+    std::ranges::transform(state.interfaces, bonded.begin(),
+                           [](InterfaceStatus s) { return s == InterfaceStatus::potential_crack ? 1 : 0; });
+    return bonded;
+}
+
+/// True if the constraints stop every rigid motion of every group of bonded blocks.
+bool is_held(const BlockSystem& system, const std::vector<char>& bonded, const Constraints& constraints) {
+    std::vector<int> group(system.blocks.size());
+    std::iota(group.begin(), group.end(), 0);
+    const auto root = [&](int b) {
+        while (group[b] != b) b = group[b] = group[group[b]];
+        return b;
+    };
+    for (int i = 0; i < system.n_interfaces(); ++i) {
+        if (bonded[i]) group[root(system.interfaces[i].block_a)] = root(system.interfaces[i].block_b);
+    }
+    std::vector<Eigen::Matrix3d> grams(system.blocks.size(), Eigen::Matrix3d::Zero());
+    const Vec2 centre = 0.5 * (system.lower + system.upper);
+    const double size = (system.upper - system.lower).maxCoeff();
+    for (const auto& row : constraints.rows()) {
+        const Block& block = system.blocks[row.block];
+        const Vec2 arm = (block.centroid + block.size * row.xi - centre) / size;
+        const Eigen::Vector3d motion(row.direction.x(), row.direction.y(), cross(arm, row.direction));
+        grams[root(row.block)] += motion * motion.transpose();
+    }
+    for (int b = 0; b < system.n_blocks(); ++b) {
+        if (root(b) != b) continue;
+        const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(grams[b]);
+        if (eigen.eigenvalues()[0] <= 1e-9 * std::max(1e-300, eigen.eigenvalues()[2])) return false;
+    }
+    return true;
+}
+
+class Run {
+public:
+    Run(const Model& model, const CrackOptions& cracks, const SolverOptions& solver, State& state,
+        StepObserver& observer, const std::atomic<bool>& stop)
+        : model_(model), cracks_(cracks), options_(solver), accepted_(state), observer_(observer), stop_(stop),
+          work_(state), gauges_(make_gauges(model)), open_close_(linear_, open_close_options(solver)) {
+        surfaces_.law.reserve(model.system.interfaces.size());
+        for (const Interface& interface : model.system.interfaces) {
+            surfaces_.law.push_back(model.fracture_law[interface.interface_type]);
+        }
+        for (const InterfaceLaw& law : model.laws) surfaces_.friction.push_back(law.tan_friction);
+        const auto fracture = std::ranges::find(model.bonds, 0);
+        surfaces_.default_law = fracture != model.bonds.end() ? static_cast<int>(fracture - model.bonds.begin()) : 0;
+        for (const Stage& stage : model.loads.stages) n_steps_ += stage.steps;
+    }
+
+    RunReport run() {
+        try {
+            run_stages();
+        } catch (const Interrupted&) {
+            report_.status = RunStatus::interrupted;
+        } catch (const NoEquilibrium& failure) {
+            const auto& motion = model_.loads.stages[work_.stage].motion;
+            const bool by_stress = !motion || motion->control == PlatenControl::stress;
+            report_.status = by_stress && accepted_.step > 0 ? RunStatus::collapsed : RunStatus::no_equilibrium;
+            report_.diagnosis = diagnose(failure);
+        }
+        report_.linear = linear_.statistics();
+        report_.seconds.analysis = report_.linear.analyze_seconds;
+        report_.seconds.factorization = report_.linear.factorize_seconds;
+        report_.seconds.solution = report_.linear.solve_seconds;
+        report_.seconds.assembly = open_close_.assembly_seconds();
+        return report_;
+    }
+
+private:
+    struct Trial {
+        Eigen::VectorXd q;
+        OpenCloseSummary summary;
+        double viscous_share = 0.0;
+        bool balanced = false;
+        [[nodiscard]] bool converged() const { return summary.converged(); }
+    };
+
+    static OpenCloseOptions open_close_options(const SolverOptions& solver) {
+        OpenCloseOptions options;
+        options.tolerance = solver.tolerance;
+        options.max_iterations = solver.max_iterations;
+        options.tangent = solver.tangent == Tangent::unsymmetric ? TangentKind::exact : TangentKind::symmetric;
+        return options;
+    }
+
+    // ---- stages and load steps -------------------------------------------------------------------------------
+
+    void run_stages() {
+        const auto& stages = model_.loads.stages;
+        bool initial = work_.step == 0 && work_.stage == 0 && work_.step_in_stage == 0;
+        for (; work_.stage < static_cast<int>(stages.size()); next_stage()) {
+            const Stage& stage = stages[work_.stage];
+            begin_stage(stage);
+            if (initial) report_initial_state();
+            initial = false;
+            while (work_.step_in_stage < stage.steps) {
+                load_step(static_cast<double>(work_.step_in_stage + 1) / stage.steps,
+                          work_.step_in_stage + 1 == stage.steps);
+            }
+        }
+    }
+
+    void begin_stage(const Stage& stage) {
+        if (work_.step_in_stage == 0) {
+            work_.stage_start_displacement = work_.displacement;
+            if (stage.motion && !work_.reference_set) {
+                work_.reference_displacement = work_.displacement;
+                work_.reference_set = true;
+            }
+        }
+        State start;
+        start.displacement = work_.stage_start_displacement;
+        start.boundary_pressure = work_.boundary_pressure;
+        loads_.emplace(model_, start, stage);
+        last_increment_.resize(0);
+    }
+
+    void next_stage() {
+        const auto end = loads_->pressures(1.0);
+        for (std::size_t i = 0; i < end.size(); ++i) {
+            work_.boundary_pressure[i] = loads_->is_held(static_cast<int>(i)) ? stress_on(static_cast<int>(i)) : end[i];
+        }
+        ++work_.stage;
+        work_.step_in_stage = 0;
+        work_.load_factor = 0.0;
+        if (work_.stage < static_cast<int>(model_.loads.stages.size())) accepted_ = work_;
+    }
+
+    void report_initial_state() {
+        prepare();
+        set_load(0.0);
+        const StepRecord record = measure(work_.displacement, 0.0);
+        notify_step(record, false);
+    }
+
+    void load_step(double target, bool last_of_stage) {
+        iterations_at_start_ = report_.open_close_iterations;
+        passes_ = 0;
+        step_balanced_ = true;
+        worst_share_ = 0.0;
+        const Eigen::VectorXd before = work_.displacement;
+        const double factor_before = work_.load_factor;
+        const bool check =
+            model_.has_potential_cracks && ((work_.step + 1) % std::max(1, cracks_.every) == 0 || last_of_stage);
+        const bool smooth = advance(target, check);
+
+        work_.load_factor = target;
+        ++work_.step_in_stage;
+        ++work_.step;
+        work_.unbalanced_in_succession = step_balanced_ ? 0 : work_.unbalanced_in_succession + 1;
+        if (!step_balanced_) ++report_.unbalanced_steps;
+        if (smooth) {
+            last_increment_ = (work_.displacement - before) / (target - factor_before);
+        } else {
+            last_increment_.resize(0);
+        }
+        StepRecord record = last_record_;
+        record.step = work_.step;
+        record.load_factor = target;
+        record.open_close_iterations = report_.open_close_iterations - iterations_at_start_;
+        record.crack_passes = passes_;
+        record.balanced = step_balanced_;
+        record.unbalanced_ratio = worst_share_;
+        accepted_ = work_;
+        notify_step(record, last_of_stage);
+        if (work_.unbalanced_in_succession >= options_.max_unbalanced_steps) {
+            throw NoEquilibrium{last_worst_block_, record.unbalanced_ratio};
+        }
+    }
+
+    /// Brings the work state to the target load factor. True if nothing broke, was cut or relaxed on the way.
+    bool advance(double target, bool check) {
+        bool smooth = true;
+        int cuts = 0;
+        const double whole = target - work_.load_factor;
+        while (work_.load_factor < target) {
+            const double from = work_.load_factor;
+            const double part = whole / (1 << cuts);
+            const double to = from + 1.01 * part < target ? from + part : target;
+            prepare();
+            Trial trial = solve(to, predicted(to));
+            if (!trial.converged()) {
+                smooth = false;
+                if (cuts < options_.max_cuts) {
+                    ++cuts;
+                    ++report_.cuts;
+                    continue;
+                }
+                trial = relax(to);
+            } else if (!trial.balanced) {
+                smooth = false;
+                commit(trial, from);
+                trial = relax(to);
+            }
+            double reached = to;
+            if (check && cracks_.update == CrackUpdate::event && trial.balanced) {
+                reached = locate_event(from, to, trial);
+            }
+            smooth = smooth && reached == to;
+            commit(trial, reached);
+            record_equilibrium(trial);
+            if (check && (cracks_.update == CrackUpdate::event || reached >= target) && break_bonds(reached)) {
+                smooth = false;
+            }
+        }
+        return smooth;
+    }
+
+    // ---- one equilibrium -------------------------------------------------------------------------------------
+
+    /// Contacts and frames of the work state; what all trials from it share.
+    void prepare() {
+        problem_ = EquilibriumProblem{};
+        problem_.system = &model_.system;
+        problem_.moduli = &model_.moduli;
+        problem_.laws = &model_.laws;
+        surfaces_.bonded = bonded_interfaces(work_);
+        bool separated = false;
+        {
+            const Stopwatch watch(report_.seconds.set_up);
+            for (int i = 0; i < model_.system.n_interfaces(); ++i) {
+                if (surfaces_.bonded[i]) {
+                    append_bond_points(model_.system, i, work_.displacement, &work_.bond_shear[n_bond_points * i],
+                                       problem_.bonds);
+                } else {
+                    separated = true;
+                }
+            }
+        }
+        std::vector<std::pair<int, int>> near_pairs;
+        if (separated) {
+            const Stopwatch watch(report_.seconds.detection);
+            auto detected = detect_contacts(model_.system, surfaces_, work_.displacement,
+                                            contact_reach * model_.system.spacing, work_.contacts);
+            problem_.contacts = std::move(detected.points);
+            near_pairs = std::move(detected.near_pairs);
+            ++report_.detections;
+        }
+        require_pattern(near_pairs);
+        problem_.constraints = loads_->constraints();
+        problem_.pressure_edges = loads_->edges();
+        if (model_.gravity != Vec2::Zero()) problem_.densities = model_.densities;
+        problem_.start = work_.displacement;
+        problem_.least_mass_area = std::sqrt(0.75) * model_.system.spacing * model_.system.spacing;
+        const double height = (model_.system.upper - model_.system.lower).maxCoeff();
+        const bool needs_mass = separated || !is_held(model_.system, surfaces_.bonded, problem_.constraints);
+        problem_.eta = needs_mass ? options_.viscosity * model_.effective_modulus / (height * height) : 0.0;
+    }
+
+    /// The pattern must hold every pair that touches; a new one costs an analysis.
+    void require_pattern(const std::vector<std::pair<int, int>>& near_pairs) {
+        const bool complete = pattern_.n_blocks() == model_.system.n_blocks() &&
+                              std::ranges::all_of(problem_.contacts, [&](const ContactPoint& point) {
+                                  return pattern_.find(point.block_a, point.block_b) >= 0;
+                              });
+        if (complete) return;
+        std::vector<std::pair<int, int>> pairs = near_pairs;
+        for (const Interface& interface : model_.system.interfaces) {
+            pairs.emplace_back(interface.block_a, interface.block_b);
+        }
+        pattern_ = BlockPattern(model_.system.n_blocks(), pairs);
+        linear_.analyze(pattern_);
+    }
+
+    void set_load(double load_factor) {
+        problem_.pressures = loads_->pressures(load_factor);
+        loads_->set_targets(problem_.constraints, load_factor);
+        problem_.gravity = work_.stage == 0 ? Vec2(load_factor * model_.gravity) : model_.gravity;
+    }
+
+    [[nodiscard]] Eigen::VectorXd predicted(double load_factor) const {
+        if (last_increment_.size() == 0) return work_.displacement;
+        return work_.displacement + (load_factor - work_.load_factor) * last_increment_;
+    }
+
+    Trial solve(double load_factor, Eigen::VectorXd guess) {
+        if (stop_) throw Interrupted{};
+        set_load(load_factor);
+        problem_.start = work_.displacement;
+        Trial trial;
+        trial.q = std::move(guess);
+        trial.summary = open_close_.solve(problem_, pattern_, trial.q);
+        report_.open_close_iterations += trial.summary.iterations;
+        if (!trial.converged() && !problem_.contacts.empty()) {
+            ++report_.lagged_solves;
+            trial.q = work_.displacement;
+            trial.summary = open_close_.solve_lagged(problem_, pattern_, trial.q);
+            report_.open_close_iterations += trial.summary.iterations;
+        }
+        last_worst_block_ = trial.summary.worst_block;
+        if (trial.converged()) balance(trial);
+        notify_progress(load_factor);
+        return trial;
+    }
+
+    [[nodiscard]] double viscous_share(const Trial& trial) const {
+        const double force = viscous_force(problem_, trial.q);
+        return force > 0.0 ? force / std::max(trial.summary.force_scale, 1e-300) : 0.0;
+    }
+
+    /// The mass-like term must not change the answer: solve again from the result until its share is small.
+    void balance(Trial& trial) {
+        trial.viscous_share = viscous_share(trial);
+        for (int round = 0; round < max_balance_rounds && trial.viscous_share > options_.balance; ++round) {
+            problem_.start = trial.q;
+            Trial next = trial;
+            next.summary = open_close_.solve(problem_, pattern_, next.q);
+            report_.open_close_iterations += next.summary.iterations;
+            if (!next.converged()) break;
+            next.viscous_share = viscous_share(next);
+            const bool stalls = next.viscous_share > least_balance_progress * trial.viscous_share;
+            trial = std::move(next);
+            if (stalls) break;
+        }
+        trial.balanced = trial.viscous_share <= options_.balance;
+    }
+
+    /// Pseudo-transient continuation at a load factor from the work state, which moves along.
+    Trial relax(double load_factor) {
+        ++report_.relaxations;
+        double factor = first_relaxation;
+        Trial trial;
+        for (int step = 0; step < max_relaxation_steps;) {
+            if (stop_) throw Interrupted{};
+            prepare();
+            set_load(load_factor);
+            problem_.eta *= factor;
+            trial = Trial{};
+            trial.q = work_.displacement;
+            trial.summary = open_close_.solve(problem_, pattern_, trial.q);
+            report_.open_close_iterations += trial.summary.iterations;
+            last_worst_block_ = trial.summary.worst_block;
+            if (!trial.converged()) {
+                factor *= 4.0;
+                if (factor > largest_relaxation) {
+                    throw NoEquilibrium{trial.summary.worst_block, trial.summary.residual_ratio};
+                }
+                continue;
+            }
+            ++step;
+            trial.viscous_share = viscous_share(trial);
+            trial.balanced = trial.viscous_share <= options_.balance;
+            if (trial.balanced) break;
+            commit(trial, work_.load_factor);
+            if (trial.summary.iterations <= 4) factor = std::max(first_relaxation, 0.5 * factor);
+            notify_progress(load_factor);
+        }
+        return trial;
+    }
+
+    /// The place where the work state changes.
+    void commit(const Trial& trial, double load_factor) {
+        for (int i = 0; i < static_cast<int>(problem_.bonds.size()); ++i) {
+            const int interface = problem_.bonds[i].interface;
+            work_.bond_shear[n_bond_points * interface + i % n_bond_points] = bond_traction(problem_, i, trial.q).shear;
+        }
+        work_.contacts.clear();
+        for (int i = 0; i < static_cast<int>(problem_.contacts.size()); ++i) {
+            const auto traction = contact_traction(problem_, i, trial.q);
+            if (traction.state == ContactState::open && traction.history.dilation == 0.0) continue;
+            work_.contacts.push_back({problem_.contacts[i].key, traction.history});
+        }
+        work_.displacement = trial.q;
+        work_.load_factor = load_factor;
+        work_.unbalanced_ratio = trial.viscous_share;
+    }
+
+    // ---- cracks ----------------------------------------------------------------------------------------------
+
+    std::vector<CrackCandidate> check_cracks(const Eigen::VectorXd& q) {
+        const Stopwatch watch(report_.seconds.crack_check);
+        ++report_.crack_checks;
+        const auto stresses = block_stresses(model_.system, model_.moduli, q);
+        if (cracks_.criterion == CrackCriterion::principal_stress) {
+            return crack_check(model_.system, surfaces_.bonded, model_.strengths, stresses);
+        }
+        return crack_check(model_.system, surfaces_.bonded, model_.strengths, stresses,
+                           bond_tractions(model_, problem_, q));
+    }
+
+    double largest_index_at(const Eigen::VectorXd& q) {
+        return std::min(largest_useful_index, largest_index(check_cracks(q)));
+    }
+
+    /// Cuts the step at the load factor where the largest f is in [1, 1 + tolerance] (Illinois on the load factor);
+    /// replaces `trial` and returns that load factor, or `to` if nothing fails before.
+    double locate_event(double from, double to, Trial& trial) {
+        const double tolerance = cracks_.event_tolerance;
+        double f_high = largest_index_at(trial.q);
+        if (f_high <= 1.0 + tolerance) return to;
+        const double goal = 1.0 + 0.5 * tolerance;
+        double low = from;
+        double high = to;
+        double g_low = largest_index_at(work_.displacement) - goal;
+        double g_high = f_high - goal;
+        if (g_low >= 0.0) return to;
+        for (int i = 0; i < max_event_trials; ++i) {
+            const double width = high - low;
+            const double at =
+                std::clamp(high - g_high * width / (g_high - g_low), low + 0.01 * width, high - 0.01 * width);
+            const double share = (at - from) / (high - from);
+            Trial next = solve(at, work_.displacement + share * (trial.q - work_.displacement));
+            if (!next.converged() || !next.balanced) {
+                problem_.start = work_.displacement;
+                break;
+            }
+            const double g = largest_index_at(next.q) - goal;
+            if (g >= -0.5 * tolerance) {
+                trial = std::move(next);
+                high = at;
+                if (g <= 0.5 * tolerance) break;
+                g_high = g;
+                g_low *= 0.5;
+            } else {
+                low = at;
+                g_low = g;
+                g_high *= 0.5;
+            }
+        }
+        set_load(high);
+        return high;
+    }
+
+    [[nodiscard]] double failure_threshold(double largest) const {
+        switch (cracks_.update) {
+        case CrackUpdate::event:
+            return largest - cracks_.event_tolerance;
+        case CrackUpdate::critical_first:
+            return std::max(1.0, critical_share * largest);
+        case CrackUpdate::all:
+            return 1.0;
+        case CrackUpdate::single:
+            return largest;
+        }
+        return 1.0;
+    }
+
+    /// Fails potential cracks and finds equilibrium again at the same load, until nothing fails. True if any failed.
+    bool break_bonds(double load_factor) {
+        bool any = false;
+        for (;;) {
+            const auto candidates = check_cracks(work_.displacement);
+            const double largest = largest_index(candidates);
+            if (largest < 1.0) return any;
+            auto broken = failing(candidates, failure_threshold(largest));
+            if (cracks_.update == CrackUpdate::single) broken.resize(1);
+            any = true;
+            ++passes_;
+            ++report_.events;
+            for (const auto& candidate : broken) break_bond(candidate);
+            std::ranges::sort(work_.contacts, {}, &ContactMemory::key);
+            prepare();
+            Trial trial = solve(load_factor, work_.displacement);
+            if (!trial.converged()) {
+                trial = relax(load_factor);
+            } else if (!trial.balanced) {
+                commit(trial, load_factor);
+                trial = relax(load_factor);
+            }
+            commit(trial, load_factor);
+            record_equilibrium(trial);
+        }
+    }
+
+    /// A bond becomes a fracture; its shear traction stays.
+    void break_bond(const CrackCandidate& candidate) {
+        const int i = candidate.interface;
+        const Interface& interface = model_.system.interfaces[i];
+        const bool tension = candidate.index.tension_governs;
+        work_.interfaces[i] = tension ? InterfaceStatus::tension_crack : InterfaceStatus::shear_crack;
+        const bool ordered = interface.block_a < interface.block_b;
+        for (int point = 0; point < 3; ++point) {
+            const double along_a = 0.5 * point;
+            ContactMemory memory;
+            memory.key =
+                ordered ? ContactKey{interface.block_a, interface.edge_a, interface.block_b, interface.edge_b, point}
+                        : ContactKey{interface.block_b, interface.edge_b, interface.block_a, interface.edge_a, point};
+            memory.history.shear_trial =
+                bond_shear_at(&work_.bond_shear[n_bond_points * i], ordered ? along_a : 1.0 - along_a);
+            work_.contacts.push_back(memory);
+        }
+        const Edge& edge = model_.system.blocks[interface.block_a].edges[interface.edge_a];
+        const Vec2 middle =
+            model_.system.origin + 0.5 * (edge_start(model_.system, edge) + edge_end(model_.system, edge));
+        CrackRecord record;
+        record.step = work_.step + 1;
+        record.pass = passes_;
+        record.interface = i;
+        record.x = middle.x();
+        record.y = middle.y();
+        record.mode = tension ? CrackMode::tension : CrackMode::shear;
+        record.p1 = candidate.stress.p1;
+        record.p3 = candidate.stress.p3;
+        record.axial_strain = last_record_.axial_strain;
+        observer_.crack(record);
+    }
+
+    // ---- measurements and messages ---------------------------------------------------------------------------
+
+    double stress_on(int boundary) {
+        const auto frame = boundary_frame(model_.system, boundary);
+        return boundary_stress(problem_, last_residual_.forces, boundary, loads_->is_held(boundary), frame.length,
+                               frame.normal);
+    }
+
+    StepRecord measure(const Eigen::VectorXd& q, double share) {
+        EquilibriumEvaluator(problem_, pattern_).residual(q, last_residual_);
+        StepRecord record;
+        record.step = work_.step + 1;
+        record.stage = work_.stage;
+        record.load_factor = work_.load_factor;
+        const Strains strains = measure_strains(model_, gauges_, q, work_.reference_displacement);
+        const Strains total = measure_strains(model_, gauges_, q, Eigen::VectorXd());
+        record.axial_strain = strains.axial;
+        record.lateral_strain = strains.lateral;
+        record.volumetric_strain = strains.axial + strains.lateral;
+        if (gauges_.moved >= 0) {
+            const double width = gauges_.width * (1.0 - total.lateral);
+            record.axial_stress = boundary_stress(problem_, last_residual_.forces, gauges_.moved,
+                                                  loads_->is_held(gauges_.moved), width, gauges_.axial_normal);
+        }
+        for (const int side : gauges_.lateral) {
+            const double height = gauges_.length * (1.0 - total.axial);
+            record.lateral_stress += 0.5 * boundary_stress(problem_, last_residual_.forces, side, loads_->is_held(side),
+                                                           height, boundary_frame(model_.system, side).normal);
+        }
+        record.differential_stress = record.axial_stress - record.lateral_stress;
+        record.cracks_tension = static_cast<int>(std::ranges::count(work_.interfaces, InterfaceStatus::tension_crack));
+        record.cracks_shear = static_cast<int>(std::ranges::count(work_.interfaces, InterfaceStatus::shear_crack));
+        const auto counts = count_contacts(model_, work_, problem_, q);
+        record.open = counts.open;
+        record.sliding = counts.sliding;
+        record.locked = counts.locked;
+        record.open_close_iterations = report_.open_close_iterations - iterations_at_start_;
+        record.crack_passes = passes_;
+        record.unbalanced_ratio = share;
+        record.elapsed_s = std::chrono::duration<double>(Clock::now() - started_).count();
+        return record;
+    }
+
+    void record_equilibrium(const Trial& trial) {
+        last_record_ = measure(trial.q, trial.viscous_share);
+        last_record_.balanced = trial.balanced;
+        step_balanced_ = step_balanced_ && trial.balanced;
+        worst_share_ = std::max(worst_share_, trial.viscous_share);
+        const Stopwatch watch(report_.seconds.observers);
+        observer_.equilibrium(last_record_);
+    }
+
+    void notify_step(const StepRecord& record, bool last_of_stage) {
+        last_record_ = record;
+        const Stopwatch watch(report_.seconds.observers);
+        observer_.step(
+            record, work_, [&] { return field_record(model_, work_, problem_); }, last_of_stage);
+    }
+
+    void notify_progress(double load_factor) {
+        Progress progress;
+        progress.stage = work_.stage;
+        progress.n_stages = static_cast<int>(model_.loads.stages.size());
+        progress.step = work_.step;
+        progress.n_steps = n_steps_;
+        progress.load_factor = load_factor;
+        progress.axial_strain = last_record_.axial_strain;
+        progress.axial_stress = last_record_.axial_stress;
+        progress.cracks = last_record_.cracks_tension + last_record_.cracks_shear;
+        progress.open_close_iterations = report_.open_close_iterations;
+        observer_.progress(progress);
+    }
+
+    [[nodiscard]] std::string diagnose(const NoEquilibrium& failure) const {
+        std::string text = fmt::format("no equilibrium in stage {} at load step {}: residual {:.2g} of the forces",
+                                       work_.stage, work_.step + 1, failure.residual_ratio);
+        if (failure.worst_block < 0) return text;
+        const Block& block = model_.system.blocks[failure.worst_block];
+        const Vec2 at = model_.system.origin + block.centroid;
+        text += fmt::format("; worst is block {} at ({:.6g}, {:.6g}), area {:.3g} m2, interfaces", failure.worst_block,
+                            at.x(), at.y(), block.area);
+        for (const Edge& edge : block.edges) {
+            if (edge.interface >= 0) text += fmt::format(" {}", edge.interface);
+        }
+        return text;
+    }
+
+    const Model& model_;
+    const CrackOptions& cracks_;
+    const SolverOptions& options_;
+    State& accepted_; ///< at the last committed load step
+    StepObserver& observer_;
+    const std::atomic<bool>& stop_;
+
+    State work_; ///< at the last equilibrium
+    Gauges gauges_;
+    LinearSolver linear_;
+    OpenCloseSolver open_close_;
+    ContactSurfaces surfaces_;
+    BlockPattern pattern_;
+    EquilibriumProblem problem_;
+    std::optional<StageLoads> loads_;
+    Eigen::VectorXd last_increment_; ///< per unit of load factor, of the last step if it was smooth; else empty
+    Residual last_residual_;
+    StepRecord last_record_;
+    RunReport report_;
+    Clock::time_point started_ = Clock::now();
+    int n_steps_ = 0;
+    int iterations_at_start_ = 0;
+    int passes_ = 0;
+    bool step_balanced_ = true;
+    double worst_share_ = 0.0;
+    int last_worst_block_ = -1;
+};
+
+} // namespace
+
+State initial_state(const Model& model) {
+    State state;
+    const auto n = static_cast<Eigen::Index>(n_block_unknowns) * model.system.n_blocks();
+    state.displacement = Eigen::VectorXd::Zero(n);
+    state.stage_start_displacement = state.displacement;
+    state.reference_displacement = state.displacement;
+    for (const Interface& interface : model.system.interfaces) {
+        state.interfaces.push_back(model.bonds[interface.interface_type] ? InterfaceStatus::potential_crack
+                                                                         : InterfaceStatus::fracture);
+    }
+    state.bond_shear.assign(static_cast<std::size_t>(n_bond_points) * model.system.interfaces.size(), 0.0);
+    state.boundary_pressure.assign(model.system.boundaries.size(), 0.0);
+    return state;
+}
+
+RunReport run_simulation(const Model& model, const CrackOptions& cracks, const SolverOptions& solver, State& state,
+                         StepObserver& observer, const std::atomic<bool>& stop) {
+    return Run(model, cracks, solver, state, observer, stop).run();
+}
+
+} // namespace kluft

@@ -1,0 +1,145 @@
+#include "kluft/simulation/stage_loads.hpp"
+
+#include <set>
+#include <utility>
+
+#include "kluft/kinematics/affine.hpp"
+
+namespace kluft {
+
+namespace {
+
+template <typename Visit> void for_each_edge(const BlockSystem& system, int boundary, Visit visit) {
+    for (const auto& [b, e] : system.boundaries[boundary].edges) {
+        const Edge& edge = system.blocks[b].edges[e];
+        visit(b, edge_start(system, edge), edge_end(system, edge));
+    }
+}
+
+} // namespace
+
+BoundaryFrame boundary_frame(const BlockSystem& system, int boundary) {
+    BoundaryFrame frame;
+    Vec2 sum = Vec2::Zero();
+    for_each_edge(system, boundary, [&](int, const Vec2& start, const Vec2& end) {
+        sum += right_normal(end - start);
+        frame.length += (end - start).norm();
+    });
+    if (sum.norm() > 0.0) frame.normal = sum.normalized();
+    for (int i = 0; i < 2; ++i) { // a side along an axis has exactly that normal
+        if (std::abs(frame.normal[i]) < 1e-12)
+            frame.normal = Vec2::Unit(1 - i) * (frame.normal[1 - i] < 0.0 ? -1.0 : 1.0);
+    }
+    return frame;
+}
+
+int opposite_boundary(const BlockSystem& system, int boundary) {
+    const Vec2 normal = boundary_frame(system, boundary).normal;
+    int best = -1;
+    double most_opposite = -0.5;
+    for (int i = 0; i < static_cast<int>(system.boundaries.size()); ++i) {
+        const double cosine = normal.dot(boundary_frame(system, i).normal);
+        if (cosine < most_opposite) {
+            most_opposite = cosine;
+            best = i;
+        }
+    }
+    return best;
+}
+
+Vec2 mean_position(const BlockSystem& system, int boundary) {
+    Vec2 sum = Vec2::Zero();
+    double length = 0.0;
+    for_each_edge(system, boundary, [&](int, const Vec2& start, const Vec2& end) {
+        sum += 0.5 * (end - start).norm() * (start + end);
+        length += (end - start).norm();
+    });
+    return length > 0.0 ? Vec2(sum / length) : sum;
+}
+
+Vec2 mean_displacement(const BlockSystem& system, const Eigen::VectorXd& q, int boundary) {
+    Vec2 sum = Vec2::Zero();
+    double length = 0.0;
+    for_each_edge(system, boundary, [&](int b, const Vec2& start, const Vec2& end) {
+        const Vec2 xi = block_coordinates(system.blocks[b], 0.5 * (start + end));
+        sum += (end - start).norm() * displacement_at(q, b, xi);
+        length += (end - start).norm();
+    });
+    return length > 0.0 ? Vec2(sum / length) : sum;
+}
+
+StageLoads::StageLoads(const Model& model, const State& stage_start, const Stage& stage) {
+    const BlockSystem& system = model.system;
+    const int n = static_cast<int>(system.boundaries.size());
+    held_.assign(n, 0);
+    start_pressure_ = stage_start.boundary_pressure;
+    end_pressure_ = start_pressure_;
+    for (const auto& [boundary, pressure] : stage.pressure) end_pressure_[boundary] = pressure;
+
+    std::vector<Support> supports = model.loads.supports;
+    Vec2 velocity = Vec2::Zero(); // of the moved platen per unit of load factor
+    int moved = -1;
+    if (stage.motion && stage.motion->control != PlatenControl::stress) {
+        moved = stage.motion->boundary;
+        const int fixed = opposite_boundary(system, moved);
+        const Support kind = stage.platens == Platens::rough ? Support::fixed : Support::smooth;
+        supports[moved] = kind;
+        if (fixed >= 0 && supports[fixed] != Support::fixed) supports[fixed] = kind;
+        const Vec2 inward = -boundary_frame(system, moved).normal;
+        double distance = stage.motion->value;
+        if (stage.motion->control == PlatenControl::strain) {
+            const Vec2 base = fixed >= 0 ? mean_position(system, fixed) : system.lower;
+            distance *= std::abs(inward.dot(base - mean_position(system, moved)));
+        }
+        velocity = distance * inward;
+    } else if (stage.motion) {
+        end_pressure_[stage.motion->boundary] = stage.motion->value;
+    }
+
+    std::vector<PrescribedDisplacement> rows;
+    for (int boundary = 0; boundary < n; ++boundary) {
+        if (supports[boundary] == Support::none) continue;
+        held_[boundary] = 1;
+        start_pressure_[boundary] = end_pressure_[boundary] = 0.0;
+        const Vec2 normal = boundary_frame(system, boundary).normal;
+        const Vec2 motion = boundary == moved ? velocity : Vec2::Zero();
+        std::set<std::pair<int, int>> done; // (block, vertex)
+        for (const auto& [b, e] : system.boundaries[boundary].edges) {
+            const Edge& edge = system.blocks[b].edges[e];
+            for (const int vertex : {edge.start, edge.end}) {
+                if (!done.emplace(b, vertex).second) continue;
+                const Vec2 xi = block_coordinates(system.blocks[b], system.vertices[vertex]);
+                const Vec2 start = displacement_at(stage_start.displacement, b, xi);
+                const auto prescribe = [&](const Vec2& direction) {
+                    rows.push_back({b, xi, direction, boundary, direction.dot(start)});
+                    start_targets_.push_back(direction.dot(start));
+                    target_rates_.push_back(direction.dot(motion));
+                };
+                prescribe(normal);
+                if (supports[boundary] == Support::fixed) prescribe(Vec2(-normal.y(), normal.x()));
+            }
+        }
+    }
+    constraints_ = Constraints(std::move(rows));
+    for (int boundary = 0; boundary < n; ++boundary) {
+        if (start_pressure_[boundary] == 0.0 && end_pressure_[boundary] == 0.0) continue;
+        const auto more = pressure_edges(system, boundary);
+        edges_.insert(edges_.end(), more.begin(), more.end());
+    }
+}
+
+std::vector<double> StageLoads::pressures(double load_factor) const {
+    std::vector<double> result(start_pressure_.size());
+    for (std::size_t i = 0; i < result.size(); ++i) {
+        result[i] = start_pressure_[i] + load_factor * (end_pressure_[i] - start_pressure_[i]);
+    }
+    return result;
+}
+
+void StageLoads::set_targets(Constraints& constraints, double load_factor) const {
+    for (std::size_t i = 0; i < start_targets_.size(); ++i) {
+        constraints.set_target(static_cast<int>(i), start_targets_[i] + load_factor * target_rates_[i]);
+    }
+}
+
+} // namespace kluft

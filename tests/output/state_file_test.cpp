@@ -1,0 +1,127 @@
+#include "kluft/output/state_file.hpp"
+
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kluft/core/diagnostics.hpp"
+#include "kluft/output/atomic_file.hpp"
+#include "output/temporary_directory.hpp"
+
+namespace kluft {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::TemporaryDirectory;
+using ::testing::ThrowsMessage;
+
+State state_of(int n_blocks) {
+    State state;
+    state.stage = 1;
+    state.step_in_stage = 4;
+    state.step = 24;
+    state.load_factor = 0.1;
+    state.displacement = Eigen::VectorXd::LinSpaced(6 * n_blocks, -1.0 / 3.0, std::numeric_limits<double>::min());
+    state.stage_start_displacement = 0.5 * state.displacement;
+    state.reference_displacement = 0.25 * state.displacement;
+    state.reference_set = true;
+    state.interfaces = {InterfaceStatus::potential_crack, InterfaceStatus::fracture, InterfaceStatus::tension_crack,
+                        InterfaceStatus::shear_crack};
+    state.bond_shear = {1.0, -2.0, 3.0, 0.1};
+    state.contacts = {{{0, 1, 2, 3, -1}, {1.25e5, 1e-7}}, {{4, 5, 6, 7, 2}, {-0.1, 0.0}}};
+    state.boundary_pressure = {2e5, 0.0, 1.0 / 7.0};
+    state.boundary_axial = {1.4e6};
+    state.unbalanced_ratio = 3e-4;
+    state.unbalanced_in_succession = 2;
+    return state;
+}
+
+void expect_same(const State& a, const State& b) {
+    EXPECT_EQ(a.stage, b.stage);
+    EXPECT_EQ(a.step_in_stage, b.step_in_stage);
+    EXPECT_EQ(a.step, b.step);
+    EXPECT_EQ(a.load_factor, b.load_factor);
+    EXPECT_EQ(a.displacement, b.displacement);
+    EXPECT_EQ(a.stage_start_displacement, b.stage_start_displacement);
+    EXPECT_EQ(a.reference_displacement, b.reference_displacement);
+    EXPECT_EQ(a.reference_set, b.reference_set);
+    EXPECT_EQ(a.interfaces, b.interfaces);
+    EXPECT_EQ(a.bond_shear, b.bond_shear);
+    ASSERT_EQ(a.contacts.size(), b.contacts.size());
+    for (std::size_t i = 0; i < a.contacts.size(); ++i) {
+        EXPECT_EQ(a.contacts[i].key, b.contacts[i].key);
+        EXPECT_EQ(a.contacts[i].history.shear_trial, b.contacts[i].history.shear_trial);
+        EXPECT_EQ(a.contacts[i].history.dilation, b.contacts[i].history.dilation);
+    }
+    EXPECT_EQ(a.boundary_pressure, b.boundary_pressure);
+    EXPECT_EQ(a.boundary_axial, b.boundary_axial);
+    EXPECT_EQ(a.unbalanced_ratio, b.unbalanced_ratio);
+    EXPECT_EQ(a.unbalanced_in_succession, b.unbalanced_in_succession);
+}
+
+TEST(StateFile, IsReadBackBitForBit) {
+    const TemporaryDirectory directory;
+    for (const int n_blocks : {1, 3, 30000}) {
+        const State state = state_of(n_blocks);
+        write_state(directory / "state.h5", state, "scene 1");
+        expect_same(read_state(directory / "state.h5", "scene 1"), state);
+    }
+}
+
+TEST(StateFile, HoldsAStateWithoutBlocksOrContacts) {
+    const TemporaryDirectory directory;
+    write_state(directory / "state.h5", State{}, "");
+    expect_same(read_state(directory / "state.h5", ""), State{});
+}
+
+TEST(StateFile, IsRefusedForAnotherScene) {
+    const TemporaryDirectory directory;
+    write_state(directory / "state.h5", state_of(2), "scene 1");
+    EXPECT_THAT([&] { (void)read_state(directory / "state.h5", "scene 2"); },
+                ThrowsMessage<InputError>(HasSubstr("another scene")));
+}
+
+TEST(StateFile, IsRefusedWhenTruncatedAnywhere) {
+    const TemporaryDirectory directory;
+    write_state(directory / "state.h5", state_of(40), "scene");
+    const std::string whole = read_file(directory / "state.h5");
+    for (int part = 0; part < 20; ++part) {
+        write_file(directory / "state.h5", whole.substr(0, whole.size() * static_cast<std::size_t>(part) / 20));
+        EXPECT_THROW((void)read_state(directory / "state.h5", "scene"), InputError) << part;
+    }
+    write_file(directory / "state.h5", whole.substr(0, whole.size() - 1));
+    EXPECT_THROW((void)read_state(directory / "state.h5", "scene"), InputError);
+}
+
+// The bytes of a known number are looked up in the file and one bit of them is turned.
+TEST(StateFile, IsRefusedWhenABitOfTheNumbersIsWrong) {
+    const TemporaryDirectory directory;
+    State state = state_of(2);
+    state.displacement[5] = 1.2345678901234567e-3;
+    write_state(directory / "state.h5", state, "scene");
+    std::string bytes = read_file(directory / "state.h5");
+    const std::string pattern(reinterpret_cast<const char*>(&state.displacement[5]), sizeof(double));
+    const std::size_t at = bytes.find(pattern);
+    ASSERT_NE(at, std::string::npos);
+    bytes[at] = static_cast<char>(bytes[at] ^ 1);
+    write_file(directory / "state.h5", bytes);
+    EXPECT_THAT([&] { (void)read_state(directory / "state.h5", "scene"); },
+                ThrowsMessage<InputError>(HasSubstr("displacement")));
+}
+
+TEST(StateFile, IsRefusedWhenItIsSomethingElse) {
+    const TemporaryDirectory directory;
+    write_file(directory / "state.h5", "step,stage\n0,0\n");
+    EXPECT_THAT([&] { (void)read_state(directory / "state.h5", "scene"); },
+                ThrowsMessage<InputError>(HasSubstr("damaged or foreign")));
+    EXPECT_THROW((void)read_state(directory / "absent.h5", "scene"), InputError);
+}
+
+TEST(StateFile, NamesTheFileWhenTheDiskIsFull) {
+    EXPECT_THAT([] { write_state("/dev/full", State{}, "scene"); },
+                ThrowsMessage<ResourceError>(HasSubstr("/dev/full: cannot write: No space left")));
+}
+
+} // namespace
+} // namespace kluft

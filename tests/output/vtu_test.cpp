@@ -1,0 +1,199 @@
+#include "kluft/output/vtu.hpp"
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <numbers>
+#include <regex>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kluft/output/atomic_file.hpp"
+#include "kluft/output/block_outline.hpp"
+#include "output/hexagon_grid.hpp"
+#include "output/temporary_directory.hpp"
+
+namespace kluft {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using testing::TemporaryDirectory;
+
+/// Reads a named array of a VTU file by the offset in its XML, as ParaView does.
+template <class Number> std::vector<Number> array_of(const std::string& file, const std::string& name) {
+    const std::regex pattern("Name=\"" + name + "\"[^>]*offset=\"([0-9]+)\"");
+    std::smatch match;
+    const std::string xml = file.substr(0, file.find("<AppendedData"));
+    if (!std::regex_search(xml, match, pattern)) return {};
+    const std::size_t begin = file.find("\n_", file.find("<AppendedData")) + 2 + std::stoul(match[1]);
+    std::uint64_t size = 0;
+    std::memcpy(&size, &file[begin], sizeof size);
+    std::vector<Number> values(size / sizeof(Number));
+    std::memcpy(values.data(), &file[begin + sizeof size], size);
+    return values;
+}
+
+double area_of_cell(const std::vector<double>& points, const std::vector<std::int64_t>& connectivity,
+                    std::int64_t begin, std::int64_t end) {
+    double area = 0.0;
+    for (std::int64_t i = begin; i < end; ++i) {
+        const std::int64_t p = connectivity[i];
+        const std::int64_t q = connectivity[i + 1 < end ? i + 1 : begin];
+        area += 0.5 * (points[3 * p] * points[3 * q + 1] - points[3 * q] * points[3 * p + 1]);
+    }
+    return area;
+}
+
+TEST(Vtu, HoldsTheBlocksAsPolygonsOfTheirArea) {
+    const BlockSystem system = testing::hexagon_grid(4, 3, 0.1, {2.0, 1.0});
+    const auto fields = testing::affine_fields(system, Mat2::Zero(), Mat2::Zero());
+    const std::string file = blocks_vtu(system, fields, {"sandstone"}, StepRecord{});
+    EXPECT_THAT(file, HasSubstr("NumberOfPoints=\"72\" NumberOfCells=\"12\""));
+    EXPECT_THAT(file, HasSubstr("header_type=\"UInt64\""));
+    EXPECT_THAT(file, HasSubstr("type=\"Float64\" Name=\"Points\""));
+    const auto points = array_of<double>(file, "Points");
+    const auto connectivity = array_of<std::int64_t>(file, "connectivity");
+    const auto ends = array_of<std::int64_t>(file, "offsets");
+    ASSERT_EQ(points.size(), 216U);
+    ASSERT_EQ(ends.size(), 12U);
+    EXPECT_EQ(array_of<std::uint8_t>(file, "types"), std::vector<std::uint8_t>(12, 7));
+    for (std::size_t i = 0; i < 12; ++i)
+        EXPECT_NEAR(area_of_cell(points, connectivity, i == 0 ? 0 : ends[i - 1], ends[i]), 0.01 * std::sqrt(0.75),
+                    1e-14);
+    // The first vertex of the first hexagon: lattice place (2, 1), moved to scene coordinates.
+    EXPECT_DOUBLE_EQ(points[0], 2.0 + 0.1);
+    EXPECT_DOUBLE_EQ(points[1], 1.0 + 0.1 / (2.0 * std::sqrt(3.0)));
+}
+
+// Uniaxial compression of 2 MPa turned by 30 degrees: principal stresses 2 MPa and 0.
+TEST(Vtu, HoldsStressesWithTheirSigns) {
+    const BlockSystem system = testing::hexagon_grid(2, 1, 0.1);
+    const double angle = std::numbers::pi / 6.0;
+    const Vec2 axis(std::cos(angle), std::sin(angle));
+    const auto fields = testing::affine_fields(system, Mat2::Zero(), -2e6 * axis * axis.transpose());
+    const std::string file = blocks_vtu(system, fields, {"rock"}, StepRecord{});
+    EXPECT_DOUBLE_EQ(array_of<double>(file, "stress_xx")[1], -2e6 * std::pow(std::cos(angle), 2));
+    EXPECT_NEAR(array_of<double>(file, "sigma_1")[1], 2e6, 1e-8);
+    EXPECT_NEAR(array_of<double>(file, "sigma_3")[1], 0.0, 1e-8);
+    EXPECT_THAT(array_of<std::int32_t>(file, "block"), ElementsAre(0, 1));
+    EXPECT_THAT(array_of<std::int32_t>(file, "material"), ElementsAre(0, 0));
+}
+
+TEST(Vtu, HoldsDisplacementsOfEachBlocksOwnVertices) {
+    const BlockSystem system = testing::hexagon_grid(2, 1, 0.1);
+    auto fields = testing::affine_fields(system, Mat2::Zero(), Mat2::Zero());
+    for (std::size_t i = 6; i < 12; ++i) fields.displacement[i] = {0.25, -0.5};
+    const auto displacement = array_of<double>(blocks_vtu(system, fields, {}, StepRecord{}), "displacement");
+    EXPECT_EQ(displacement[3 * 5], 0.0);
+    EXPECT_EQ(displacement[3 * 6], 0.25);
+    EXPECT_EQ(displacement[3 * 11 + 1], -0.5);
+    EXPECT_EQ(displacement[3 * 11 + 2], 0.0);
+    // The only interface moves with the mean of its sides.
+    const auto mean = array_of<double>(interfaces_vtu(system, fields, StepRecord{}), "displacement");
+    EXPECT_THAT(mean, ElementsAre(0.125, -0.25, 0.0, 0.125, -0.25, 0.0));
+}
+
+TEST(Vtu, HoldsInterfacesAsLinesWithTheirStates) {
+    const BlockSystem system = testing::hexagon_grid(2, 2, 0.1);
+    auto fields = testing::affine_fields(system, Mat2::Zero(), Mat2::Zero());
+    ASSERT_EQ(fields.interfaces.size(), 5U);
+    fields.interfaces[0] = {false, true, CrackMode::tension, ContactState::open, 0.0, 0.0, 1e-4, 2e-5};
+    fields.interfaces[1] = {false, true, CrackMode::shear, ContactState::sliding, -3e5, 1e5, -1e-6, 3e-4};
+    fields.interfaces[2] = {false, false, CrackMode::shear, ContactState::locked, -1e5, 0.0, 0.0, 0.0};
+    const std::string file = interfaces_vtu(system, fields, StepRecord{});
+    EXPECT_EQ(array_of<std::uint8_t>(file, "types"), std::vector<std::uint8_t>(5, 3));
+    EXPECT_THAT(array_of<std::int64_t>(file, "connectivity"), ElementsAre(0, 1, 2, 3, 4, 5, 6, 7, 8, 9));
+    EXPECT_THAT(array_of<std::int32_t>(file, "state"), ElementsAre(0, 1, 2, 2, 2));
+    EXPECT_THAT(array_of<std::int32_t>(file, "crack_mode"), ElementsAre(1, 2, 0, 0, 0));
+    EXPECT_THAT(array_of<std::int32_t>(file, "bonded"), ElementsAre(0, 0, 0, 1, 1));
+    EXPECT_EQ(array_of<double>(file, "gap")[0], 1e-4);
+    EXPECT_EQ(array_of<double>(file, "slip")[1], 3e-4);
+    EXPECT_EQ(array_of<double>(file, "normal_traction")[1], -3e5);
+    EXPECT_EQ(array_of<double>(file, "shear_traction")[1], 1e5);
+    // Edges of a regular hexagon of width d have the length d/sqrt(3).
+    const auto points = array_of<double>(file, "Points");
+    for (std::size_t i = 0; i < 5; ++i)
+        EXPECT_NEAR(std::hypot(points[6 * i + 3] - points[6 * i], points[6 * i + 4] - points[6 * i + 1]),
+                    0.1 / std::sqrt(3.0), 1e-15);
+}
+
+TEST(Vtu, ReplacesWhatIsNotANumberAndCountsIt) {
+    const BlockSystem system = testing::hexagon_grid(2, 1, 0.1);
+    auto fields = testing::affine_fields(system, Mat2::Zero(), Mat2::Zero());
+    fields.displacement[3].x() = std::numeric_limits<double>::quiet_NaN();
+    fields.interfaces[0].gap = std::numeric_limits<double>::infinity();
+    StepRecord record;
+    record.axial_strain = std::numeric_limits<double>::quiet_NaN();
+    const std::string blocks = blocks_vtu(system, fields, {}, record);
+    EXPECT_THAT(blocks, HasSubstr("Name=\"replaced_values\" NumberOfTuples=\"1\" format=\"ascii\">2<"));
+    for (const double value : array_of<double>(blocks, "displacement")) EXPECT_TRUE(std::isfinite(value));
+    EXPECT_EQ(array_of<double>(interfaces_vtu(system, fields, record), "gap")[0], 0.0);
+}
+
+TEST(BlockOutline, JoinsAHoleByTwoCoincidentBridges) {
+    const BlockSystem system = testing::block_with_hole();
+    const auto polygon = keyhole_polygon(system, system.blocks[0]);
+    EXPECT_EQ(polygon.size(), 4U + 4U + 2U);
+    double area = 0.0;
+    for (std::size_t i = 0; i < polygon.size(); ++i)
+        area += 0.5 * cross(system.vertices[polygon[i]], system.vertices[polygon[(i + 1) % polygon.size()]]);
+    EXPECT_DOUBLE_EQ(area, 8.0);
+    EXPECT_EQ(next_edge(system.blocks[0], 3), 0);
+    EXPECT_EQ(next_edge(system.blocks[0], 7), 4);
+}
+
+std::vector<std::string> names_in(const fs::path& directory) {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(directory)) names.push_back(entry.path().filename());
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+TEST(FieldSeries, ListsTheTwoFilesOfEachStep) {
+    const TemporaryDirectory directory;
+    const BlockSystem system = testing::hexagon_grid(2, 1, 0.1);
+    const auto fields = testing::affine_fields(system, Mat2::Zero(), Mat2::Zero());
+    auto series = FieldSeries::create(directory.path());
+    StepRecord record;
+    series.add(system, fields, {"rock"}, record);
+    record.step = 20;
+    series.add(system, fields, {"rock"}, record);
+    EXPECT_THAT(names_in(directory / "fields"), ElementsAre("blocks_000000.vtu", "blocks_000020.vtu",
+                                                            "interfaces_000000.vtu", "interfaces_000020.vtu"));
+    const std::string pvd = read_file(directory / "fields.pvd");
+    EXPECT_THAT(pvd, HasSubstr(R"(timestep="20" group="" part="1" file="fields/interfaces_000020.vtu")"));
+    EXPECT_THAT(read_file(directory / "fields/blocks_000020.vtu"), HasSubstr("Name=\"step\" NumberOfTuples=\"1\" "
+                                                                             "format=\"ascii\">20<"));
+}
+
+TEST(FieldSeries, GoesOnFromASavedStepWithoutTheLaterFiles) {
+    const TemporaryDirectory directory;
+    const BlockSystem system = testing::hexagon_grid(2, 1, 0.1);
+    const auto fields = testing::affine_fields(system, Mat2::Zero(), Mat2::Zero());
+    auto first = FieldSeries::create(directory.path());
+    for (const int step : {0, 5, 10, 15}) {
+        StepRecord record;
+        record.step = step;
+        first.add(system, fields, {}, record);
+    }
+    const auto series = FieldSeries::resume(directory.path(), 10);
+    EXPECT_THAT(series.steps(), ElementsAre(0, 5, 10));
+    EXPECT_EQ(names_in(directory / "fields").size(), 6U);
+    EXPECT_THAT(read_file(directory / "fields.pvd"), ::testing::Not(HasSubstr("000015")));
+}
+
+TEST(FieldSeries, ReplacesAnEarlierRunButNotOtherPeoplesFiles) {
+    const TemporaryDirectory directory;
+    make_directory(directory / "fields");
+    write_file(directory / "fields/blocks_000007.vtu", "old");
+    write_file(directory / "fields/blocks_mine.vtu", "mine");
+    const auto series = FieldSeries::create(directory.path());
+    EXPECT_TRUE(series.steps().empty());
+    EXPECT_THAT(names_in(directory / "fields"), ElementsAre("blocks_mine.vtu"));
+}
+
+} // namespace
+} // namespace kluft
