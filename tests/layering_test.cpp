@@ -157,6 +157,15 @@ TEST(Layering, KeepsHeavyHeadersOutOfPublicOnes) {
     EXPECT_THAT(leaks, testing::IsEmpty());
 }
 
+// CGAL takes 15 s and 1 GB to compile, and CMakeLists.txt gives its flags to this file only.
+TEST(Layering, IncludesCgalInOneFile) {
+    std::vector<std::string> files;
+    for (const fs::path& file : all_sources())
+        for (const Include& include : includes_of(file))
+            if (include.name.starts_with("CGAL/")) files.push_back(file.lexically_relative(root).string());
+    EXPECT_THAT(files, testing::Each("src/blocks/arrangement.cpp"));
+}
+
 TEST(Layering, ReadsNamesInBothKindsOfBrackets) {
     EXPECT_EQ(included_name("#include <CGAL/Arrangement_2.h> // exact"), "CGAL/Arrangement_2.h");
     EXPECT_EQ(included_name("#include \"kluft/core/vector.hpp\""), "kluft/core/vector.hpp");
