@@ -1,8 +1,8 @@
 // Text that leaves the project: no path of somebody's machine, nothing marked as unfinished.
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <fstream>
-#include <regex>
 #include <set>
 #include <string>
 #include <vector>
@@ -36,24 +36,41 @@ std::vector<fs::path> text_files() {
     return files;
 }
 
-std::vector<std::string> lines_with(const std::regex& pattern) {
+/// True where `word` stands in the line and the character before it is none of a name or a path.
+bool has_word(const std::string& line, const std::string& word) {
+    for (std::size_t at = line.find(word); at != std::string::npos; at = line.find(word, at + 1)) {
+        const char before = at == 0 ? ' ' : line[at - 1];
+        if (std::isalnum(static_cast<unsigned char>(before)) == 0 &&
+            std::string("_.}/").find(before) == std::string::npos)
+            return true;
+    }
+    return false;
+}
+
+std::vector<std::string> lines_with(const std::vector<std::string>& words) {
     std::vector<std::string> found;
     for (const fs::path& file : text_files()) {
         std::ifstream stream(file);
         std::string line;
         for (int number = 1; std::getline(stream, line); ++number)
-            if (line.size() < 10000 && std::regex_search(line, pattern))
-                found.push_back(file.lexically_relative(root).string() + ":" + std::to_string(number) + ": " + line);
+            for (const std::string& word : words)
+                if (has_word(line, word))
+                    found.push_back(file.lexically_relative(root).string() + ":" + std::to_string(number) + ": " +
+                                    line);
     }
     return found;
 }
 
+// The words are put together here so that this file does not hold them itself.
+std::string slashed(const std::string& name) { return "/" + name + "/"; }
+
 TEST(Prose, NamesNoPathOfOneMachine) {
-    EXPECT_THAT(lines_with(std::regex("(^|[^A-Za-z0-9_.}])/(home|root|tmp|work|Users)/")), testing::IsEmpty());
+    EXPECT_THAT(lines_with({slashed("home"), slashed("root"), slashed("tmp"), slashed("work"), slashed("Users")}),
+                testing::IsEmpty());
 }
 
 TEST(Prose, LeavesNothingMarkedAsUnfinished) {
-    EXPECT_THAT(lines_with(std::regex(std::string("\\b(TO") + "DO|FIX" + "ME|XX" + "X)\\b")), testing::IsEmpty());
+    EXPECT_THAT(lines_with({std::string("TO") + "DO", std::string("FIX") + "ME"}), testing::IsEmpty());
 }
 
 } // namespace

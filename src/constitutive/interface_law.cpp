@@ -48,11 +48,10 @@ double plastic_slip(const InterfaceLaw& law, double trial, double elastic_gap, d
 } // namespace
 
 ContactPressure contact_pressure(const InterfaceLaw& law, double gap) {
+    if (gap >= 0.0) return {0.0, 0.0};
     const double g0 = law.contact_rounding / law.normal_stiffness;
-    if (gap <= -g0) return {-law.normal_stiffness * gap, -law.normal_stiffness};
-    if (gap >= g0) return {0.0, 0.0};
-    const double rest = g0 - gap;
-    return {law.normal_stiffness * rest * rest / (4.0 * g0), -law.normal_stiffness * rest / (2.0 * g0)};
+    if (gap <= -2.0 * g0) return {-law.normal_stiffness * (gap + g0), -law.normal_stiffness};
+    return {law.normal_stiffness * gap * gap / (4.0 * g0), law.normal_stiffness * gap / (2.0 * g0)};
 }
 
 ShearLimit shear_limit(const InterfaceLaw& law, double pressure) {

@@ -138,6 +138,17 @@ bool has(const DrawnBody& body, InterfaceLook look) {
     return std::find(body.looks.begin(), body.looks.end(), look) != body.looks.end();
 }
 
+bool does(const DrawnBody& body, Motion motion) {
+    return std::find(body.motions.begin(), body.motions.end(), motion) != body.motions.end();
+}
+
+LegendEntry open_entry() {
+    return {"open fracture", [](Canvas& canvas, const Vec2& middle) {
+                for (const double y : {-1.3, 1.3})
+                    canvas.line(middle + Vec2(-9.0, y), middle + Vec2(9.0, y), {ink::fracture, 0.6});
+            }};
+}
+
 std::string length_label(double metres) {
     if (metres >= 1.0) return fmt::format("{:.2g} m", metres);
     if (metres >= 0.01) return fmt::format("{:.2g} cm", 100.0 * metres);
@@ -159,8 +170,9 @@ std::vector<LegendEntry> interface_entries(const DrawnBody& before, const DrawnB
     add(InterfaceLook::mapped_bond, "mapped, still bonded");
     add(InterfaceLook::joint, "fracture of the net");
     add(InterfaceLook::bond, "potential crack");
-    if (std::find(after.sliding.begin(), after.sliding.end(), true) != after.sliding.end())
-        entries.push_back(line_entry("sliding fracture", sliding_stroke(12.0, 0.3)));
+    if (does(after, Motion::sliding))
+        entries.push_back(line_entry("sliding fracture", stroke_of(Motion::sliding, 12.0, 0.3)));
+    if (does(after, Motion::open)) entries.push_back(open_entry());
     add(InterfaceLook::tension_crack, "crack in tension");
     add(InterfaceLook::shear_crack, "crack in shear");
     const double largest = largest_movements(after).cracks;
@@ -251,7 +263,7 @@ std::string draw_blocks(const BlockSystem& system, const FieldRecord& fields, co
     after.colour = [&](int block) { return scale(stresses[block]); };
     auto entries = interface_entries(before, after);
     append(entries, material_entries(system, plot));
-    constexpr double bar_height = 150.0;
+    constexpr double bar_height = 190.0;
     constexpr double bar_gap = 24.0;
     const Box box = box_of(after);
     const Layout layout = layout_of(box, 2, bar_height + bar_gap + legend_height(entries), {360.0, 450.0});

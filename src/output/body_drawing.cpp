@@ -34,6 +34,11 @@ double movement_of(const FieldRecord::InterfaceFields& fields) {
     return std::isfinite(movement) ? movement : 0.0;
 }
 
+Motion motion_of(const FieldRecord::InterfaceFields& fields) {
+    if (fields.bonded || fields.broken || fields.state == ContactState::locked) return Motion::none;
+    return fields.state == ContactState::open ? Motion::open : Motion::sliding;
+}
+
 /// Current places of the vertices of each loop of a block, on the page.
 std::vector<std::vector<Vec2>> loops_on_page(const Panel& panel, const DrawnBody& body, int index) {
     const Block& block = body.system.blocks[index];
@@ -48,11 +53,12 @@ std::vector<std::vector<Vec2>> loops_on_page(const Panel& panel, const DrawnBody
 }
 
 void draw_blocks_of(Canvas& canvas, const Panel& panel, const DrawnBody& body, double block_size) {
+    constexpr double smallest_outlined = 1.0; // points
     const Stroke outline{ink::block, std::clamp(0.03 * block_size, 0.04, 0.4)};
     for (int i = 0; i < body.system.n_blocks(); ++i) {
         const auto loops = loops_on_page(panel, body, i);
         canvas.fill_polygon(loops, body.colour(i));
-        canvas.stroke_polygon(loops, outline);
+        if (block_size > smallest_outlined) canvas.stroke_polygon(loops, outline);
     }
 }
 
@@ -90,13 +96,14 @@ int width_class(double movement, double largest) {
 
 double share_of(int width) { return static_cast<double>(width) / (n_widths - 1); }
 
-void draw_sliding(Canvas& canvas, const Panel& panel, const DrawnBody& body, double block_size, double largest) {
+void draw_motions(Canvas& canvas, const Panel& panel, const DrawnBody& body, double block_size, double largest,
+                  Motion motion) {
     std::array<Segments, n_widths> segments;
     for (int i = 0; i < body.system.n_interfaces(); ++i)
-        if (body.sliding[i] && !is_crack(body.looks[i]))
+        if (body.motions[i] == motion)
             segments[width_class(body.movement[i], largest)].push_back(lines_of(panel, body, i).middle);
     for (int width = 0; width < n_widths; ++width)
-        canvas.segments(segments[width], sliding_stroke(block_size, share_of(width)));
+        canvas.segments(segments[width], stroke_of(motion, block_size, share_of(width)));
 }
 
 void draw_interfaces(Canvas& canvas, const Panel& panel, const DrawnBody& body, double block_size, double largest,
@@ -139,7 +146,7 @@ DrawnBody body_before(const BlockSystem& system, const std::vector<bool>& potent
     for (int i = 0; i < system.n_interfaces(); ++i)
         body.looks.push_back(look_before(system.interfaces[i], potential[i]));
     body.movement.assign(system.interfaces.size(), 0.0);
-    body.sliding.assign(system.interfaces.size(), false);
+    body.motions.assign(system.interfaces.size(), Motion::none);
     return body;
 }
 
@@ -151,7 +158,7 @@ DrawnBody body_after(const BlockSystem& system, const FieldRecord& fields, doubl
         const auto& interface = fields.interfaces[i];
         body.looks.push_back(look_after(system.interfaces[i], interface));
         body.movement.push_back(movement_of(interface));
-        body.sliding.push_back(!interface.bonded && interface.state == ContactState::sliding);
+        body.motions.push_back(motion_of(interface));
     }
     return body;
 }
@@ -176,7 +183,7 @@ LargestMovements largest_movements(const DrawnBody& body) {
     for (int i = 0; i < body.system.n_interfaces(); ++i) {
         if (is_crack(body.looks[i]))
             cracks.push_back(body.movement[i]);
-        else if (body.sliding[i])
+        else if (body.motions[i] == Motion::sliding)
             sliding.push_back(body.movement[i]);
     }
     return {nearly_largest(cracks), nearly_largest(sliding)};
@@ -208,8 +215,9 @@ Stroke stroke_of(InterfaceLook look, double block_size, double share) {
     return {};
 }
 
-Stroke sliding_stroke(double block_size, double share) {
-    return {ink::sliding, std::clamp(0.12 * block_size, 0.3, 1.8) * (1.0 + 1.5 * share), {}, true};
+Stroke stroke_of(Motion motion, double block_size, double share) {
+    const double width = std::clamp(0.12 * block_size, 0.3, 1.8) * (1.0 + 1.5 * share);
+    return {motion == Motion::open ? ink::open : ink::sliding, motion == Motion::none ? 0.0 : width, {}, true};
 }
 
 void draw_body(Canvas& canvas, const Panel& panel, const DrawnBody& body) {
@@ -219,7 +227,8 @@ void draw_body(Canvas& canvas, const Panel& panel, const DrawnBody& body) {
     canvas.begin_clip(panel.corner - margin, panel.size() + 2.0 * margin);
     draw_blocks_of(canvas, panel, body, block_size);
     draw_boundary(canvas, panel, body);
-    draw_sliding(canvas, panel, body, block_size, largest.sliding);
+    draw_motions(canvas, panel, body, block_size, largest.sliding, Motion::open);
+    draw_motions(canvas, panel, body, block_size, largest.sliding, Motion::sliding);
     for (const InterfaceLook look : {InterfaceLook::joint, InterfaceLook::mapped_bond, InterfaceLook::mapped_fracture,
                                      InterfaceLook::shear_crack, InterfaceLook::tension_crack})
         draw_interfaces(canvas, panel, body, block_size, largest.cracks, look);

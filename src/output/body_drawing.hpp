@@ -36,6 +36,7 @@ inline constexpr Colour block = colour(0x000000, 0.22);
 inline constexpr Colour tension = colour(0xD7191C);
 inline constexpr Colour shear = colour(0x1F4FD8);
 inline constexpr Colour sliding = colour(0xF5A800);
+inline constexpr Colour open = colour(0xFFFFFF);
 } // namespace ink
 
 /// How an interface is drawn.
@@ -48,6 +49,9 @@ enum class InterfaceLook {
     shear_crack
 };
 
+/// What a fracture does now; none for bonds and cracks.
+enum class Motion { none, sliding, open };
+
 /// A body in one configuration: the current place of every block's vertices, and how its interfaces look.
 struct DrawnBody {
     const BlockSystem& system;
@@ -55,7 +59,7 @@ struct DrawnBody {
     std::vector<Vec2> displacement;    ///< as in FieldRecord, magnified (m)
     std::vector<InterfaceLook> looks;  ///< one per interface
     std::vector<double> movement;      ///< opening and slip of each interface, 0 where bonded (m)
-    std::vector<bool> sliding;         ///< one per interface
+    std::vector<Motion> motions;       ///< one per interface
     std::function<Colour(int)> colour; ///< of a block
 };
 
@@ -82,6 +86,7 @@ void draw_body(Canvas& canvas, const Panel& panel, const DrawnBody& body);
 /// Line of an interface of the given look on a page where blocks have `block_size` points; `share` of the largest
 /// movement, 0 to 1.
 [[nodiscard]] Stroke stroke_of(InterfaceLook look, double block_size, double share);
-[[nodiscard]] Stroke sliding_stroke(double block_size, double share);
+/// The band under a moving fracture.
+[[nodiscard]] Stroke stroke_of(Motion motion, double block_size, double share);
 
 } // namespace kluft

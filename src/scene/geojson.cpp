@@ -36,7 +36,7 @@ json parse_file(const std::filesystem::path& file) {
     if (!stream) throw InputError(fmt::format("{}: the file cannot be opened", file.string()));
     try {
         return json::parse(stream);
-    } catch (const json::parse_error& error) {
+    } catch (const json::exception& error) {
         throw InputError(fmt::format("{}: not valid JSON: {}", file.string(), error.what()));
     }
 }

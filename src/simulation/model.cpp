@@ -2,6 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <type_traits>
+
+#include <fmt/format.h>
 
 #include "kluft/constitutive/strength_envelope.hpp"
 #include "kluft/core/diagnostics.hpp"
@@ -42,6 +47,22 @@ InterfaceLaw resolve_law(const InterfaceType& type, const InterfaceStiffness& st
     law.friction_rounding = type.friction_rounding;
     return law;
 }
+
+/// FNV-1a (Fowler, Noll and Vo) over the bytes of plain values.
+class Digest {
+public:
+    template <typename... Values> void add(Values... values) { (add_one(values), ...); }
+    [[nodiscard]] std::string text() const { return fmt::format("{:016x}", value_); }
+
+private:
+    template <typename Value> void add_one(Value value) {
+        static_assert(std::is_arithmetic_v<Value>);
+        unsigned char bytes[sizeof(Value)];
+        std::memcpy(bytes, &value, sizeof(Value));
+        for (const unsigned char byte : bytes) value_ = (value_ ^ byte) * 1099511628211ULL;
+    }
+    std::uint64_t value_ = 14695981039346656037ULL;
+};
 
 Strength strength_of(const Interface& interface, const BlockSystem& system, const ModelInput& input) {
     const InterfaceType& type = input.interface_types[interface.interface_type];
@@ -111,6 +132,31 @@ Model build_model(BlockSystem system, const ModelInput& input) {
     }
     model.system = std::move(system);
     return model;
+}
+
+std::string fingerprint(const Model& model) {
+    Digest digest;
+    digest.add(model.gravity.x(), model.gravity.y());
+    for (const Vec2& vertex : model.system.vertices) digest.add(vertex.x(), vertex.y());
+    for (const Interface& i : model.system.interfaces)
+        digest.add(i.block_a, i.edge_a, i.block_b, i.edge_b, i.interface_type);
+    for (const ElasticModuli& moduli : model.moduli) digest.add(moduli.lambda, moduli.mu);
+    for (const double density : model.densities) digest.add(density);
+    for (const InterfaceLaw& law : model.laws) {
+        digest.add(law.normal_stiffness, law.shear_stiffness, law.tan_friction, law.cohesion, law.tan_dilation,
+                   law.cohesion_onset, law.contact_rounding, law.friction_rounding);
+    }
+    for (const Strength& strength : model.strengths) {
+        digest.add(strength.cohesion, strength.friction_angle, strength.tensile_strength);
+    }
+    for (const Stage& stage : model.loads.stages) {
+        digest.add(stage.steps, static_cast<int>(stage.platens));
+        for (const auto& [boundary, pressure] : stage.pressure) digest.add(boundary, pressure);
+        if (stage.motion) {
+            digest.add(static_cast<int>(stage.motion->control), stage.motion->boundary, stage.motion->value);
+        }
+    }
+    return digest.text();
 }
 
 } // namespace kluft

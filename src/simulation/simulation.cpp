@@ -10,21 +10,18 @@
 #include <fmt/format.h>
 
 #include "kluft/contact/bonds.hpp"
-#include "kluft/contact/detection.hpp"
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/equilibrium/open_close_solver.hpp"
 #include "kluft/fracture/crack_check.hpp"
 #include "kluft/kinematics/affine.hpp"
 #include "kluft/simulation/measurements.hpp"
 #include "kluft/simulation/stage_loads.hpp"
+#include "kluft/simulation/state_points.hpp"
 
 namespace kluft {
 
 namespace {
 
-/// Largest opening at which a contact point is kept, relative to the lattice spacing. Twice this is less than the
-/// distance of hexagons that are not neighbours, so that an undeformed net has no pairs but its own.
-constexpr double contact_reach = 0.1;
 constexpr int max_balance_rounds = 12;
 constexpr double least_balance_progress = 0.7; ///< of the viscous share per round, else the body is moving
 constexpr double first_relaxation = 4.0;       ///< eta of a relaxation relative to the ordinary one
@@ -53,13 +50,6 @@ private:
     double& total_;
     Clock::time_point start_ = Clock::now();
 };
-
-std::vector<char> bonded_interfaces(const State& state) {
-    std::vector<char> bonded(state.interfaces.size());
-    std::ranges::transform(state.interfaces, bonded.begin(),
-                           [](InterfaceStatus s) { return s == InterfaceStatus::potential_crack ? 1 : 0; });
-    return bonded;
-}
 
 /// True if the constraints stop every rigid motion of every group of bonded blocks.
 bool is_held(const BlockSystem& system, const std::vector<char>& bonded, const Constraints& constraints) {
@@ -95,13 +85,6 @@ public:
         StepObserver& observer, const std::atomic<bool>& stop)
         : model_(model), cracks_(cracks), options_(solver), accepted_(state), observer_(observer), stop_(stop),
           work_(state), gauges_(make_gauges(model)), open_close_(linear_, open_close_options(solver)) {
-        surfaces_.law.reserve(model.system.interfaces.size());
-        for (const Interface& interface : model.system.interfaces) {
-            surfaces_.law.push_back(model.fracture_law[interface.interface_type]);
-        }
-        for (const InterfaceLaw& law : model.laws) surfaces_.friction.push_back(law.tan_friction);
-        const auto fracture = std::ranges::find(model.bonds, 0);
-        surfaces_.default_law = fracture != model.bonds.end() ? static_cast<int>(fracture - model.bonds.begin()) : 0;
         for (const Stage& stage : model.loads.stages) n_steps_ += stage.steps;
     }
 
@@ -272,24 +255,16 @@ private:
         problem_.system = &model_.system;
         problem_.moduli = &model_.moduli;
         problem_.laws = &model_.laws;
-        surfaces_.bonded = bonded_interfaces(work_);
-        bool separated = false;
+        bonded_ = bonded_interfaces(work_);
+        const bool separated = std::ranges::find(bonded_, 0) != bonded_.end();
         {
             const Stopwatch watch(report_.seconds.set_up);
-            for (int i = 0; i < model_.system.n_interfaces(); ++i) {
-                if (surfaces_.bonded[i]) {
-                    append_bond_points(model_.system, i, work_.displacement, &work_.bond_shear[n_bond_points * i],
-                                       problem_.bonds);
-                } else {
-                    separated = true;
-                }
-            }
+            problem_.bonds = bond_points(model_, work_);
         }
         std::vector<std::pair<int, int>> near_pairs;
         if (separated) {
             const Stopwatch watch(report_.seconds.detection);
-            auto detected = detect_contacts(model_.system, surfaces_, work_.displacement,
-                                            contact_reach * model_.system.spacing, work_.contacts);
+            auto detected = state_contacts(model_, work_);
             problem_.contacts = std::move(detected.points);
             near_pairs = std::move(detected.near_pairs);
             ++report_.detections;
@@ -301,7 +276,7 @@ private:
         problem_.start = work_.displacement;
         problem_.least_mass_area = std::sqrt(0.75) * model_.system.spacing * model_.system.spacing;
         const double height = (model_.system.upper - model_.system.lower).maxCoeff();
-        const bool needs_mass = separated || !is_held(model_.system, surfaces_.bonded, problem_.constraints);
+        const bool needs_mass = separated || !is_held(model_.system, bonded_, problem_.constraints);
         problem_.eta = needs_mass ? options_.viscosity * model_.effective_modulus / (height * height) : 0.0;
     }
 
@@ -430,10 +405,9 @@ private:
         ++report_.crack_checks;
         const auto stresses = block_stresses(model_.system, model_.moduli, q);
         if (cracks_.criterion == CrackCriterion::principal_stress) {
-            return crack_check(model_.system, surfaces_.bonded, model_.strengths, stresses);
+            return crack_check(model_.system, bonded_, model_.strengths, stresses);
         }
-        return crack_check(model_.system, surfaces_.bonded, model_.strengths, stresses,
-                           bond_tractions(model_, problem_, q));
+        return crack_check(model_.system, bonded_, model_.strengths, stresses, bond_tractions(model_, problem_, q));
     }
 
     double largest_index_at(const Eigen::VectorXd& q) {
@@ -651,7 +625,7 @@ private:
     Gauges gauges_;
     LinearSolver linear_;
     OpenCloseSolver open_close_;
-    ContactSurfaces surfaces_;
+    std::vector<char> bonded_; ///< per interface of the work state
     BlockPattern pattern_;
     EquilibriumProblem problem_;
     std::optional<StageLoads> loads_;

@@ -17,7 +17,7 @@ struct InterfaceLaw {
     double cohesion = 0.0;
     double tan_dilation = 0.0;
     double cohesion_onset = 0.0;    ///< t_r: c_eff = c min(1, p/t_r)
-    double contact_rounding = 0.0;  ///< g_0 k_n: the pressure is rounded for |gap| < g_0
+    double contact_rounding = 0.0;  ///< g_0 k_n: the pressure is rounded for -2 g_0 < gap < 0
     double friction_rounding = 0.0; ///< s: Coulomb's limit is rounded for |trial|/limit in 1 - s .. 1 + s
 };
 
@@ -37,7 +37,8 @@ struct PointTraction {
 };
 
 /// Contact pressure p(gap) >= 0 of the rounded law and its derivative (<= 0). With g_0 = contact_rounding/k_n:
-/// p = k_n (g_0 - g)^2/(4 g_0) for |g| < g_0, -k_n g below, 0 above.
+/// p = k_n g^2/(4 g_0) for -2 g_0 < g < 0, -k_n (g + g_0) below, 0 for an open point: the body as it was cut is free of
+/// stress, and a point is open exactly where its gap is positive.
 struct ContactPressure {
     double value = 0.0;
     double slope = 0.0;

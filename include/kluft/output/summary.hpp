@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "kluft/constitutive/material.hpp"
+#include "kluft/simulation/run_status.hpp"
 #include "kluft/simulation/step_record.hpp"
 
 namespace kluft {
@@ -46,8 +47,6 @@ struct CurveNumbers {
 [[nodiscard]] CurveNumbers curve_numbers(const std::vector<StepRecord>& equilibria,
                                          const std::vector<StepRecord>& history, std::optional<int> platen_stage,
                                          Plane plane);
-
-enum class RunStatus { done, no_equilibrium, collapsed, out_of_resources, interrupted };
 
 /// The name of a status in summary.json.
 [[nodiscard]] std::string status_name(RunStatus status);

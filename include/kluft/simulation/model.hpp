@@ -41,4 +41,7 @@ struct ModelInput {
 /// Throws InputError where stiffnesses cannot be resolved or a potential crack has no strength.
 [[nodiscard]] Model build_model(BlockSystem system, const ModelInput& input);
 
+/// A number of the body, its mechanics and its loads, as text: a saved state belongs to one of them.
+[[nodiscard]] std::string fingerprint(const Model& model);
+
 } // namespace kluft

@@ -6,18 +6,12 @@
 
 #include "kluft/assembly/linear_solver.hpp"
 #include "kluft/simulation/model.hpp"
+#include "kluft/simulation/run_status.hpp"
 #include "kluft/simulation/simulation_options.hpp"
 #include "kluft/simulation/state.hpp"
 #include "kluft/simulation/step_observer.hpp"
 
 namespace kluft {
-
-enum class RunStatus {
-    done,
-    no_equilibrium, ///< a step found none; the state is the last committed one
-    collapsed,      ///< a stress-controlled stage went past what the body carries
-    interrupted     ///< asked to stop; the state is the last committed one
-};
 
 /// Where the time of a run went (s).
 struct RunSeconds {

@@ -1,0 +1,125 @@
+// kluft check SCENE
+#include <algorithm>
+#include <memory>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "commands.hpp"
+#include "kluft/assembly/block_matrix.hpp"
+#include "kluft/assembly/linear_solver.hpp"
+#include "kluft/constitutive/lattice_stiffness.hpp"
+#include "kluft/kinematics/affine.hpp"
+#include "kluft/scene/scene_model.hpp"
+#include "kluft/scene/scene_reader.hpp"
+
+namespace kluft {
+
+namespace {
+
+struct CheckArguments {
+    std::string scene;
+    std::vector<std::string> overrides;
+};
+
+void print_blocks(const Scene& scene, const SceneModel& built) {
+    const BlockSystem& system = built.model.system;
+    const Vec2 extent = system.upper - system.lower;
+    fmt::print("body         {:.6g} m x {:.6g} m, plane {}\n", extent.x(), extent.y(),
+               scene.plane == Plane::strain ? "strain" : "stress");
+    fmt::print("blocks       {}\n", system.n_blocks());
+    fmt::print("unknowns     {}\n", n_block_unknowns * system.n_blocks());
+    fmt::print("interfaces   {}\n", system.n_interfaces());
+    for (std::size_t t = 0; t < scene.interface_types.size(); ++t) {
+        const auto count = std::ranges::count(system.interfaces, static_cast<int>(t), &Interface::interface_type);
+        if (count == 0) continue;
+        fmt::print("  {:<16} {:>7}  {}\n", scene.interface_types[t].name, count,
+                   built.model.bonds[t] ? "potential crack" : "fracture");
+    }
+}
+
+void print_cut(const CutReport& cut) {
+    fmt::print("smallest     area {:.4g} m2, edge {:.4g} m, angle {:.4g} deg\n", cut.smallest_area, cut.smallest_edge,
+               cut.smallest_angle * 180.0 / std::numbers::pi);
+    fmt::print("mended       {} slivers merged, {} short edges collapsed, {} ends pruned\n", cut.merged.size(),
+               cut.collapsed_edges, cut.pruned_ends);
+    constexpr std::size_t most_listed = 10;
+    for (std::size_t i = 0; i < std::min(most_listed, cut.merged.size()); ++i) {
+        fmt::print("  merged {:.3g} m2 at ({:.6g}, {:.6g})\n", cut.merged[i].area, cut.merged[i].at.x(),
+                   cut.merged[i].at.y());
+    }
+    if (cut.merged.size() > most_listed) fmt::print("  and {} more\n", cut.merged.size() - most_listed);
+}
+
+void print_stiffness(const Scene& scene, const Model& model) {
+    const double d = model.system.spacing;
+    for (std::size_t t = 0; t < model.laws.size(); ++t) {
+        const InterfaceLaw& law = model.laws[t];
+        fmt::print("stiffness    {}: k_n {:.4g} Pa/m, k_s {:.4g} Pa/m, k_n d/E {:.4g}\n", scene.interface_types[t].name,
+                   law.normal_stiffness, law.shear_stiffness,
+                   law.normal_stiffness * d / scene.materials.front().youngs_modulus);
+    }
+    if (!scene.geometry.tessellation) return;
+    const InterfaceLaw& net = model.laws[scene.geometry.tessellation->interface_type];
+    for (std::size_t m = 0; m < model.moduli.size(); ++m) {
+        const auto lattice =
+            lattice_moduli(model.moduli[m], {net.normal_stiffness, net.shear_stiffness}, d, model.plane);
+        fmt::print("lattice      {}: E {:.4g} Pa, nu {:.4g}\n", scene.materials[m].name, lattice.youngs_modulus,
+                   lattice.poissons_ratio);
+    }
+}
+
+/// Factor as CHOLMOD counts it, and per block what the program keeps beside it (measured).
+void print_memory(const BlockSystem& system) {
+    constexpr double program_bytes = 3e7;
+    constexpr double bytes_per_block = 2.5e4;
+    std::vector<std::pair<int, int>> pairs;
+    for (const Interface& interface : system.interfaces) pairs.emplace_back(interface.block_a, interface.block_b);
+    const FactorCost cost = factor_cost(BlockPattern(system.n_blocks(), pairs));
+    fmt::print("memory       about {:.3g} MB, of which the factor {:.3g} MB ({:.3g} flops each)\n",
+               1e-6 * (program_bytes + bytes_per_block * system.n_blocks() + cost.bytes), 1e-6 * cost.bytes,
+               cost.flops);
+}
+
+/// A laterally loaded body under a platen is most often a cylinder.
+bool looks_like_a_triaxial_test(const Scene& scene) {
+    const bool platen = std::ranges::any_of(scene.loads.stages, [](const Stage& s) { return s.motion.has_value(); });
+    const bool pressed = std::ranges::any_of(scene.loads.stages, [](const Stage& s) { return s.pressure.size() >= 2; });
+    return platen && pressed;
+}
+
+ExitCode check(const CheckArguments& arguments) {
+    const Scene scene = read_scene(arguments.scene, arguments.overrides);
+    const SceneModel built = build_scene_model(scene);
+    fmt::print("scene        {}{}\n", scene.name, scene.title.empty() ? "" : ": " + scene.title);
+    print_blocks(scene, built);
+    print_cut(built.cut);
+    print_stiffness(scene, built.model);
+    print_memory(built.model.system);
+    for (const Stage& stage : scene.loads.stages) fmt::print("stage        {}: {} steps\n", stage.name, stage.steps);
+    for (const auto* warnings : {&scene.warnings, &built.model.warnings}) {
+        for (const auto& warning : *warnings) fmt::print("warning: {}\n", warning);
+    }
+    if (looks_like_a_triaxial_test(scene)) {
+        fmt::print("warning: a triaxial test is run in plane {}; a cylinder has the lateral pressure all around and no "
+                   "plane of the section is free of the others\n",
+                   scene.plane == Plane::strain ? "strain" : "stress");
+    }
+    return ExitCode::done;
+}
+
+} // namespace
+
+void add_check_command(CLI::App& app, std::function<ExitCode()>& command) {
+    auto arguments = std::make_shared<CheckArguments>();
+    CLI::App* sub = app.add_subcommand("check", "Say what a scene amounts to, without running it");
+    sub->add_option("scene", arguments->scene, "Scene file (YAML)")->required();
+    sub->add_option("--set", arguments->overrides, "Replace a value of the scene")->take_all()->allow_extra_args(false);
+    sub->footer("Example: kluft check models/triaxial/case-3-all.yaml");
+    sub->callback([arguments, &command] { command = [arguments] { return check(*arguments); }; });
+}
+
+} // namespace kluft

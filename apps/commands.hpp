@@ -1,0 +1,26 @@
+// The subcommands: each adds itself to the command line and sets what is to be done.
+#pragma once
+
+#include <functional>
+
+namespace CLI {
+class App;
+}
+
+namespace kluft {
+
+enum class ExitCode {
+    done = 0,
+    missed = 1, ///< a comparison or a validation case missed its tolerance
+    bad_input = 2,
+    no_equilibrium = 3,
+    out_of_resources = 4,
+    interrupted = 130
+};
+
+void add_run_command(CLI::App& app, std::function<ExitCode()>& command);
+void add_check_command(CLI::App& app, std::function<ExitCode()>& command);
+void add_draw_command(CLI::App& app, std::function<ExitCode()>& command);
+void add_envelope_command(CLI::App& app, std::function<ExitCode()>& command);
+
+} // namespace kluft

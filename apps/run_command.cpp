@@ -1,0 +1,224 @@
+// kluft run SCENE
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <memory>
+#include <new>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "commands.hpp"
+#include "kluft/assembly/linear_solver.hpp"
+#include "kluft/core/diagnostics.hpp"
+#include "kluft/core/version.hpp"
+#include "kluft/kinematics/affine.hpp"
+#include "kluft/output/progress_line.hpp"
+#include "kluft/output/run_log.hpp"
+#include "kluft/output/run_writer.hpp"
+#include "kluft/output/state_file.hpp"
+#include "kluft/scene/scene_model.hpp"
+#include "kluft/scene/scene_reader.hpp"
+#include "kluft/simulation/measurements.hpp"
+#include "kluft/simulation/simulation.hpp"
+#include "kluft/simulation/state_points.hpp"
+
+namespace kluft {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Below this many unknowns the BLAS gets one thread: more make it slower (measured), and one repeats to the bit.
+constexpr int unknowns_worth_threads = 20000;
+
+std::atomic<bool> stop_requested{false};
+
+void request_stop(int) { stop_requested = true; }
+
+struct RunArguments {
+    std::string scene;
+    std::string directory;
+    std::vector<std::string> overrides;
+    int threads = 0;
+    bool quiet = false;
+    bool resume = false;
+};
+
+/// Passes everything on to the files and keeps the terminal informed.
+class RunObserver : public StepObserver {
+public:
+    RunObserver(RunWriter& writer, bool quiet) : writer_(writer) {
+        if (!quiet) line_ = std::make_unique<ProgressLine>(ProgressLine::on_standard_error());
+    }
+    void equilibrium(const StepRecord& record) override { writer_.equilibrium(record); }
+    void crack(const CrackRecord& crack) override { writer_.crack(crack); }
+    void step(const StepRecord& record, const State& state, const std::function<FieldRecord()>& fields,
+              bool last_of_stage) override {
+        writer_.step(record, state, fields, last_of_stage);
+    }
+    void progress(const Progress& progress) override {
+        if (line_) line_->update(progress);
+    }
+    void clear() {
+        if (line_) line_->clear();
+    }
+
+private:
+    RunWriter& writer_;
+    std::unique_ptr<ProgressLine> line_;
+};
+
+RunWriterOptions writer_options(const Scene& scene, const Model& model) {
+    RunWriterOptions options;
+    options.fields = scene.output.fields;
+    options.fields_every = scene.output.fields_every;
+    options.pictures = scene.output.pictures;
+    options.checkpoint_every = scene.output.checkpoint_every;
+    options.title = scene.title.empty() ? scene.name : scene.title;
+    options.fingerprint = fingerprint(model);
+    const int platen_stage = make_gauges(model).first_platen_stage;
+    if (platen_stage >= 0) options.platen_stage = platen_stage;
+    options.plane = scene.plane;
+    for (const Material& material : scene.materials) options.material_names.push_back(material.name);
+    return options;
+}
+
+RunOutcome outcome_of(const RunReport& report, const Model& model, double elapsed_s) {
+    RunOutcome outcome;
+    outcome.status = report.status;
+    outcome.message = report.diagnosis;
+    outcome.factorizations = report.linear.factorizations;
+    outcome.analyses = report.linear.analyses;
+    outcome.unknowns = n_block_unknowns * model.system.n_blocks();
+    outcome.elapsed_s = elapsed_s;
+    outcome.version = std::string(version());
+    outcome.seconds = {{"detection", report.seconds.detection},         {"set_up", report.seconds.set_up},
+                       {"assembly", report.seconds.assembly},           {"analysis", report.seconds.analysis},
+                       {"factorization", report.seconds.factorization}, {"solution", report.seconds.solution},
+                       {"crack_check", report.seconds.crack_check},     {"output", report.seconds.observers}};
+    return outcome;
+}
+
+ExitCode exit_code(RunStatus status) {
+    switch (status) {
+    case RunStatus::done:
+    case RunStatus::collapsed:
+        return ExitCode::done;
+    case RunStatus::no_equilibrium:
+        return ExitCode::no_equilibrium;
+    case RunStatus::out_of_resources:
+        return ExitCode::out_of_resources;
+    case RunStatus::interrupted:
+        return ExitCode::interrupted;
+    }
+    return ExitCode::done;
+}
+
+std::string closing_line(const RunReport& report, const RunSummary& summary, const fs::path& directory) {
+    std::string text = status_name(report.status);
+    if (summary.numbers.peak_stress) {
+        text += fmt::format(": peak {:.4g} MPa at {:.4g} %{}", 1e-6 * *summary.numbers.peak_stress,
+                            100.0 * summary.numbers.peak_strain.value_or(0.0),
+                            summary.numbers.peak_reached ? "" : " (still rising)");
+    }
+    text += fmt::format(", {} tension and {} shear cracks, {} solves, {:.1f} s; results in {}",
+                        summary.numbers.cracks_tension, summary.numbers.cracks_shear, report.open_close_iterations,
+                        summary.elapsed_s, directory.string());
+    if (report.unbalanced_steps > 0) text += fmt::format("; {} steps unbalanced", report.unbalanced_steps);
+    return text;
+}
+
+/// The run itself; whatever happens, the last committed state and the tables reach the disk if the disk allows it.
+ExitCode simulate(const Model& model, const Scene& scene, State& state, RunWriter& writer, RunLog& log,
+                  const fs::path& directory, bool quiet) {
+    const auto start = std::chrono::steady_clock::now();
+    RunObserver observer(writer, quiet);
+    RunReport report;
+    std::string resource_message;
+    try {
+        report = run_simulation(model, scene.cracks, scene.solver, state, observer, stop_requested);
+    } catch (const ResourceError& error) {
+        resource_message = error.what();
+    } catch (const std::bad_alloc&) {
+        resource_message = "out of memory";
+    }
+    observer.clear();
+    if (!resource_message.empty()) {
+        report.status = RunStatus::out_of_resources;
+        report.diagnosis = resource_message;
+        log.error(resource_message);
+    }
+    const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const auto summary =
+        writer.finish(outcome_of(report, model, elapsed), state, [&] { return fields_of_state(model, state); });
+    const std::string closing = closing_line(report, summary, directory);
+    log.info(closing);
+    if (!report.diagnosis.empty()) {
+        log.error(report.diagnosis);
+        fmt::print(stderr, "{}\n", report.diagnosis);
+    }
+    if (!quiet) fmt::print("{}\n", closing);
+    return exit_code(report.status);
+}
+
+ExitCode run(const RunArguments& arguments) {
+    const Scene scene = read_scene(arguments.scene, arguments.overrides);
+    const fs::path directory =
+        arguments.directory.empty() ? fs::path("results") / scene.name : fs::path(arguments.directory);
+    const SceneModel built = build_scene_model(scene);
+    const Model& model = built.model;
+    const int unknowns = n_block_unknowns * model.system.n_blocks();
+    const bool one_thread = scene.solver.repeatable || unknowns < unknowns_worth_threads;
+    if (one_thread) {
+        set_blas_threads(1);
+    } else if (arguments.threads > 0) {
+        set_blas_threads(arguments.threads);
+    }
+
+    State state = initial_state(model);
+    RunWriterOptions options = writer_options(scene, model);
+    if (arguments.resume) {
+        state = read_state(directory / "state.h5", options.fingerprint);
+        options.resumed_step = state.step;
+    }
+    RunWriter writer(directory, model.system, std::move(options));
+    RunLog log(directory / "run.log", arguments.resume);
+    log.info(fmt::format("kluft {} runs {}: {} blocks, {} interfaces, {} unknowns", version(), arguments.scene,
+                         model.system.n_blocks(), model.system.n_interfaces(), unknowns));
+    for (const auto& override_text : arguments.overrides) log.info("--set " + override_text);
+    for (const auto* warnings : {&scene.warnings, &model.warnings}) {
+        for (const auto& warning : *warnings) {
+            log.warning(warning);
+            if (!arguments.quiet) fmt::print(stderr, "warning: {}\n", warning);
+        }
+    }
+    std::signal(SIGINT, request_stop);
+    std::signal(SIGTERM, request_stop);
+    return simulate(model, scene, state, writer, log, directory, arguments.quiet);
+}
+
+} // namespace
+
+void add_run_command(CLI::App& app, std::function<ExitCode()>& command) {
+    auto arguments = std::make_shared<RunArguments>();
+    CLI::App* sub =
+        app.add_subcommand("run", "Run a scene: load it step by step and write curves, fields and pictures");
+    sub->add_option("scene", arguments->scene, "Scene file (YAML)")->required();
+    sub->add_option("-o,--output", arguments->directory, "Directory of the results (default: results/<scene name>)");
+    sub->add_option("--set", arguments->overrides, "Replace a value of the scene, e.g. --set stages.1.steps=200")
+        ->take_all()
+        ->allow_extra_args(false);
+    sub->add_option("--threads", arguments->threads, "Threads of the factorization (bodies of 20 000 unknowns or more)")
+        ->check(CLI::PositiveNumber);
+    sub->add_flag("--quiet", arguments->quiet, "No progress and no closing line");
+    sub->add_flag("--resume", arguments->resume, "Go on from the state saved in the directory");
+    sub->footer("Exit codes: 0 done, 2 bad input, 3 no equilibrium, 4 out of disk or memory, 130 interrupted.\n"
+                "Example: kluft run models/triaxial/case-3-all.yaml --set geometry.tessellation.hexagons.spacing=0.03");
+    sub->callback([arguments, &command] { command = [arguments] { return run(*arguments); }; });
+}
+
+} // namespace kluft

@@ -1,0 +1,91 @@
+// Everything that a run leaves in its directory.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kluft/blocks/block_system.hpp"
+#include "kluft/constitutive/material.hpp"
+#include "kluft/output/summary.hpp"
+#include "kluft/simulation/step_observer.hpp"
+
+namespace kluft {
+
+struct RunWriterOptions {
+    bool fields = true;       ///< fields.pvd and fields/*.vtu
+    int fields_every = 0;     ///< load steps between two of them; 0: only step 0 and the end of each stage
+    bool pictures = true;     ///< curve.png, curve.svg, blocks.png, blocks.svg
+    int checkpoint_every = 0; ///< load steps between two state.h5; 0: at the end of each stage and of the run
+    std::string title;
+    std::string fingerprint;         ///< of the scene, kept in state.h5
+    std::optional<int> resumed_step; ///< load step of the saved state that the run goes on from; none: a new run
+    std::optional<int> platen_stage; ///< the first stage that moves a platen
+    Plane plane = Plane::strain;
+    std::vector<std::string> material_names;
+};
+
+/// How a run ended and what it cost.
+struct RunOutcome {
+    RunStatus status = RunStatus::done;
+    std::string message; ///< the diagnosis, if not done
+    std::int64_t factorizations = 0;
+    std::int64_t analyses = 0;
+    std::optional<int> open_close_iterations; ///< all linear solves; none: the sum over the rows of history.csv
+    int unknowns = 0;
+    double elapsed_s = 0.0;
+    std::map<std::string, double> seconds; ///< by stage of the computation
+    std::string version;
+};
+
+/// Writes history.csv, equilibria.csv and cracks.csv row by row, field files, state.h5 at checkpoints, and at the end
+/// summary.json and the pictures. The tables hold whole rows at any moment, every other file appears whole.
+///
+/// A new run first removes what an earlier one left in the directory (run.log excepted), so that results never mix;
+/// foreign files stay. A resumed run keeps the rows and field files up to the saved step and goes on from there.
+class RunWriter : public StepObserver {
+public:
+    /// `system` must outlive the writer. Throws ResourceError; InputError when the tables of a run to resume are
+    /// missing or do not reach the saved step.
+    RunWriter(std::filesystem::path directory, const BlockSystem& system, RunWriterOptions options);
+    ~RunWriter() override;
+
+    /// These throw ResourceError.
+    void equilibrium(const StepRecord& record) override;
+    void crack(const CrackRecord& crack) override;
+    void step(const StepRecord& record, const State& state, const std::function<FieldRecord()>& fields,
+              bool last_of_stage) override;
+
+    /// Saves a committed state, after the rows that belong to it. Throws ResourceError.
+    void checkpoint(const State& state);
+
+    /// Ends the run, however it ended: last state, field files of the last step, summary, pictures. `fields` computes
+    /// the fields of `state`. Tries everything, also after a part failed; then throws the first ResourceError.
+    RunSummary finish(const RunOutcome& outcome, const State& state, const std::function<FieldRecord()>& fields);
+
+private:
+    struct Tables;
+
+    /// Whether the tables of a resumed run have the row already.
+    [[nodiscard]] bool is_known(const StepRecord& record) const;
+    void write_pictures(const FieldRecord& fields) const;
+    void write_fields(const StepRecord& record, const FieldRecord& fields);
+    [[nodiscard]] RunSummary summary_of(const RunOutcome& outcome) const;
+
+    std::filesystem::path directory_;
+    const BlockSystem& system_;
+    RunWriterOptions options_;
+    std::unique_ptr<Tables> tables_;
+    std::vector<StepRecord> history_;
+    std::vector<StepRecord> equilibria_;
+};
+
+/// Removes every file that a run writes, except run.log. Throws ResourceError.
+void remove_results(const std::filesystem::path& directory);
+
+} // namespace kluft

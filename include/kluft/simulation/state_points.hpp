@@ -1,0 +1,31 @@
+// The bonds and contacts of a state: where open-close iteration starts from.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "kluft/contact/contact.hpp"
+#include "kluft/simulation/model.hpp"
+#include "kluft/simulation/state.hpp"
+#include "kluft/simulation/step_record.hpp"
+
+namespace kluft {
+
+/// 1 for each interface that is still bonded.
+[[nodiscard]] std::vector<char> bonded_interfaces(const State& state);
+
+/// The two points of every bond, in the frames of the state.
+[[nodiscard]] std::vector<ContactPoint> bond_points(const Model& model, const State& state);
+
+struct StateContacts {
+    std::vector<ContactPoint> points;
+    std::vector<std::pair<int, int>> near_pairs; ///< blocks near enough to touch soon
+};
+
+/// Contacts of the unbonded surfaces, with the histories of the state.
+[[nodiscard]] StateContacts state_contacts(const Model& model, const State& state);
+
+/// Fields of a committed state, for pictures and ParaView.
+[[nodiscard]] FieldRecord fields_of_state(const Model& model, const State& state);
+
+} // namespace kluft

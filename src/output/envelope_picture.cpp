@@ -1,0 +1,112 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "kluft/output/axis.hpp"
+#include "kluft/output/envelope.hpp"
+
+namespace kluft {
+
+namespace {
+
+constexpr double plot_width = 430.0; // points
+constexpr double left_margin = 62.0;
+constexpr double right_margin = 20.0;
+constexpr double top_margin = 42.0;
+constexpr double bottom_margin = 48.0;
+constexpr double pixels_per_point = 3.2;
+constexpr double degrees = 180.0 / std::numbers::pi;
+constexpr double mega = 1e6;
+
+/// Shear strength on a plane under the normal stress sigma (both in MPa).
+double shear_strength(const Envelope& envelope, double sigma) {
+    return envelope.cohesion / mega + sigma * std::tan(envelope.friction_angle);
+}
+
+/// Axes of equal scale around the circles and the lines.
+PlotFrame frame_of(const std::vector<PeakPoint>& points, const Envelope& fit) {
+    double low = 0.0;
+    double high = 0.0;
+    double top = 0.0;
+    for (const PeakPoint& point : points) {
+        low = std::min({low, point.sigma_3 / mega, point.sigma_1 / mega});
+        high = std::max({high, point.sigma_3 / mega, point.sigma_1 / mega});
+        top = std::max(top, 0.5 * std::abs(point.sigma_1 - point.sigma_3) / mega);
+    }
+    PlotFrame frame;
+    frame.corner = {left_margin, top_margin};
+    frame.x = round_axis(low, high, 8);
+    top = std::max(1.15 * top, 0.9 * shear_strength(fit, 0.7 * high));
+    const double tick = frame.x.step;
+    const double ceiling =
+        tick * std::clamp(std::ceil(top / tick), 1.0, std::ceil((frame.x.high - frame.x.low) / tick));
+    frame.y = {0.0, ceiling, tick};
+    frame.size = {plot_width, plot_width * frame.y.high / (frame.x.high - frame.x.low)};
+    return frame;
+}
+
+void draw_circle(Canvas& canvas, const PlotFrame& frame, const PeakPoint& point, const Colour& line) {
+    const double middle = 0.5 * (point.sigma_1 + point.sigma_3) / mega;
+    const double radius = 0.5 * std::abs(point.sigma_1 - point.sigma_3) / mega;
+    const double points_per_mega = frame.size.x() / (frame.x.high - frame.x.low);
+    Stroke stroke{line, 1.4};
+    if (!point.peak_reached) stroke.dash = {4.0, 2.5};
+    canvas.arc(frame.place({middle, 0.0}), radius * points_per_mega, std::numbers::pi, 2.0 * std::numbers::pi, stroke);
+}
+
+void draw_line(Canvas& canvas, const PlotFrame& frame, const Envelope& envelope, const Stroke& stroke) {
+    // From where the strength vanishes, as far as the plot goes.
+    const double tangent = std::tan(envelope.friction_angle);
+    const double begin = tangent > 0.0 ? std::max(frame.x.low, -envelope.cohesion / mega / tangent) : frame.x.low;
+    canvas.line(frame.place({begin, shear_strength(envelope, begin)}),
+                frame.place({frame.x.high, shear_strength(envelope, frame.x.high)}), stroke);
+}
+
+std::string constants(const Envelope& envelope) {
+    return fmt::format("c = {:.3f} MPa, \u03c6 = {:.1f}\u00b0", envelope.cohesion / mega,
+                       envelope.friction_angle * degrees);
+}
+
+/// Dashes with the wider gaps the later the envelope is in the list.
+Stroke other_stroke(std::size_t index) {
+    return {colour(0x777777), 1.0, {5.0, 2.0 + 1.5 * static_cast<double>(index)}};
+}
+
+void draw_legend(Canvas& canvas, const PlotFrame& frame, const Envelope& fit, const std::vector<NamedEnvelope>& others,
+                 bool any_rising) {
+    const TextStyle style{.size = 8.5, .down = Align::middle, .halo = 2.0};
+    Vec2 at = frame.corner + Vec2(10.0, 13.0);
+    const auto entry = [&](const std::string& label, const Stroke& stroke) {
+        canvas.line(at, at + Vec2(20.0, 0.0), stroke);
+        canvas.text(at + Vec2(26.0, 0.0), label, style);
+        at.y() += 14.0;
+    };
+    entry("fit: " + constants(fit), {colour(0x1A1A1A), 1.5});
+    for (std::size_t i = 0; i < others.size(); ++i)
+        entry(others[i].label + ": " + constants(others[i].envelope), other_stroke(i));
+    if (any_rising) entry("peak not reached", {colour(0x1A1A1A), 1.4, {4.0, 2.5}});
+}
+
+} // namespace
+
+std::string draw_envelope(const std::string& title, const std::vector<PeakPoint>& points, const Envelope& fit,
+                          const std::vector<NamedEnvelope>& others, PictureFormat format) {
+    const PlotFrame frame = frame_of(points, fit);
+    const Vec2 page = frame.corner + frame.size + Vec2(right_margin, bottom_margin);
+    const bool any_rising =
+        std::any_of(points.begin(), points.end(), [](const PeakPoint& point) { return !point.peak_reached; });
+    return draw_picture(format, page.x(), page.y(), pixels_per_point, [&](Canvas& canvas) {
+        canvas.text({frame.corner.x(), 26.0}, title, {.size = 11.5, .bold = true});
+        draw_axes(canvas, frame, "normal stress (MPa, compression positive)", "shear stress (MPa)");
+        canvas.begin_clip(frame.corner, frame.size);
+        for (std::size_t i = 0; i < points.size(); ++i) draw_circle(canvas, frame, points[i], series_colour(i));
+        for (std::size_t i = 0; i < others.size(); ++i) draw_line(canvas, frame, others[i].envelope, other_stroke(i));
+        draw_line(canvas, frame, fit, {colour(0x1A1A1A), 1.5});
+        canvas.end_clip();
+        draw_legend(canvas, frame, fit, others, any_rising);
+    });
+}
+
+} // namespace kluft

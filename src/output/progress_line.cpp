@@ -1,0 +1,105 @@
+#include "kluft/output/progress_line.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+namespace kluft {
+
+namespace {
+
+constexpr double rewrite_seconds = 0.1;
+constexpr double plain_seconds = 10.0;
+constexpr int parts = 20; // a plain line for each
+
+double fraction_of(const Progress& progress) {
+    return progress.n_steps > 0 ? static_cast<double>(progress.step) / progress.n_steps : 0.0;
+}
+
+int terminal_columns() {
+    winsize size{};
+    return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
+}
+
+} // namespace
+
+std::string readable_time(double seconds) {
+    const auto whole = static_cast<long>(std::lround(std::clamp(seconds, 0.0, 1e9)));
+    if (whole < 60) return fmt::format("{} s", whole);
+    if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
+    return fmt::format("{} h {:02} min", whole / 3600, whole % 3600 / 60);
+}
+
+std::string progress_text(const Progress& progress, std::optional<double> seconds_left) {
+    std::string text = fmt::format("stage {}/{}  step {}/{} ({:.0f} %)  strain {:.3f} %  stress {:.3f} MPa  cracks {}  "
+                                   "iterations {}",
+                                   progress.stage + 1, progress.n_stages, progress.step, progress.n_steps,
+                                   std::floor(100.0 * fraction_of(progress)), 100.0 * progress.axial_strain,
+                                   progress.axial_stress / 1e6, progress.cracks, progress.open_close_iterations);
+    if (seconds_left) text += "  left " + readable_time(*seconds_left);
+    return text;
+}
+
+ProgressLine::ProgressLine(std::function<void(std::string_view)> write, bool terminal, int columns,
+                           std::function<double()> seconds)
+    : write_(std::move(write)), terminal_(terminal), columns_(columns), seconds_(std::move(seconds)) {}
+
+ProgressLine ProgressLine::on_standard_error() {
+    const auto write = [](std::string_view text) {
+        std::fwrite(text.data(), 1, text.size(), stderr);
+        std::fflush(stderr);
+    };
+    const auto seconds = [] {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+    };
+    return {write, isatty(STDERR_FILENO) == 1, terminal_columns(), seconds};
+}
+
+/// From the pace of the later half of the time so far: steps after the peak cost more than those before it.
+std::optional<double> ProgressLine::seconds_left(double fraction) const {
+    if (steps_.size() < 2) return std::nullopt;
+    const auto [now, done] = steps_.back();
+    const double middle = 0.5 * (steps_.front().first + now);
+    const auto from = std::find_if(steps_.rbegin(), steps_.rend(),
+                                   [&](const auto& step) { return step.first <= middle || step.second < done - 0.5; });
+    const auto [then, before] = from == steps_.rend() ? steps_.front() : *from;
+    if (!(done > before) || !(now > then)) return std::nullopt;
+    return (1.0 - fraction) * (now - then) / (done - before);
+}
+
+void ProgressLine::show(const Progress& progress) {
+    std::string text = progress_text(progress, seconds_left(fraction_of(progress)));
+    if (terminal_) {
+        if (columns_ > 0) text.resize(std::min(text.size(), static_cast<std::size_t>(columns_) - 1));
+        write_("\r" + text + "\033[K");
+        visible_ = true;
+    } else {
+        write_(text + '\n');
+    }
+    last_shown_ = seconds_();
+    shown_ = true;
+}
+
+void ProgressLine::update(const Progress& progress) {
+    const double now = seconds_();
+    const double fraction = fraction_of(progress);
+    if (steps_.empty() || fraction > steps_.back().second) steps_.emplace_back(now, fraction);
+    const int part = static_cast<int>(std::floor(parts * fraction + 1e-9));
+    const double pause = terminal_ ? rewrite_seconds : plain_seconds;
+    if (shown_ && part == last_part_ && now - last_shown_ < pause) return;
+    last_part_ = part;
+    show(progress);
+}
+
+void ProgressLine::clear() {
+    if (!visible_) return;
+    write_("\r\033[K");
+    visible_ = false;
+}
+
+} // namespace kluft

@@ -1,0 +1,19 @@
+#include "kluft/scene/scene_model.hpp"
+
+#include <utility>
+
+namespace kluft {
+
+SceneModel build_scene_model(const Scene& scene) {
+    CutBody body = cut_blocks(scene.geometry);
+    ModelInput input;
+    input.plane = scene.plane;
+    input.gravity = {scene.gravity_x, scene.gravity_y};
+    input.materials = scene.materials;
+    input.interface_types = scene.interface_types;
+    input.tessellation_type = scene.geometry.tessellation ? scene.geometry.tessellation->interface_type : -1;
+    input.loads = scene.loads;
+    return {build_model(std::move(body.system), input), std::move(body.report)};
+}
+
+} // namespace kluft

@@ -1,0 +1,60 @@
+#include "kluft/simulation/state_points.hpp"
+
+#include <algorithm>
+
+#include "kluft/contact/bonds.hpp"
+#include "kluft/contact/detection.hpp"
+#include "kluft/equilibrium/equilibrium_problem.hpp"
+#include "kluft/simulation/measurements.hpp"
+
+namespace kluft {
+
+namespace {
+
+/// Largest opening at which a contact point is kept, relative to the lattice spacing. Twice this is less than the
+/// distance of hexagons that are not neighbours, so that an undeformed net has no pairs but its own.
+constexpr double contact_reach = 0.1;
+
+} // namespace
+
+std::vector<char> bonded_interfaces(const State& state) {
+    std::vector<char> bonded(state.interfaces.size());
+    std::ranges::transform(state.interfaces, bonded.begin(),
+                           [](InterfaceStatus s) { return s == InterfaceStatus::potential_crack ? 1 : 0; });
+    return bonded;
+}
+
+std::vector<ContactPoint> bond_points(const Model& model, const State& state) {
+    std::vector<ContactPoint> points;
+    for (int i = 0; i < model.system.n_interfaces(); ++i) {
+        if (state.interfaces[i] != InterfaceStatus::potential_crack) continue;
+        append_bond_points(model.system, i, state.displacement, &state.bond_shear[n_bond_points * i], points);
+    }
+    return points;
+}
+
+StateContacts state_contacts(const Model& model, const State& state) {
+    ContactSurfaces surfaces;
+    surfaces.bonded = bonded_interfaces(state);
+    for (const Interface& interface : model.system.interfaces) {
+        surfaces.law.push_back(model.fracture_law[interface.interface_type]);
+    }
+    for (const InterfaceLaw& law : model.laws) surfaces.friction.push_back(law.tan_friction);
+    const auto fracture = std::ranges::find(model.bonds, 0);
+    surfaces.default_law = fracture != model.bonds.end() ? static_cast<int>(fracture - model.bonds.begin()) : 0;
+    auto detected = detect_contacts(model.system, surfaces, state.displacement, contact_reach * model.system.spacing,
+                                    state.contacts);
+    return {std::move(detected.points), std::move(detected.near_pairs)};
+}
+
+FieldRecord fields_of_state(const Model& model, const State& state) {
+    EquilibriumProblem problem;
+    problem.system = &model.system;
+    problem.moduli = &model.moduli;
+    problem.laws = &model.laws;
+    problem.bonds = bond_points(model, state);
+    problem.contacts = state_contacts(model, state).points;
+    return field_record(model, state, problem);
+}
+
+} // namespace kluft

@@ -1,0 +1,561 @@
+#include "kluft/blocks/block_cutter.hpp"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+#include <gtest/gtest.h>
+
+#include "blocks/cut_scenes.hpp"
+#include "kluft/core/diagnostics.hpp"
+#include "kluft/geometry/predicates.hpp"
+
+namespace kluft {
+namespace {
+
+using namespace cut_scenes;
+
+CutBody sound_cut(const GeometrySpec& spec) {
+    CutBody body = cut_blocks(spec);
+    EXPECT_EQ(faults(spec, body), "");
+    return body;
+}
+
+std::vector<int> edge_counts(const BlockSystem& system) {
+    std::vector<int> counts;
+    for (const Block& block : system.blocks) counts.push_back(static_cast<int>(block.edges.size()));
+    std::sort(counts.begin(), counts.end());
+    return counts;
+}
+
+TEST(BlockCutter, ADomainWithoutCutsIsOneBlockWithItsFourSides) {
+    const CutBody body = sound_cut(rectangle(0.38, 1.0));
+    ASSERT_EQ(body.system.n_blocks(), 1);
+    EXPECT_EQ(body.system.n_interfaces(), 0);
+    EXPECT_EQ(body.system.blocks[0].edges.size(), 4U);
+    EXPECT_DOUBLE_EQ(body.system.blocks[0].area, 0.38);
+    ASSERT_EQ(body.system.boundaries.size(), 4U);
+    EXPECT_EQ(body.system.boundaries[3].name, "left");
+    for (const Boundary& side : body.system.boundaries) EXPECT_EQ(side.edges.size(), 1U);
+    EXPECT_DOUBLE_EQ(body.system.spacing, std::sqrt(0.38));
+    EXPECT_DOUBLE_EQ(body.report.smallest_area, 0.38);
+    EXPECT_DOUBLE_EQ(body.report.smallest_edge, 0.38);
+    EXPECT_DOUBLE_EQ(body.report.smallest_angle, 0.5 * std::numbers::pi);
+}
+
+TEST(BlockCutter, CrossingTracesMakeFourBlocksThatMeetAtOneVertex) {
+    GeometrySpec spec = rectangle(2, 2);
+    add_trace(spec, {{-1, 0.5}, {3, 0.5}}, 4);
+    add_trace(spec, {{1.5, -1}, {1.5, 3}}, 5);
+    const BlockSystem system = sound_cut(spec).system;
+    ASSERT_EQ(system.n_blocks(), 4);
+    EXPECT_EQ(system.n_interfaces(), 4);
+    EXPECT_EQ(sorted_areas(system), (std::vector<double>{0.25, 0.75, 0.75, 2.25}));
+    EXPECT_EQ(system.vertices.size(), 9U);
+    // Rows upwards, to the right in a row.
+    EXPECT_DOUBLE_EQ(system.blocks[0].area, 0.75);
+    EXPECT_DOUBLE_EQ(system.blocks[1].area, 0.25);
+    EXPECT_DOUBLE_EQ(system.blocks[2].area, 2.25);
+    for (const Interface& joint : system.interfaces) EXPECT_EQ(joint.interface_type, 4 + joint.fracture);
+    EXPECT_DOUBLE_EQ(interface_length(system, EdgeOrigin::fracture, 0), 2.0);
+    EXPECT_DOUBLE_EQ(interface_length(system, EdgeOrigin::fracture, 1), 2.0);
+}
+
+// At a T-junction the block beyond the through-going fracture keeps the vertex, so that each interface is one edge.
+TEST(BlockCutter, AnAbuttingTraceSplitsTheEdgeOppositeToIt) {
+    GeometrySpec spec = rectangle(2, 2);
+    add_trace(spec, {{-1, 1}, {3, 1}});
+    add_trace(spec, {{1, 1}, {1, 3}});
+    const BlockSystem system = sound_cut(spec).system;
+    EXPECT_EQ(system.n_blocks(), 3);
+    EXPECT_EQ(system.n_interfaces(), 3);
+    EXPECT_EQ(edge_counts(system), (std::vector<int>{4, 4, 5}));
+}
+
+TEST(BlockCutter, TheNormalToTheRightOfAnInterfacePointsFromAToB) {
+    GeometrySpec spec = rectangle(1, 1);
+    spec.tessellation = Tessellation{{.spacing = 0.1}, 3, {}};
+    const BlockSystem system = sound_cut(spec).system;
+    for (const Interface& joint : system.interfaces) {
+        const Edge& edge = system.blocks[joint.block_a].edges[joint.edge_a];
+        const Vec2 normal = right_normal(edge_end(system, edge) - edge_start(system, edge));
+        EXPECT_GT(normal.dot(system.blocks[joint.block_b].centroid - system.blocks[joint.block_a].centroid), 0.0);
+        EXPECT_LT(joint.block_a, joint.block_b);
+        EXPECT_EQ(joint.interface_type, 3);
+    }
+}
+
+class GapAtAnAbutment : public testing::TestWithParam<std::pair<double, int>> {};
+
+// d = 1, so 0.02 is the smallest gap that stays open.
+TEST_P(GapAtAnAbutment, IsClosedBelowTheResolution) {
+    const auto [gap, n_blocks] = GetParam();
+    GeometrySpec spec = rectangle(20, 20);
+    spec.reference_spacing = 1.0;
+    add_trace(spec, {{-1, 10}, {21, 10.3}});
+    const double y = 10.0 + 0.3 * 8.0 / 22.0;
+    add_trace(spec, {{7, y + gap}, {7, 25}});
+    const CutBody body = sound_cut(spec);
+    EXPECT_EQ(body.system.n_blocks(), n_blocks);
+    EXPECT_EQ(body.report.pruned_ends, n_blocks == 3 ? 0 : 1);
+    EXPECT_EQ(body.report.merged.size(), 0U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Gaps, GapAtAnAbutment,
+                         testing::Values(std::pair(0.019, 3), std::pair(1e-4, 3), std::pair(1e-12, 3),
+                                         std::pair(2e-15, 3), std::pair(0.0, 3), std::pair(-2e-15, 3),
+                                         std::pair(-1e-12, 3), std::pair(-1e-4, 3), std::pair(0.021, 2)));
+
+TEST(BlockCutter, TwoTracesWhoseEndsNearlyMeetMakeOneJoint) {
+    GeometrySpec spec = rectangle(20, 20);
+    spec.reference_spacing = 1.0;
+    add_trace(spec, {{-1, 9}, {10, 9}});
+    add_trace(spec, {{10.01, 9.005}, {21, 9}});
+    const CutBody body = sound_cut(spec);
+    EXPECT_EQ(body.system.n_blocks(), 2);
+    EXPECT_EQ(body.report.joined_ends, 2);
+    EXPECT_EQ(body.report.pruned_ends, 0);
+}
+
+TEST(BlockCutter, ATraceThatEndsJustShortOfTheOutlineReachesIt) {
+    GeometrySpec spec = rectangle(20, 20);
+    spec.reference_spacing = 1.0;
+    add_trace(spec, {{0.01, 9}, {19.99, 9}});
+    EXPECT_EQ(sound_cut(spec).system.n_blocks(), 2);
+}
+
+// What ends freely separates nothing: the cut is the same as without it, needless vertices included.
+TEST(BlockCutter, DanglingAndIsolatedTracesLeaveNoTrace) {
+    GeometrySpec spec = rectangle(2, 2);
+    add_trace(spec, {{-1, 1}, {3, 1.3}});
+    spec.tessellation = Tessellation{{.spacing = 0.5}, 0, {}};
+    const CutBody plain = sound_cut(spec);
+    GeometrySpec with = spec;
+    add_trace(with, {{0.95, 0.42}, {1.05, 0.44}});                        // across one flat
+    add_trace(with, {{-0.1, 0.45}, {0.13, 0.45}});                        // from beyond the outline into a block
+    add_trace(with, {{1.3, 0.4}, {1.3, 0.5}, {1.2, 0.45}, {1.27, 0.42}}); // inside a hexagon, with knees
+    const CutBody body = sound_cut(with);
+    EXPECT_TRUE(same_blocks(body.system, plain.system));
+    EXPECT_EQ(body.report.pruned_ends, plain.report.pruned_ends + 3);
+}
+
+TEST(BlockCutter, TracesBeyondTheDomainAreClipped) {
+    GeometrySpec spec = rectangle(1, 1);
+    add_trace(spec, {{-3, 0.5}, {-2, 0.7}, {5, 0.7}});
+    add_trace(spec, {{-3, 2}, {5, 3}});
+    add_trace(spec, {{2, -1}, {2, 5}});
+    const CutBody body = sound_cut(spec);
+    EXPECT_EQ(body.system.n_blocks(), 2);
+    EXPECT_EQ(body.report.pruned_ends, 0);
+    EXPECT_DOUBLE_EQ(interface_length(body.system, EdgeOrigin::fracture, 0), 1.0);
+}
+
+TEST(BlockCutter, ATraceAlongTheOutlineCutsNothing) {
+    GeometrySpec spec = rectangle(1, 1);
+    add_trace(spec, {{-0.5, 0}, {0.5, 0}});
+    add_trace(spec, {{1, 0.25}, {1, 0.75}});
+    const CutBody body = sound_cut(spec);
+    EXPECT_EQ(body.system.n_blocks(), 1);
+    EXPECT_EQ(body.system.blocks[0].edges.size(), 4U);
+}
+
+TEST(BlockCutter, OverlappingTracesBelongToTheFirstOne) {
+    GeometrySpec spec = rectangle(4, 1);
+    add_trace(spec, {{3, 0.5}, {1, 0.5}});
+    add_trace(spec, {{0, 0.5}, {2, 0.5}});
+    add_trace(spec, {{1.5, 0.5}, {4, 0.5}});
+    const BlockSystem system = sound_cut(spec).system;
+    EXPECT_EQ(system.n_blocks(), 2);
+    EXPECT_EQ(system.n_interfaces(), 3);
+    EXPECT_DOUBLE_EQ(interface_length(system, EdgeOrigin::fracture, 0), 2.0);
+    EXPECT_DOUBLE_EQ(interface_length(system, EdgeOrigin::fracture, 1), 1.0);
+    EXPECT_DOUBLE_EQ(interface_length(system, EdgeOrigin::fracture, 2), 1.0);
+}
+
+TEST(BlockCutter, DuplicateTracesChangeNothing) {
+    Uniform uniform(3);
+    GeometrySpec spec = rectangle(1, 1);
+    spec.tessellation = Tessellation{{.spacing = 0.2}, 0, {}};
+    add_random_traces(spec, 6, 1, 1, uniform);
+    const CutBody once = sound_cut(spec);
+    GeometrySpec twice = spec;
+    for (const FractureTrace& trace : spec.fractures) add_trace(twice, {trace.points.rbegin(), trace.points.rend()});
+    EXPECT_TRUE(same_blocks(sound_cut(twice).system, once.system));
+}
+
+// Twice the same trace but for the last digit: the strip between them is far below what the cut resolves.
+TEST(BlockCutter, NearlyDuplicateTracesMakeOneJoint) {
+    GeometrySpec spec = rectangle(1, 1);
+    add_trace(spec, {{-0.1, 0.3}, {1.1, 0.71}});
+    add_trace(spec, {{-0.1, std::nextafter(0.3, 1.0)}, {1.1, std::nextafter(0.71, 1.0)}});
+    add_trace(spec, {{-0.1, std::nextafter(0.3, 1.0)}, {1.1, std::nextafter(0.71, 0.0)}});
+    const CutBody body = sound_cut(spec);
+    EXPECT_EQ(body.system.n_blocks(), 2);
+    EXPECT_NEAR(interface_length(body.system, EdgeOrigin::fracture), std::hypot(1.0, 0.41 / 1.2), 1e-12);
+}
+
+TEST(BlockCutter, AClosedLoopIsABlockInAHole) {
+    GeometrySpec spec = rectangle(4, 4);
+    add_trace(spec, {{1, 1}, {3, 1}, {3, 2}, {1, 2}, {1, 1}});
+    const BlockSystem system = sound_cut(spec).system;
+    ASSERT_EQ(system.n_blocks(), 2);
+    EXPECT_EQ(system.n_interfaces(), 4);
+    EXPECT_EQ(sorted_areas(system), (std::vector<double>{2.0, 14.0}));
+    const Block& ring = system.blocks[system.blocks[0].area > 3.0 ? 0 : 1];
+    EXPECT_EQ(ring.loop_starts, (std::vector<int>{0, 4}));
+    EXPECT_EQ(ring.edges.size(), 8U);
+}
+
+TEST(BlockCutter, ABridgeToAClosedLoopIsPruned) {
+    GeometrySpec spec = rectangle(4, 4);
+    add_trace(spec, {{1, 1}, {3, 1}, {3, 2}, {1, 2}, {1, 1}});
+    add_trace(spec, {{2, 2}, {2, 4}});
+    const CutBody body = sound_cut(spec);
+    ASSERT_EQ(body.system.n_blocks(), 2);
+    EXPECT_EQ(body.system.n_interfaces(), 4);
+    EXPECT_EQ(body.report.pruned_ends, 1);
+}
+
+TEST(BlockCutter, LoopsInLoopsAndBesideEachOther) {
+    GeometrySpec spec = rectangle(8, 4);
+    add_trace(spec, {{1, 1}, {3, 1}, {3, 3}, {1, 3}, {1, 1}});
+    add_trace(spec, {{1.5, 1.5}, {2, 1.5}, {2, 2}, {1.5, 2}, {1.5, 1.5}});
+    add_trace(spec, {{5, 1}, {7, 1}, {6, 3}, {5, 1}});
+    const BlockSystem system = sound_cut(spec).system;
+    EXPECT_EQ(sorted_areas(system), (std::vector<double>{0.25, 2.0, 3.75, 26.0}));
+    for (const Block& block : system.blocks) {
+        EXPECT_EQ(block.loop_starts.size(), block.area > 20.0 ? 3U : (block.area == 3.75 ? 2U : 1U));
+    }
+}
+
+// A loop that touches the outline of its block, or another loop, in one vertex: every loop stays simple.
+TEST(BlockCutter, LoopsThatTouchInAVertexStayApart) {
+    GeometrySpec spec = rectangle(4, 4);
+    add_trace(spec, {{2, 0}, {3, 1}, {1, 1}, {2, 0}});
+    add_trace(spec, {{3, 1}, {3.5, 2}, {3, 2}, {3, 1}});
+    const BlockSystem system = sound_cut(spec).system;
+    ASSERT_EQ(system.n_blocks(), 3);
+    EXPECT_EQ(sorted_areas(system), (std::vector<double>{0.25, 1.0, 14.75}));
+}
+
+TEST(BlockCutter, ATraceMayCrossAndTouchItself) {
+    GeometrySpec spec = rectangle(4, 4);
+    add_trace(spec, {{0, 1}, {3, 1}, {3, 3}, {2, 3}, {2, 0}});
+    const BlockSystem system = sound_cut(spec).system;
+    EXPECT_EQ(sorted_areas(system), (std::vector<double>{2.0, 2.0, 12.0}));
+}
+
+TEST(BlockCutter, HolesOfTheDomainBelongToNoBlock) {
+    GeometrySpec spec = rectangle(4, 4);
+    spec.holes = {{{1, 1}, {2, 1}, {2, 2}, {1, 2}}, {{3, 3}, {3, 3.5}, {3.5, 3}}};
+    add_trace(spec, {{1.5, -1}, {1.5, 5}});
+    const CutBody body = sound_cut(spec);
+    EXPECT_EQ(body.system.n_blocks(), 2);
+    EXPECT_EQ(body.system.n_interfaces(), 2);
+    EXPECT_EQ(sorted_areas(body.system), (std::vector<double>{5.5, 9.375}));
+    EXPECT_DOUBLE_EQ(interface_length(body.system, EdgeOrigin::fracture), 3.0);
+}
+
+TEST(BlockCutter, NamesBelongToTheSidesInTheOrderGiven) {
+    GeometrySpec spec = rectangle(2, 1);
+    std::reverse(spec.domain.begin(), spec.domain.end()); // sides: top, right to left; left; bottom; right
+    spec.domain = {{0, 1}, {2, 1}, {2, 0}, {0, 0}};       // sides: top, right, bottom, left
+    spec.boundaries = {{"top", {0}}, {"walls", {1, 3}}};
+    add_trace(spec, {{-1, 0.25}, {3, 0.25}});
+    const BlockSystem system = sound_cut(spec).system;
+    ASSERT_EQ(system.boundaries.size(), 2U);
+    EXPECT_EQ(system.boundaries[0].edges.size(), 1U);
+    EXPECT_DOUBLE_EQ(boundary_length(system, system.boundaries[0]), 2.0);
+    EXPECT_EQ(system.boundaries[1].edges.size(), 4U);
+    EXPECT_DOUBLE_EQ(boundary_length(system, system.boundaries[1]), 2.0);
+}
+
+// A hexagon inside has the area sqrt(3)/2 d^2 and the second moment 5 sqrt(3)/16 a^4 with a = d/sqrt(3).
+TEST(BlockCutter, HexagonsInsideAreRegular) {
+    GeometrySpec spec = rectangle(1, 1);
+    spec.tessellation = Tessellation{{.spacing = 0.1, .rotation = 0.4, .offset = {0.013, 0.027}}, 0, {}};
+    const BlockSystem system = sound_cut(spec).system;
+    EXPECT_DOUBLE_EQ(system.spacing, 0.1);
+    int n_inside = 0;
+    for (const Block& block : system.blocks) {
+        const bool inside =
+            std::all_of(block.edges.begin(), block.edges.end(), [](const Edge& e) { return e.interface >= 0; });
+        const Vec2 from_edge = block.centroid.cwiseMin(Vec2(1, 1) - block.centroid);
+        if (!inside || from_edge.minCoeff() < 0.15) continue;
+        ++n_inside;
+        EXPECT_EQ(block.edges.size(), 6U);
+        EXPECT_NEAR(block.area, 0.5 * std::numbers::sqrt3 * 0.01, 1e-15);
+        const double expected = 5.0 * std::numbers::sqrt3 / 16.0 * std::pow(0.1 / std::numbers::sqrt3, 4);
+        EXPECT_TRUE(block.second_moment.isApprox(expected * Mat2::Identity(), 1e-10));
+    }
+    EXPECT_GT(n_inside, 40);
+}
+
+// Hexagons that the outline does not cut stay whole: a body of hexagons only has 3 n interfaces less the rim's.
+TEST(BlockCutter, ARegionKeepsWholeHexagonsWithTheirCentreInIt) {
+    GeometrySpec spec = rectangle(1, 1);
+    spec.tessellation = Tessellation{{.spacing = 0.125, .offset = {0.5, 0.5}}, 0, {}};
+    spec.tessellation->region = Polygon{{0.49, 0.49}, {0.51, 0.49}, {0.51, 0.51}, {0.49, 0.51}};
+    const BlockSystem system = sound_cut(spec).system;
+    ASSERT_EQ(system.n_blocks(), 2);
+    EXPECT_EQ(system.n_interfaces(), 6);
+    EXPECT_NEAR(sorted_areas(system)[0], hexagon_area(0.125), 1e-16);
+}
+
+// The zigzag of hexagon edges itself, given as a fracture: no new blocks, the edges become the fracture's.
+TEST(BlockCutter, AFractureAlongHexagonEdgesTakesThemOver) {
+    GeometrySpec spec = rectangle(1, 1);
+    spec.tessellation = Tessellation{{.spacing = 0.2, .offset = {0.03, 0.04}}, 1, {}};
+    const CutBody plain = sound_cut(spec);
+    const auto edges =
+        hexagon_edges(spec.tessellation->hexagons, {Vec2(0, 0), Vec2(1, 1)}, [](const Vec2&) { return true; });
+    double inside = 0.0;
+    for (std::size_t i = 0; i < edges.size(); i += 3) {
+        const auto& [a, b] = edges[i];
+        const Box box{Vec2(0.2, 0.2), Vec2(0.8, 0.8)};
+        if ((a - box.lower).minCoeff() < 0 || (box.upper - a).minCoeff() < 0 || (b - box.lower).minCoeff() < 0 ||
+            (box.upper - b).minCoeff() < 0) {
+            continue;
+        }
+        add_trace(spec, {a, b}, 2);
+        inside += (b - a).norm();
+    }
+    ASSERT_GE(spec.fractures.size(), 5U);
+    const CutBody body = sound_cut(spec);
+    EXPECT_EQ(body.system.n_blocks(), plain.system.n_blocks());
+    EXPECT_EQ(body.system.n_interfaces(), plain.system.n_interfaces());
+    EXPECT_EQ(body.system.vertices.size(), plain.system.vertices.size());
+    EXPECT_NEAR(interface_length(body.system, EdgeOrigin::fracture), inside, 1e-13);
+}
+
+// Through the vertical flats of one column of hexagons: flats and the hexagons between are cut by one straight joint.
+TEST(BlockCutter, AStraightFractureThroughFlatsIsOneJointWithoutSlivers) {
+    GeometrySpec spec = rectangle(1, 1);
+    spec.tessellation = Tessellation{{.spacing = 0.125, .offset = {0.0, 0.01}}, 1, {}};
+    add_trace(spec, {{0.4375, -1}, {0.4375, 2}});
+    const CutBody body = sound_cut(spec);
+    EXPECT_NEAR(interface_length(body.system, EdgeOrigin::fracture, 0), 1.0, 1e-14);
+    for (const Interface& joint : body.system.interfaces) {
+        if (joint.origin != EdgeOrigin::fracture) continue;
+        const Edge& edge = body.system.blocks[joint.block_a].edges[joint.edge_a];
+        EXPECT_EQ(edge_start(body.system, edge).x(), 0.4375);
+    }
+    for (const auto& piece : body.report.merged) {
+        EXPECT_TRUE(piece.at.x() < 0.01 || piece.at.x() > 0.99 || piece.at.y() < 0.05 || piece.at.y() > 0.95);
+    }
+}
+
+// Nearly along the flats: one sliver beside each flat, all of which go.
+TEST(BlockCutter, AFractureNearlyAlongFlatsLeavesNoSlivers) {
+    for (const double beside : {1e-15, 1e-12, 1e-9, 1e-6, 1e-3}) {
+        GeometrySpec spec = rectangle(1, 1);
+        spec.tessellation = Tessellation{{.spacing = 0.125, .offset = {0.0, 0.01}}, 1, {}};
+        add_trace(spec, {{0.4375 + beside, -1}, {0.4375 - beside, 2}});
+        const CutBody body = sound_cut(spec);
+        EXPECT_GE(body.report.smallest_area, 0.05 * hexagon_area(0.125));
+        EXPECT_GE(body.report.smallest_edge, 0.02 * 0.125);
+        EXPECT_NEAR(interface_length(body.system, EdgeOrigin::fracture, 0), 1.0, 1e-5);
+    }
+}
+
+// The strip of 0.005 m2 beside the outline is below 20 % of a hexagon of d = 0.2 (0.0069 m2), above 5 % of it.
+TEST(BlockCutter, ASliverGoesIntoItsNeighbourAndIsReported) {
+    GeometrySpec spec;
+    spec.domain = {{10, 20}, {11, 20}, {11, 21}, {10, 21}};
+    spec.reference_spacing = 0.2;
+    add_trace(spec, {{10.005, 19}, {10.005, 22}});
+    EXPECT_EQ(sound_cut(spec).system.n_blocks(), 2);
+
+    spec.minimum_area = 0.2;
+    const CutBody body = sound_cut(spec);
+    ASSERT_EQ(body.system.n_blocks(), 1);
+    EXPECT_EQ(body.system.blocks[0].edges.size(), 4U);
+    ASSERT_EQ(body.report.merged.size(), 1U);
+    EXPECT_NEAR(body.report.merged[0].area, 0.005, 1e-12);
+    EXPECT_NEAR(body.report.merged[0].at.x(), 10.0025, 1e-12);
+    EXPECT_NEAR(body.report.merged[0].at.y(), 20.5, 1e-12);
+}
+
+TEST(BlockCutter, SliversPreferToLeaveAcrossTheTessellation) {
+    for (int seed = 0; seed < 20; ++seed) {
+        Uniform uniform(100 + seed);
+        GeometrySpec spec = rectangle(1, 1);
+        spec.tessellation = Tessellation{{.spacing = 0.1, .offset = {uniform(), uniform()}}, 1, {}};
+        const double tilt = uniform(-0.3, 0.3);
+        add_trace(spec, {{-0.1, 0.5 - tilt}, {1.1, 0.5 + tilt}});
+        const CutBody body = sound_cut(spec);
+        // No piece leaves across the one fracture, which so stays whole and straight but for its collapsed edges.
+        EXPECT_NEAR(interface_length(body.system, EdgeOrigin::fracture, 0), std::hypot(1.0, 2.0 * tilt / 1.2), 1e-12);
+    }
+}
+
+TEST(BlockCutter, MaterialsComeFromTheCentroid) {
+    GeometrySpec spec = rectangle(4, 1);
+    spec.material = 7;
+    spec.regions = {{{{0, 0}, {2.2, 0}, {2.2, 1}, {0, 1}}, 1}, {{{0, 0}, {0.7, 0}, {0.7, 1}, {0, 1}}, 2}};
+    for (const double x : {1.0, 2.0, 3.0}) add_trace(spec, {{x, 0}, {x, 1}});
+    const BlockSystem system = sound_cut(spec).system;
+    ASSERT_EQ(system.n_blocks(), 4);
+    EXPECT_EQ(system.blocks[0].material, 2);
+    EXPECT_EQ(system.blocks[1].material, 1);
+    EXPECT_EQ(system.blocks[2].material, 7);
+    EXPECT_EQ(system.blocks[3].material, 7);
+}
+
+GeometrySpec shifted(GeometrySpec spec, const Vec2& by) {
+    const auto shift = [&by](std::vector<Vec2>& points) {
+        for (Vec2& p : points) p += by;
+    };
+    shift(spec.domain);
+    for (Polygon& hole : spec.holes) shift(hole);
+    for (FractureTrace& trace : spec.fractures) shift(trace.points);
+    return spec;
+}
+
+// Coordinates that are multiples of 2^-20 are exact near 6.7e6: a map far away is cut into the same bits.
+TEST(BlockCutter, TheMapsOffsetDoesNotMatter) {
+    Uniform uniform(11);
+    GeometrySpec spec = rectangle(1, 1);
+    const auto representable = [&uniform] { return std::round(uniform(-0.1, 1.1) * 0x1p20) * 0x1p-20; };
+    for (int i = 0; i < 8; ++i) {
+        const double x = representable();
+        const double y = representable();
+        const double u = representable();
+        add_trace(spec, {{x, y}, {u, representable()}});
+    }
+    spec.tessellation = Tessellation{{.spacing = 0.1, .rotation = 0.1, .jitter = 0.1}, 0, {}};
+    const Vec2 far(466011.0, 6692134.0);
+    const CutBody near_body = sound_cut(spec);
+    const CutBody far_body = sound_cut(shifted(spec, far));
+    EXPECT_EQ(far_body.system.origin, near_body.system.origin + far);
+    EXPECT_TRUE(same_blocks(near_body.system, far_body.system));
+}
+
+TEST(BlockCutter, TheOrderOfTheTracesDoesNotMatter) {
+    Uniform uniform(12);
+    GeometrySpec spec = rectangle(1, 1);
+    add_random_traces(spec, 30, 1, 1, uniform);
+    const auto areas = sorted_areas(sound_cut(spec).system);
+    std::reverse(spec.fractures.begin(), spec.fractures.end());
+    const auto reversed = sorted_areas(sound_cut(spec).system);
+    ASSERT_EQ(areas.size(), reversed.size());
+    for (std::size_t i = 0; i < areas.size(); ++i) EXPECT_NEAR(areas[i], reversed[i], 1e-13);
+}
+
+TEST(BlockCutter, RepeatsToTheBit) {
+    Uniform uniform(13);
+    GeometrySpec spec = rectangle(1, 1);
+    spec.tessellation = Tessellation{{.spacing = 0.05, .jitter = 0.15, .seed = 4}, 0, {}};
+    add_random_traces(spec, 10, 1, 1, uniform);
+    EXPECT_TRUE(same_blocks(sound_cut(spec).system, sound_cut(spec).system));
+}
+
+class RandomCut : public testing::TestWithParam<int> {};
+
+// Whatever crosses the body, the cut is a partition: areas and the lengths of the sides sum to the domain's, and a
+// connected net without holes obeys Euler's V - E + F = 1.
+TEST_P(RandomCut, IsAPartition) {
+    Uniform uniform(1000 + GetParam());
+    const double width = uniform(0.2, 2.0);
+    const double height = uniform(0.2, 2.0);
+    GeometrySpec spec = rectangle(width, height);
+    const int kind = GetParam() % 4;
+    if (kind != 3) {
+        const double d = 0.15 * std::sqrt(width * height);
+        spec.tessellation = Tessellation{{.spacing = d,
+                                          .rotation = uniform(0, 1.0),
+                                          .offset = {uniform(), uniform()},
+                                          .jitter = kind == 0 ? 0.0 : 0.24 * uniform(),
+                                          .seed = static_cast<std::uint64_t>(GetParam())},
+                                         1,
+                                         {}};
+    } else {
+        spec.reference_spacing = 0.1;
+    }
+    add_random_traces(spec, kind == 2 ? 60 : 8, width, height, uniform);
+    const CutBody body = cut_blocks(spec);
+    ASSERT_EQ(faults(spec, body), "");
+    const BlockSystem& system = body.system;
+    EXPECT_NEAR(boundary_length(system, system.boundaries[0]), width, 1e-12);
+    EXPECT_NEAR(boundary_length(system, system.boundaries[1]), height, 1e-12);
+    EXPECT_NEAR(boundary_length(system, system.boundaries[2]), width, 1e-12);
+    EXPECT_NEAR(boundary_length(system, system.boundaries[3]), height, 1e-12);
+    int n_loops = 0;
+    int n_sides = 0;
+    for (const Block& block : system.blocks) {
+        n_loops += static_cast<int>(block.loop_starts.size());
+        n_sides += static_cast<int>(block.edges.size());
+    }
+    if (n_loops == system.n_blocks()) {
+        const int n_edges = n_sides - system.n_interfaces();
+        EXPECT_EQ(static_cast<int>(system.vertices.size()) - n_edges + system.n_blocks(), 1);
+    }
+    if (spec.tessellation && system.n_blocks() > 1) {
+        EXPECT_GE(body.report.smallest_area, 0.05 * hexagon_area(system.spacing));
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, RandomCut, testing::Range(0, 120));
+
+/// A domain, a spacing or an option out of range, and what the message must name.
+struct BadSpec {
+    std::string name;
+    GeometrySpec spec;
+    std::string named;
+};
+
+std::vector<BadSpec> bad_specs() {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const GeometrySpec good = rectangle(1, 1);
+    std::vector<BadSpec> all;
+    const auto add = [&](const std::string& name, const std::string& named) -> GeometrySpec& {
+        all.push_back({name, good, named});
+        return all.back().spec;
+    };
+    add("Empty", "geometry.domain").domain = {};
+    add("TwoPoints", "geometry.domain").domain = {{0, 0}, {1, 0}};
+    add("NotANumber", "geometry.domain").domain[2] = {nan, 0};
+    add("Infinite", "geometry.domain").domain[2] = {1, std::numeric_limits<double>::infinity()};
+    add("BowTie", "crosses or touches").domain = {{0, 0}, {1, 1}, {1, 0}, {0, 1}};
+    add("Touching", "crosses or touches").domain = {{0, 0}, {2, 0}, {2, 2}, {1, 0}, {0, 2}};
+    add("Flat", "crosses or touches").domain = {{0, 0}, {1, 0}, {2, 0}};
+    add("RepeatedPoint", "the same").domain = {{0, 0}, {1, 0}, {1, 0}, {1, 1}};
+    add("HoleOutside", "hole").holes = {{{2, 2}, {3, 2}, {3, 3}}};
+    add("HoleAcross", "hole").holes = {{{0.5, 0.5}, {1.5, 0.5}, {0.5, 0.7}}};
+    add("HoleInHole", "hole").holes = {{{0.1, 0.1}, {0.9, 0.1}, {0.9, 0.9}, {0.1, 0.9}},
+                                       {{0.4, 0.4}, {0.6, 0.4}, {0.5, 0.6}}};
+    add("SideOutOfRange", "boundaries.top").boundaries = {{"top", {4}}};
+    add("SideTwice", "boundaries.b").boundaries = {{"a", {1}}, {"b", {1}}};
+    add("ShortTrace", "geometry.fractures.0").fractures = {{{{0, 0}}, 0, ""}};
+    add("TraceNotANumber", "geometry.fractures.0 (main)").fractures = {{{{0, 0}, {nan, 1}}, 0, "main"}};
+    add("NoSpacing", "spacing").tessellation = Tessellation{};
+    add("Jitter", "jitter").tessellation = Tessellation{{.spacing = 0.1, .jitter = 0.3}, 0, {}};
+    add("MinimumArea", "minimum_area").minimum_area = -0.1;
+    add("ReferenceSpacing", "reference_spacing").reference_spacing = nan;
+    add("Region", "region").regions = {{{{0, 0}, {1, 1}}, 0}};
+    return all;
+}
+
+TEST(BlockCutter, NamesWhatIsWrongWithItsInput) {
+    for (const BadSpec& bad : bad_specs()) {
+        try {
+            static_cast<void>(cut_blocks(bad.spec));
+            ADD_FAILURE() << bad.name << " was accepted";
+        } catch (const InputError& error) {
+            EXPECT_NE(std::string(error.what()).find(bad.named), std::string::npos) << bad.name << ": " << error.what();
+        }
+    }
+}
+
+TEST(LatticeSpacing, IsTheTessellationsElseTheReferenceElseZero) {
+    GeometrySpec spec = rectangle(1, 1);
+    EXPECT_EQ(lattice_spacing(spec), 0.0);
+    spec.reference_spacing = 0.3;
+    EXPECT_EQ(lattice_spacing(spec), 0.3);
+    spec.tessellation = Tessellation{{.spacing = 0.1}, 0, {}};
+    EXPECT_EQ(lattice_spacing(spec), 0.1);
+}
+
+} // namespace
+} // namespace kluft

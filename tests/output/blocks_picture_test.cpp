@@ -1,0 +1,91 @@
+#include "kluft/output/blocks_picture.hpp"
+
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kluft/core/diagnostics.hpp"
+#include "kluft/output/atomic_file.hpp"
+#include "kluft/output/colour_scale.hpp"
+#include "output/hexagon_grid.hpp"
+#include "output/temporary_directory.hpp"
+
+namespace kluft {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+using testing::TemporaryDirectory;
+
+double lightness(const Colour& c) { return 0.2126 * c.red + 0.7152 * c.green + 0.0722 * c.blue; }
+
+TEST(ColourScale, DarkensSteadilyAndClampsWhatLiesOutside) {
+    const ColourScale scale(Axis{0.0, 2.0, 0.5});
+    for (double value = 0.0; value < 2.0; value += 0.05)
+        EXPECT_GT(lightness(scale(value)), lightness(scale(value + 0.05)));
+    EXPECT_EQ(scale(-1.0).red, scale(0.0).red);
+    EXPECT_EQ(scale(5.0).red, scale(2.0).red);
+    EXPECT_EQ(scale(std::numeric_limits<double>::quiet_NaN()).red, scale(0.0).red);
+}
+
+TEST(ColourScale, EndsAtARoundNumberAboveAllButTheLargestValues) {
+    std::vector<double> values(1000, 1.3);
+    values[7] = 400.0;
+    values[8] = std::numeric_limits<double>::infinity();
+    EXPECT_EQ(scale_for(values).axis().low, 0.0);
+    EXPECT_NEAR(scale_for(values).axis().high, 1.4, 1e-12);
+    EXPECT_GT(scale_for({}).axis().high, 0.0);
+}
+
+BlocksPlot plot_of(const std::string& title) { return {title, "after", 1.0, {"sandstone"}, {true}}; }
+
+std::size_t count(const std::string& text, const std::string& part) {
+    std::size_t n = 0;
+    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++n;
+    return n;
+}
+
+TEST(BlocksPicture, IsWrittenAsPngAndSvg) {
+    const TemporaryDirectory directory;
+    const BlockSystem system = testing::hexagon_grid(6, 10, 0.05);
+    Mat2 gradient;
+    gradient << 0.004, 0.0, 0.0, -0.012;
+    auto fields = testing::affine_fields(system, gradient, -1e6 * Mat2::Identity());
+    fields.interfaces[30] = {false, true, CrackMode::tension, ContactState::open, 0.0, 0.0, 1e-3, 0.0};
+    fields.interfaces[31] = {false, true, CrackMode::shear, ContactState::sliding, 0.0, 0.0, 0.0, 2e-3};
+    fields.displacement[3].x() = std::numeric_limits<double>::quiet_NaN();
+    write_blocks(directory / "b.png", system, fields, plot_of("t"));
+    write_blocks(directory / "b.svg", system, fields, plot_of("t"));
+    write_geometry(directory / "g.png", system, plot_of("t"));
+    write_geometry(directory / "g.svg", system, plot_of("t"));
+    for (const char* name : {"b.png", "g.png"}) EXPECT_THAT(read_file(directory / name), StartsWith("\x89PNG"));
+    const std::string svg = read_file(directory / "b.svg");
+    EXPECT_THAT(svg, HasSubstr("</svg>"));
+    // Red of the tension crack, blue of the shear crack: each once in the body and once in the legend.
+    EXPECT_EQ(count(svg, "stroke:rgb(84.313725%,9.803922%,10.980392%)"), 2U);
+    EXPECT_EQ(count(svg, "stroke:rgb(12.156863%,30.980392%,84.705882%)"), 2U);
+}
+
+TEST(BlocksPicture, DrawsABlockWithAHole) {
+    const BlockSystem system = testing::block_with_hole();
+    const auto fields = testing::affine_fields(system, Mat2::Zero(), Mat2::Zero());
+    EXPECT_THAT(draw_blocks(system, fields, plot_of("hole"), PictureFormat::svg), HasSubstr("fill-rule:evenodd"));
+    EXPECT_THAT(draw_geometry(system, plot_of("hole"), PictureFormat::png), StartsWith("\x89PNG"));
+}
+
+TEST(BlocksPicture, KeepsTheBodyLargeWhenABlockFliesAway) {
+    const BlockSystem system = testing::hexagon_grid(6, 10, 0.05);
+    auto fields = testing::affine_fields(system, Mat2::Zero(), Mat2::Zero());
+    for (std::size_t i = 0; i < 6; ++i) fields.displacement[i] = {0.0, -500.0};
+    EXPECT_THAT(draw_blocks(system, fields, plot_of(""), PictureFormat::png), StartsWith("\x89PNG"));
+}
+
+TEST(BlocksPicture, IsNotDrawnAsSvgWithTooManyBlocks) {
+    const BlockSystem system = testing::hexagon_grid(200, 101, 0.05);
+    ASSERT_GT(system.n_blocks(), most_blocks_in_svg);
+    EXPECT_THROW((void)draw_geometry(system, plot_of(""), PictureFormat::svg), InputError);
+}
+
+} // namespace
+} // namespace kluft

@@ -1,0 +1,243 @@
+#include "kluft/output/run_writer.hpp"
+
+#include <algorithm>
+#include <csignal>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <sys/resource.h>
+
+#include "kluft/core/diagnostics.hpp"
+#include "kluft/output/atomic_file.hpp"
+#include "kluft/output/history_table.hpp"
+#include "kluft/output/state_file.hpp"
+#include "output/hexagon_grid.hpp"
+#include "output/temporary_directory.hpp"
+
+namespace kluft {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using testing::TemporaryDirectory;
+
+/// A run of 4 pressure steps and 10 platen steps of a small body, told step by step.
+class SmallRun {
+public:
+    SmallRun(const fs::path& directory, RunWriterOptions options)
+        : writer_(directory, system_, [&] {
+              options.title = "small";
+              options.fingerprint = "scene";
+              options.platen_stage = 1;
+              options.material_names = {"rock"};
+              return options;
+          }()) {
+        if (options.resumed_step) state_.step = *options.resumed_step;
+    }
+
+    /// Steps up to and with `last`.
+    void go_to(int last, bool from_zero = true) {
+        for (int step = from_zero ? 0 : state_.step + 1; step <= last; ++step) {
+            state_.step = step;
+            const StepRecord record = record_of(step);
+            writer_.equilibrium(record);
+            if (step == 9) writer_.crack({step, 1, 2, 0.1, 0.2, CrackMode::tension, 1e6, -1e4, 0.005});
+            writer_.step(record, state_, fields(), step == 4 || step == 14);
+        }
+    }
+
+    /// An equilibrium of a step that is never committed.
+    void try_step(int step) { writer_.equilibrium(record_of(step)); }
+
+    RunSummary finish(RunStatus status = RunStatus::done) {
+        RunOutcome outcome;
+        outcome.status = status;
+        outcome.factorizations = 17;
+        outcome.version = "0.1.0";
+        outcome.unknowns = 6 * system_.n_blocks();
+        return writer_.finish(outcome, state_, fields());
+    }
+
+    static StepRecord record_of(int step) {
+        StepRecord record;
+        record.step = step;
+        record.stage = step <= 4 ? 0 : 1;
+        record.axial_strain = step <= 4 ? 0.0 : 0.001 * (step - 4);
+        record.differential_stress = 1e6 * std::min(record.axial_strain / 0.005, 2.0 - record.axial_strain / 0.005);
+        record.lateral_stress = 0.2e6;
+        record.axial_stress = record.differential_stress + record.lateral_stress;
+        return record;
+    }
+
+private:
+    std::function<FieldRecord()> fields() const {
+        return [this] { return testing::affine_fields(system_, Mat2::Zero(), -1e6 * Mat2::Identity()); };
+    }
+
+    BlockSystem system_ = testing::hexagon_grid(3, 4, 0.1);
+    State state_;
+    RunWriter writer_;
+};
+
+std::vector<int> steps_in(const fs::path& table) {
+    std::vector<int> steps;
+    for (const StepRecord& record : read_history(table)) steps.push_back(record.step);
+    return steps;
+}
+
+TEST(RunWriter, LeavesEverythingOfTheContract) {
+    const TemporaryDirectory directory;
+    SmallRun run(directory.path(), {});
+    run.go_to(14);
+    const RunSummary summary = run.finish();
+    for (const char* name : {"history.csv", "equilibria.csv", "cracks.csv", "summary.json", "fields.pvd", "curve.png",
+                             "curve.svg", "blocks.png", "blocks.svg", "state.h5"})
+        EXPECT_TRUE(fs::is_regular_file(directory / name)) << name;
+    EXPECT_EQ(steps_in(directory / "history.csv").size(), 15U);
+    EXPECT_EQ(read_cracks(directory / "cracks.csv").size(), 1U);
+    EXPECT_EQ(read_state(directory / "state.h5", "scene").step, 14);
+    EXPECT_THAT(read_file(directory / "fields.pvd"), HasSubstr("timestep=\"14\""));
+    EXPECT_NEAR(*summary.numbers.peak_stress, 1.2e6, 1e-6);
+    const auto json = nlohmann::json::parse(read_file(directory / "summary.json"));
+    EXPECT_EQ(json["blocks"], 12);
+    EXPECT_EQ(json["unknowns"], 72);
+    EXPECT_EQ(json["factorizations"], 17);
+    EXPECT_EQ(json["peak_reached"], true);
+    for (const auto& entry : fs::recursive_directory_iterator(directory.path()))
+        EXPECT_NE(entry.path().extension(), ".part") << entry.path();
+}
+
+TEST(RunWriter, HasTheHistoryOnTheDiskWithEveryStep) {
+    const TemporaryDirectory directory;
+    SmallRun run(directory.path(), {});
+    run.go_to(2);
+    EXPECT_THAT(steps_in(directory / "history.csv"), ElementsAre(0, 1, 2));
+    EXPECT_THAT(steps_in(directory / "equilibria.csv"), ElementsAre(0, 1, 2));
+}
+
+TEST(RunWriter, WritesFieldsAndStatesAsOftenAsAsked) {
+    const TemporaryDirectory directory;
+    RunWriterOptions options;
+    options.fields_every = 3;
+    options.checkpoint_every = 2;
+    SmallRun run(directory.path(), options);
+    run.go_to(7);
+    EXPECT_EQ(read_state(directory / "state.h5", "scene").step, 6);
+    const std::string pvd = read_file(directory / "fields.pvd");
+    for (const int step : {0, 3, 4, 6}) EXPECT_THAT(pvd, HasSubstr("timestep=\"" + std::to_string(step) + "\""));
+    EXPECT_THAT(pvd, ::testing::Not(HasSubstr("timestep=\"7\"")));
+    run.finish(RunStatus::interrupted);
+    EXPECT_THAT(read_file(directory / "fields.pvd"), HasSubstr("timestep=\"7\""));
+    EXPECT_EQ(read_state(directory / "state.h5", "scene").step, 7);
+}
+
+TEST(RunWriter, WritesNeitherFieldsNorPicturesWhenNotAsked) {
+    const TemporaryDirectory directory;
+    RunWriterOptions options;
+    options.fields = false;
+    options.pictures = false;
+    SmallRun run(directory.path(), options);
+    run.go_to(14);
+    run.finish();
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(directory.path())) names.push_back(entry.path().filename());
+    std::sort(names.begin(), names.end());
+    EXPECT_THAT(names, ElementsAre("cracks.csv", "equilibria.csv", "history.csv", "state.h5", "summary.json"));
+}
+
+// The tables of an uninterrupted run, and of one that was killed at step 11 and resumed from the state of step 8.
+TEST(RunWriter, LeavesTheSameTablesAfterAResumedRun) {
+    const TemporaryDirectory whole;
+    const TemporaryDirectory broken;
+    RunWriterOptions options;
+    options.checkpoint_every = 4;
+    options.fields_every = 5;
+    SmallRun uninterrupted(whole.path(), options);
+    uninterrupted.go_to(14);
+    uninterrupted.finish();
+    {
+        SmallRun killed(broken.path(), options);
+        killed.go_to(11);
+        killed.try_step(12);
+    }
+    options.resumed_step = read_state(broken / "state.h5", "scene").step;
+    EXPECT_EQ(options.resumed_step, 8);
+    SmallRun resumed(broken.path(), options);
+    EXPECT_EQ(steps_in(broken / "history.csv").back(), 8);
+    EXPECT_TRUE(read_cracks(broken / "cracks.csv").empty());
+    resumed.go_to(14, false);
+    resumed.finish();
+    for (const char* name : {"history.csv", "equilibria.csv", "cracks.csv", "fields.pvd"})
+        EXPECT_TRUE(read_file(broken / name) == read_file(whole / name)) << name;
+}
+
+TEST(RunWriter, IgnoresStepsThatAResumedRunTellsAgain) {
+    const TemporaryDirectory directory;
+    RunWriterOptions options;
+    options.checkpoint_every = 1;
+    { SmallRun(directory.path(), options).go_to(3); }
+    options.resumed_step = 3;
+    SmallRun resumed(directory.path(), options);
+    resumed.go_to(5);
+    EXPECT_THAT(steps_in(directory / "history.csv"), ElementsAre(0, 1, 2, 3, 4, 5));
+}
+
+TEST(RunWriter, RefusesToResumeWithoutTheRowsOfTheSavedState) {
+    const TemporaryDirectory directory;
+    { SmallRun(directory.path(), {}).go_to(3); }
+    RunWriterOptions options;
+    options.resumed_step = 7;
+    EXPECT_THROW(SmallRun(directory.path(), options), InputError);
+    fs::remove(directory / "equilibria.csv");
+    options.resumed_step = 3;
+    EXPECT_THROW(SmallRun(directory.path(), options), InputError);
+}
+
+TEST(RunWriter, DoesNotMixANewRunWithOldResults) {
+    const TemporaryDirectory directory;
+    {
+        SmallRun old(directory.path(), {});
+        old.go_to(14);
+        old.finish();
+    }
+    write_file(directory / "notes.txt", "mine");
+    write_file(directory / "run.log", "log");
+    RunWriterOptions options;
+    options.fields = false;
+    SmallRun run(directory.path(), options);
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(directory.path())) names.push_back(entry.path().filename());
+    std::sort(names.begin(), names.end());
+    EXPECT_THAT(names, ElementsAre("cracks.csv", "equilibria.csv", "history.csv", "notes.txt", "run.log"));
+    EXPECT_TRUE(steps_in(directory / "history.csv").empty());
+}
+
+TEST(RunWriter, SaysWhenTheDirectoryCannotBeMade) {
+    const TemporaryDirectory directory;
+    write_file(directory / "f", "");
+    EXPECT_THROW(SmallRun(directory / "f/results", {}), ResourceError);
+}
+
+// Files cannot grow beyond 20 kB, so that pictures and fields fail; state, tables and summary must still be there.
+TEST(RunWriter, SavesWhatItCanWhenTheDiskIsFull) {
+    const TemporaryDirectory directory;
+    SmallRun run(directory.path(), {});
+    run.go_to(14);
+    rlimit before{};
+    getrlimit(RLIMIT_FSIZE, &before);
+    const rlimit limit{20000, before.rlim_max};
+    const auto signal = std::signal(SIGXFSZ, SIG_IGN);
+    setrlimit(RLIMIT_FSIZE, &limit);
+    EXPECT_THROW(run.finish(RunStatus::out_of_resources), ResourceError);
+    setrlimit(RLIMIT_FSIZE, &before);
+    std::signal(SIGXFSZ, signal);
+    EXPECT_FALSE(fs::exists(directory / "blocks.png"));
+    EXPECT_FALSE(fs::exists(directory / "blocks.png.part"));
+    EXPECT_EQ(nlohmann::json::parse(read_file(directory / "summary.json"))["status"], "out_of_resources");
+    EXPECT_EQ(read_state(directory / "state.h5", "scene").step, 14);
+}
+
+} // namespace
+} // namespace kluft

@@ -1,0 +1,172 @@
+#include "kluft/output/summary.hpp"
+
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "kluft/core/diagnostics.hpp"
+#include "kluft/output/atomic_file.hpp"
+#include "output/temporary_directory.hpp"
+
+namespace kluft {
+namespace {
+
+using testing::TemporaryDirectory;
+using Rows = std::vector<StepRecord>;
+
+StepRecord row(int step, int stage, double strain, double differential, double lateral_strain = 0.0,
+               double lateral = 0.2e6) {
+    StepRecord record;
+    record.step = step;
+    record.stage = stage;
+    record.axial_strain = strain;
+    record.differential_stress = differential;
+    record.lateral_strain = lateral_strain;
+    record.lateral_stress = lateral;
+    record.axial_stress = differential + lateral;
+    record.open_close_iterations = 5;
+    return record;
+}
+
+/// Pressure in two steps, then differential stress = modulus x strain up to 1 % strain and, after that, a fall in a
+/// straight line to 60 % at 2 % strain; lateral strain = -ratio x axial strain. 100 steps.
+Rows triangle(double modulus, double ratio) {
+    Rows rows{row(0, 0, 0, 0, 0, 0), row(1, 0, 0, 0, 0, 0.1e6), row(2, 0, 0, 0)};
+    for (int i = 1; i <= 100; ++i) {
+        const double strain = 2e-4 * i;
+        const double share = strain <= 0.01 ? strain / 0.01 : 1.0 - 0.4 * (strain - 0.01) / 0.01;
+        rows.push_back(row(2 + i, 1, strain, share * 0.01 * modulus, -ratio * strain));
+    }
+    return rows;
+}
+
+TEST(Summary, FindsPeakResidualAndConstantsOfATriangle) {
+    const Rows rows = triangle(100e6, 0.3);
+    const auto numbers = curve_numbers(rows, rows, 1, Plane::stress);
+    EXPECT_DOUBLE_EQ(*numbers.peak_stress, 1.2e6);
+    EXPECT_DOUBLE_EQ(*numbers.peak_strain, 0.01);
+    EXPECT_TRUE(numbers.peak_reached);
+    EXPECT_NEAR(*numbers.youngs_modulus, 100e6, 1e-3);
+    EXPECT_NEAR(*numbers.poissons_ratio, 0.3, 1e-12);
+    // The last tenth of the strain, 1.8 to 2 %: 11 rows on a line whose middle is at 1.9 %.
+    EXPECT_NEAR(*numbers.residual_stress, 0.2e6 + (1.0 - 0.4 * 0.9) * 1e6, 1e-3);
+    EXPECT_EQ(numbers.steps, 102);
+    EXPECT_EQ(numbers.open_close_iterations, 5 * 103);
+    EXPECT_EQ(numbers.unbalanced_steps, 0);
+}
+
+// E' = E/(1 - nu^2) and nu' = nu/(1 - nu) with E = 80 MPa and nu = 0.25.
+TEST(Summary, TurnsTheSlopesOfPlaneStrainIntoTheRocksConstants) {
+    const Rows rows = triangle(80e6 / (1.0 - 0.0625), 0.25 / 0.75);
+    const auto numbers = curve_numbers(rows, rows, 1, Plane::strain);
+    EXPECT_NEAR(*numbers.youngs_modulus, 80e6, 1e-3);
+    EXPECT_NEAR(*numbers.poissons_ratio, 0.25, 1e-12);
+    EXPECT_NEAR(*numbers.axial_modulus, 80e6 / 0.9375, 1e-3);
+    EXPECT_NEAR(*numbers.lateral_ratio, 1.0 / 3.0, 1e-12);
+}
+
+TEST(Summary, TakesThePeakFromEquilibriaBetweenTheSteps) {
+    const Rows history = triangle(100e6, 0.3);
+    Rows equilibria = history;
+    equilibria.insert(equilibria.begin() + 53, row(53, 1, 0.0101, 1.05e6)); // just before an event
+    const auto numbers = curve_numbers(equilibria, history, 1, Plane::stress);
+    EXPECT_DOUBLE_EQ(*numbers.peak_stress, 1.25e6);
+    EXPECT_DOUBLE_EQ(*numbers.peak_strain, 0.0101);
+}
+
+TEST(Summary, NeverTakesAnUnbalancedEquilibriumForAPeak) {
+    Rows rows = triangle(100e6, 0.3);
+    rows[80].axial_stress = 3.1e6;
+    rows[80].balanced = false;
+    const auto numbers = curve_numbers(rows, rows, 1, Plane::stress);
+    EXPECT_DOUBLE_EQ(*numbers.peak_stress, 1.2e6);
+    EXPECT_EQ(numbers.unbalanced_steps, 1);
+}
+
+TEST(Summary, HasNoPeakReachedAndNoResidualWhileTheStressRises) {
+    Rows rows = triangle(100e6, 0.3);
+    rows.resize(53); // to 1 % strain
+    auto numbers = curve_numbers(rows, rows, 1, Plane::stress);
+    EXPECT_FALSE(numbers.peak_reached);
+    EXPECT_FALSE(numbers.residual_stress.has_value());
+    EXPECT_DOUBLE_EQ(*numbers.peak_stress, 1.2e6);
+    rows.push_back(row(60, 1, 0.0105, 0.9881e6)); // axial stress 0.99 % lower
+    EXPECT_FALSE(curve_numbers(rows, rows, 1, Plane::stress).peak_reached);
+    rows.push_back(row(61, 1, 0.0106, 0.9879e6)); // 1.01 % lower
+    EXPECT_TRUE(curve_numbers(rows, rows, 1, Plane::stress).peak_reached);
+}
+
+TEST(Summary, UsesTheRangeToThirtyPercentOfThePeakOnly) {
+    Rows rows = triangle(100e6, 0.3);
+    for (auto& each : rows)
+        if (each.differential_stress > 0.31e6) each.lateral_strain = -7.0 * each.axial_strain;
+    EXPECT_NEAR(*curve_numbers(rows, rows, 1, Plane::stress).poissons_ratio, 0.3, 1e-12);
+}
+
+// Two steps to the peak: the first is beyond 30 %, so that only the start lies in the range.
+TEST(Summary, InterpolatesTheRangeWhenStepsAreCoarse) {
+    const Rows rows{row(0, 0, 0, 0), row(1, 1, 0.005, 0.5e6, -0.001), row(2, 1, 0.01, 1e6, -0.004)};
+    const auto numbers = curve_numbers(rows, rows, 1, Plane::stress);
+    EXPECT_NEAR(*numbers.youngs_modulus, 100e6, 1e-3);
+    EXPECT_NEAR(*numbers.poissons_ratio, 0.2, 1e-12);
+}
+
+TEST(Summary, HasNoNumbersWithoutRowsOrPlaten) {
+    const auto empty = curve_numbers({}, {}, 1, Plane::strain);
+    EXPECT_FALSE(empty.peak_stress || empty.residual_stress || empty.youngs_modulus || empty.peak_reached);
+    const Rows still{row(0, 0, 0, 0), row(1, 0, 0, 0)};
+    EXPECT_FALSE(curve_numbers(still, still, std::nullopt, Plane::strain).youngs_modulus.has_value());
+    EXPECT_FALSE(curve_numbers(still, still, 0, Plane::strain).youngs_modulus.has_value());
+}
+
+TEST(Summary, HasTheKeysOfTheContractAndNullForWhatIsUnknown) {
+    RunSummary summary;
+    summary.elapsed_s = std::numeric_limits<double>::quiet_NaN();
+    summary.numbers.peak_strain = std::numeric_limits<double>::infinity();
+    summary.seconds = {{"assembly", 1.5}};
+    const std::string text = summary_json(summary);
+    EXPECT_THAT(text, ::testing::Not(::testing::HasSubstr("nan")));
+    const auto json = nlohmann::json::parse(text);
+    for (const char* key :
+         {"status",         "peak_stress",    "peak_strain",    "peak_reached",      "residual_stress",
+          "youngs_modulus", "poissons_ratio", "cracks_tension", "cracks_shear",      "blocks",
+          "interfaces",     "unknowns",       "steps",          "unbalanced_steps",  "open_close_iterations",
+          "factorizations", "analyses",       "elapsed_s",      "peak_memory_bytes", "version",
+          "seconds"})
+        EXPECT_TRUE(json.contains(key)) << key;
+    EXPECT_EQ(json["status"], "done");
+    EXPECT_TRUE(json["peak_stress"].is_null());
+    EXPECT_TRUE(json["peak_strain"].is_null());
+    EXPECT_TRUE(json["elapsed_s"].is_null());
+    EXPECT_EQ(json["peak_reached"], false);
+    EXPECT_EQ(json["seconds"]["assembly"], 1.5);
+}
+
+TEST(Summary, IsReadBack) {
+    const TemporaryDirectory directory;
+    RunSummary summary;
+    summary.status = RunStatus::collapsed;
+    summary.title = "slope \"A\"";
+    summary.numbers.peak_stress = 1.0 / 3.0;
+    summary.numbers.cracks_shear = 4;
+    summary.blocks = 255;
+    summary.platen_stage = 1;
+    summary.peak_memory_bytes = 5'000'000'000;
+    summary.seconds = {{"solve", 2.0}};
+    write_summary(directory / "summary.json", summary);
+    EXPECT_EQ(summary_json(read_summary(directory / "summary.json")), summary_json(summary));
+    write_file(directory / "summary.json", "{\"status\": \"done\"}");
+    EXPECT_THROW((void)read_summary(directory / "summary.json"), InputError);
+    write_file(directory / "summary.json", "{");
+    EXPECT_THROW((void)read_summary(directory / "summary.json"), InputError);
+}
+
+TEST(Summary, CountsAtLeastTheMemoryThatIsHeld) {
+    const std::vector<char> held(50'000'000, 'x');
+    EXPECT_GT(peak_memory_bytes(), static_cast<std::int64_t>(held.size()));
+}
+
+} // namespace
+} // namespace kluft

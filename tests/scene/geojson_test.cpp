@@ -1,0 +1,116 @@
+#include "kluft/scene/geojson.hpp"
+
+#include <fstream>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "kluft/core/diagnostics.hpp"
+
+namespace kluft {
+namespace {
+
+class GeoJson : public testing::Test {
+protected:
+    std::filesystem::path written(const std::string& text) const {
+        std::ofstream(file_) << text;
+        return file_;
+    }
+
+    void TearDown() override { std::filesystem::remove(file_); }
+
+private:
+    std::filesystem::path file_ =
+        std::filesystem::path(testing::TempDir()) /
+        (std::string("kluft_") + testing::UnitTest::GetInstance()->current_test_info()->name() + ".geojson");
+};
+
+template <typename Read> std::string message_of(Read read) {
+    try {
+        static_cast<void>(read());
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "accepted";
+}
+
+std::string feature(const std::string& geometry) {
+    return R"({"type": "Feature", "properties": {}, "geometry": )" + geometry + "}";
+}
+
+std::string collection(const std::string& features) {
+    return R"({"type": "FeatureCollection", "features": [)" + features + "]}";
+}
+
+const std::string ring = "[[0, 0], [4, 0], [4, 4], [0, 4], [0, 0]]";
+const std::string hole = "[[1, 1], [1, 2], [2, 2], [1, 1]]";
+const std::string polygon = R"({"type": "Polygon", "coordinates": [)" + ring + ", " + hole + "]}";
+const std::string line = R"({"type": "LineString", "coordinates": [[0, 0], [1, 2, 99.5]]})";
+const std::string lines = R"({"type": "MultiLineString", "coordinates": [[[0, 0], [1, 2]], [[3, 4], [3, 4], [5, 6]]]})";
+
+TEST_F(GeoJson, AnAreaHasItsOutlineAndHolesWithoutTheRepeatedPoint) {
+    for (const std::string& text : {polygon, feature(polygon), collection(feature(polygon))}) {
+        const MappedArea area = read_geojson_area(written(text));
+        EXPECT_EQ(area.outline, (Polygon{{0, 0}, {4, 0}, {4, 4}, {0, 4}}));
+        ASSERT_EQ(area.holes.size(), 1U);
+        EXPECT_EQ(area.holes[0], (Polygon{{1, 1}, {1, 2}, {2, 2}}));
+    }
+}
+
+TEST_F(GeoJson, AMultiPolygonOfOnePartIsAnArea) {
+    const std::string text = R"({"type": "MultiPolygon", "coordinates": [[)" + ring + "]]}";
+    EXPECT_EQ(read_geojson_area(written(text)).outline.size(), 4U);
+}
+
+TEST_F(GeoJson, TracesComeInTheOrderOfTheFile) {
+    const auto traces =
+        read_geojson_traces(written(collection(feature(lines) + "," + feature(line) + "," + feature("null"))));
+    ASSERT_EQ(traces.size(), 3U);
+    EXPECT_EQ(traces[1], (std::vector<Vec2>{{3, 4}, {5, 6}})); // the repeated point is dropped
+    EXPECT_EQ(traces[2], (std::vector<Vec2>{{0, 0}, {1, 2}})); // the height is left out
+}
+
+// The doubles next to the decimals written, as strtod gives them.
+TEST_F(GeoJson, CoordinatesKeepAllTheirDigits) {
+    const auto traces = read_geojson_traces(written(
+        R"({"type": "LineString", "coordinates": [[466011.860742499120533, 6692139.437837231904268], [1e-3, -0.1]]})"));
+    EXPECT_EQ(traces[0][0], Vec2(466011.860742499120533, 6692139.437837231904268));
+    EXPECT_EQ(traces[0][1], Vec2(1e-3, -0.1));
+}
+
+TEST_F(GeoJson, ErrorsNameTheFileAndTheFeature) {
+    const auto in_area = [this](const std::string& text) {
+        const auto file = written(text);
+        return message_of([&] { return read_geojson_area(file); });
+    };
+    const auto in_traces = [this](const std::string& text) {
+        const auto file = written(text);
+        return message_of([&] { return read_geojson_traces(file); });
+    };
+    const std::string missing = "/nowhere/traces.geojson";
+    EXPECT_NE(message_of([&] { return read_geojson_traces(missing); }).find(missing), std::string::npos);
+    EXPECT_NE(in_traces("{\"type\": ").find(".geojson: not valid JSON"), std::string::npos);
+    EXPECT_NE(in_traces("").find("not valid JSON"), std::string::npos);
+    EXPECT_NE(in_traces("[1, 2]").find("expected a GeoJSON object"), std::string::npos);
+    EXPECT_NE(in_traces(R"({"type": "FeatureCollection"})").find("features"), std::string::npos);
+    EXPECT_NE(in_traces(collection("")).find("no traces"), std::string::npos);
+    EXPECT_NE(in_traces(collection(feature(line) + "," + feature(polygon))).find("feature 1: expected a LineString"),
+              std::string::npos);
+    EXPECT_NE(in_traces(collection(feature(line) + ", 7")).find("feature 1"), std::string::npos);
+    EXPECT_NE(in_traces(R"({"type": "LineString", "coordinates": [[0, 0], [1, "x"]]})").find("[1,\"x\"]"),
+              std::string::npos);
+    EXPECT_NE(in_traces(R"({"type": "LineString", "coordinates": [[0, 0], [0, 0]]})").find("two different points"),
+              std::string::npos);
+    EXPECT_NE(in_traces(R"({"type": "LineString", "coordinates": [[0, 0], [1e999, 0]]})"), "accepted");
+    EXPECT_NE(in_area(collection(feature(line))).find("feature 0: expected a Polygon"), std::string::npos);
+    EXPECT_NE(in_area(collection(feature(polygon) + "," + feature(polygon))).find("got 2"), std::string::npos);
+    EXPECT_NE(in_area(collection("")).find("got 0"), std::string::npos);
+    EXPECT_NE(in_area(R"({"type": "Polygon", "coordinates": [[[0, 0], [1, 0], [1, 1], [0, 1]]]})").find("does not end"),
+              std::string::npos);
+    EXPECT_NE(in_area(R"({"type": "Polygon", "coordinates": [[[0, 0], [1, 0], [0, 0]]]})").find("three different"),
+              std::string::npos);
+    EXPECT_NE(in_area(R"({"type": "Polygon", "coordinates": []})").find("at least one ring"), std::string::npos);
+}
+
+} // namespace
+} // namespace kluft
