@@ -55,7 +55,8 @@ void draw_legend(Canvas& canvas, const Vec2& corner, const std::vector<LegendEnt
     for (const LegendEntry& entry : entries) {
         if (entry.draw_sample) entry.draw_sample(canvas, at + Vec2(9.0, 0.0));
         const TextStyle& style = entry.draw_sample ? legend_style : note_style;
-        canvas.text(at + Vec2(entry.draw_sample ? 25.0 : 0.0, 0.0), entry.label, style);
+        const double indent = entry.draw_sample ? 25.0 : 0.0;
+        canvas.text_within(column_width - indent, at + Vec2(indent, 0.0), entry.label, style);
         at.y() += entry.draw_sample ? legend_line : 0.8 * legend_line;
     }
 }
@@ -269,7 +270,7 @@ std::string draw_blocks(const BlockSystem& system, const FieldRecord& fields, co
     const Layout layout = layout_of(box, 2, bar_height + bar_gap + legend_height(entries), {360.0, 450.0});
     return draw_picture(
         format, layout.page.x(), layout.page.y(), pixels_per_point(system, layout.scale), [&](Canvas& canvas) {
-            canvas.text({margin, margin + 10.0}, plot.title, title_style);
+            canvas.text_within(layout.page.x() - 2.0 * margin, {margin, margin + 10.0}, plot.title, title_style);
             draw_panel(canvas, layout, 0, box, before, "before");
             draw_panel(canvas, layout, 1, box, after, plot.after);
             const Vec2 corner(layout.column(), margin + title_height + panel_title_height);
@@ -295,7 +296,7 @@ std::string draw_geometry(const BlockSystem& system, const BlocksPlot& plot, Pic
     const Layout layout = layout_of(box, 1, legend_height(entries), {620.0, 500.0});
     return draw_picture(
         format, layout.page.x(), layout.page.y(), pixels_per_point(system, layout.scale), [&](Canvas& canvas) {
-            canvas.text({margin, margin + 10.0}, plot.title, title_style);
+            canvas.text_within(layout.page.x() - 2.0 * margin, {margin, margin + 10.0}, plot.title, title_style);
             draw_panel(canvas, layout, 0, box, body,
                        fmt::format("{} blocks, {} interfaces", system.n_blocks(), system.n_interfaces()));
             draw_boundaries(canvas, {layout.corner(0), box, layout.scale}, system);

@@ -1,5 +1,6 @@
 #include "kluft/output/canvas.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
@@ -37,6 +38,30 @@ cairo_status_t collect(void* bytes, const unsigned char* part, unsigned length) 
     } catch (...) {
         return CAIRO_STATUS_NO_MEMORY;
     }
+}
+
+/// Length of the UTF-8 character that begins at `at`, 0 where there is none.
+std::size_t character_length(const std::string& text, std::size_t at) {
+    const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
+    const unsigned first = byte(at);
+    if (first >= 0x20U && first < 0x7fU) return 1;
+    const std::size_t length = first >= 0xc2U && first < 0xe0U ? 2 : first >= 0xe0U && first < 0xf0U ? 3 : 0;
+    for (std::size_t i = 1; i < length; ++i)
+        if ((byte(at + i) & 0xc0U) != 0x80U) return 0;
+    const bool overlong_or_surrogate =
+        (first == 0xe0U && byte(at + 1) < 0xa0U) || (first == 0xedU && byte(at + 1) > 0x9fU);
+    return overlong_or_surrogate ? 0 : length;
+}
+
+/// The text with a question mark for every byte that Cairo would refuse or could not show.
+std::string printable(const std::string& text) {
+    std::string shown;
+    for (std::size_t i = 0; i < text.size();) {
+        const std::size_t length = character_length(text, i);
+        shown += length > 0 ? text.substr(i, length) : "?";
+        i += std::max<std::size_t>(length, 1);
+    }
+    return shown;
 }
 
 void draw_on(cairo_surface_t* surface, double width, double height, double scale,
@@ -152,6 +177,7 @@ void Canvas::arc(const Vec2& centre, double radius, double from, double to, cons
 }
 
 void Canvas::text(const Vec2& at, const std::string& text, const TextStyle& style) {
+    const std::string shown = printable(text);
     set_font(style);
     set(style.colour);
     const auto share = [](Align align) { return align == Align::low ? 0.0 : align == Align::middle ? 0.5 : 1.0; };
@@ -163,21 +189,27 @@ void Canvas::text(const Vec2& at, const std::string& text, const TextStyle& styl
     const double y = (1.0 - share(style.down)) * capital_height * style.size;
     if (style.halo > 0.0) {
         cairo_move_to(context_, x, y);
-        cairo_text_path(context_, text.c_str());
+        cairo_text_path(context_, shown.c_str());
         set(Stroke{{1.0, 1.0, 1.0, 0.85}, 2.0 * style.halo});
         cairo_stroke(context_);
         set(style.colour);
     }
     cairo_move_to(context_, x, y);
-    cairo_show_text(context_, text.c_str());
+    cairo_show_text(context_, shown.c_str());
     cairo_restore(context_);
     cairo_new_path(context_);
+}
+
+void Canvas::text_within(double width, const Vec2& at, const std::string& shown, const TextStyle& style) {
+    TextStyle fitted = style;
+    fitted.size *= std::min(1.0, width / std::max(1.0, text_width(shown, style)));
+    text(at, shown, fitted);
 }
 
 double Canvas::text_width(const std::string& text, const TextStyle& style) {
     set_font(style);
     cairo_text_extents_t extents;
-    cairo_text_extents(context_, text.c_str(), &extents);
+    cairo_text_extents(context_, printable(text).c_str(), &extents);
     return extents.x_advance;
 }
 

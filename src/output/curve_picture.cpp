@@ -234,7 +234,8 @@ void draw_legend(Canvas& canvas, const PlotFrame& frame, const CurvePlot& plot) 
 
 void draw_plot(Canvas& canvas, const CurvePlot& plot) {
     const PlotFrame frame = frame_of(plot);
-    canvas.text({frame.corner.x(), 24.0}, plot.title, {.size = 11.5, .colour = text_colour, .bold = true});
+    canvas.text_within(frame.size.x(), {frame.corner.x(), 24.0}, plot.title,
+                       {.size = 11.5, .colour = text_colour, .bold = true});
     draw_axes(canvas, frame, plot.x_name, plot.y_name);
     canvas.begin_clip(frame.corner, frame.size);
     draw_references(canvas, frame, plot.references);

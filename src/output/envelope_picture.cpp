@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -69,9 +70,10 @@ std::string constants(const Envelope& envelope) {
                        envelope.friction_angle * degrees);
 }
 
-/// Dashes with the wider gaps the later the envelope is in the list.
+/// Dashed, dotted, dash-dotted: one kind after the other.
 Stroke other_stroke(std::size_t index) {
-    return {colour(0x777777), 1.0, {5.0, 2.0 + 1.5 * static_cast<double>(index)}};
+    const std::array<std::vector<double>, 3> dashes{{{6.0, 3.0}, {1.5, 2.5}, {7.0, 2.5, 1.5, 2.5}}};
+    return {colour(0x666666), 1.1, dashes[index % dashes.size()]};
 }
 
 void draw_legend(Canvas& canvas, const PlotFrame& frame, const Envelope& fit, const std::vector<NamedEnvelope>& others,
@@ -98,7 +100,7 @@ std::string draw_envelope(const std::string& title, const std::vector<PeakPoint>
     const bool any_rising =
         std::any_of(points.begin(), points.end(), [](const PeakPoint& point) { return !point.peak_reached; });
     return draw_picture(format, page.x(), page.y(), pixels_per_point, [&](Canvas& canvas) {
-        canvas.text({frame.corner.x(), 26.0}, title, {.size = 11.5, .bold = true});
+        canvas.text_within(frame.size.x(), {frame.corner.x(), 26.0}, title, {.size = 11.5, .bold = true});
         draw_axes(canvas, frame, "normal stress (MPa, compression positive)", "shear stress (MPa)");
         canvas.begin_clip(frame.corner, frame.size);
         for (std::size_t i = 0; i < points.size(); ++i) draw_circle(canvas, frame, points[i], series_colour(i));

@@ -43,7 +43,11 @@ void FileDescriptor::write(std::string_view bytes) {
 
 void FileDescriptor::sync() {
     // EINVAL and ENOTSUP: a device or a file system that has nothing to bring to a disk.
-    if (::fsync(number_) != 0 && errno != EINVAL && errno != ENOTSUP) throw_system_error(path_, "cannot sync", errno);
+    int result = 0;
+    do {
+        result = ::fsync(number_);
+    } while (result != 0 && errno == EINTR);
+    if (result != 0 && errno != EINVAL && errno != ENOTSUP) throw_system_error(path_, "cannot sync", errno);
 }
 
 void FileDescriptor::close() {

@@ -181,7 +181,8 @@ RunSummary summary_in(const Json& json) {
     summary.elapsed_s = optional_number(json, "elapsed_s").value_or(0.0);
     json.at("peak_memory_bytes").get_to(summary.peak_memory_bytes);
     json.at("version").get_to(summary.version);
-    json.at("seconds").get_to(summary.seconds);
+    for (const auto& [stage, seconds] : json.at("seconds").items())
+        summary.seconds[stage] = seconds.is_null() ? 0.0 : seconds.get<double>();
     json.at("message").get_to(summary.message);
     return summary;
 }

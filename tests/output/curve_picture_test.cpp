@@ -71,6 +71,13 @@ TEST(CurvePicture, IsWrittenAsPngAndSvg) {
     EXPECT_THROW(write_curves(directory / "curve.pdf", plot), InputError);
 }
 
+TEST(CurvePicture, IsDrawnWithATitleThatIsNotUtf8OrTooLong) {
+    const auto history = synthetic_history(1e6);
+    for (const std::string& title : {std::string("L\xf6\xdf \xff\n \xe2\x82"), std::string(400, 'x')})
+        EXPECT_THAT(draw_curves(stress_strain_plot(title, {{title, history, {}, 1}}), PictureFormat::png),
+                    StartsWith("\x89PNG"));
+}
+
 TEST(CurvePicture, IsDrawnWithoutRowsAndWithValuesThatAreNotNumbers) {
     EXPECT_THAT(draw_curves(stress_strain_plot("empty", {}), PictureFormat::png), StartsWith("\x89PNG"));
     auto history = synthetic_history(1e6);

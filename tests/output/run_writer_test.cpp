@@ -122,6 +122,7 @@ TEST(RunWriter, WritesFieldsAndStatesAsOftenAsAsked) {
     RunWriterOptions options;
     options.fields_every = 3;
     options.checkpoint_every = 2;
+    options.pictures = false;
     SmallRun run(directory.path(), options);
     run.go_to(7);
     EXPECT_EQ(read_state(directory / "state.h5", "scene").step, 6);
@@ -153,6 +154,7 @@ TEST(RunWriter, LeavesTheSameTablesAfterAResumedRun) {
     const TemporaryDirectory broken;
     RunWriterOptions options;
     options.checkpoint_every = 4;
+    options.pictures = false;
     options.fields_every = 5;
     SmallRun uninterrupted(whole.path(), options);
     uninterrupted.go_to(14);

@@ -69,7 +69,10 @@ public:
     void circle(const Vec2& centre, double radius, const Colour& fill, const Stroke& stroke);
     /// Part of a circle from one angle to another, clockwise on the page (radians).
     void arc(const Vec2& centre, double radius, double from, double to, const Stroke& stroke);
+    /// Bytes that are not UTF-8 are shown as question marks.
     void text(const Vec2& at, const std::string& text, const TextStyle& style);
+    /// The same in a smaller size where the text would be wider than `width`.
+    void text_within(double width, const Vec2& at, const std::string& text, const TextStyle& style);
     [[nodiscard]] double text_width(const std::string& text, const TextStyle& style);
 
     /// Restricts what is drawn until the matching end_clip.
