@@ -297,10 +297,20 @@ MendLimits mend_limits(const GeometrySpec& spec, const LocalFrame& frame, const 
     MendLimits limits;
     limits.area = std::max(rounding_area * domain_area, spec.minimum_area * hexagon_area(d));
     limits.edge = resolution(spec, frame);
-    limits.collinear = 4.0 * std::numeric_limits<double>::epsilon() * frame.box.upper.norm();
+    limits.rounding = 4.0 * std::numeric_limits<double>::epsilon() * frame.box.upper.norm();
     limits.first_fracture = numbers.first_fracture;
     limits.tessellation = numbers.tessellation;
     return limits;
+}
+
+void check_faces(PlanarMap& map, const LocalFrame& frame) {
+    for (int f = 0; f < map.n_faces(); ++f) {
+        if (map.half_edges_of(f).empty() || face_is_simple(map, f)) continue;
+        const Vec2 at = frame.origin + map.positions[map.start(map.faces[f].front())];
+        throw InputError(fmt::format("geometry: the block at ({:.17g}, {:.17g}) folds over itself in double precision; "
+                                     "move the fractures or the hexagons there a little, or give a reference spacing",
+                                     at.x(), at.y()));
+    }
 }
 
 int material_at(const GeometrySpec& spec, const Vec2& scene_point) {
@@ -495,6 +505,7 @@ CutBody cut_blocks(const GeometrySpec& spec) {
     map.remove_edges_inside_faces();
 
     MendReport mended = mend(map, mend_limits(spec, frame, numbers));
+    check_faces(map, frame);
     body.report.collapsed_edges = mended.collapsed_edges;
     for (const auto& piece : mended.merged) body.report.merged.push_back({frame.origin + piece.at, piece.area});
 

@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <functional>
+#include <numeric>
+#include <optional>
 #include <queue>
 #include <tuple>
 #include <unordered_set>
 #include <utility>
 
+#include "kluft/geometry/polygon.hpp"
 #include "kluft/geometry/predicates.hpp"
+#include "kluft/geometry/segment_grid.hpp"
 
 namespace kluft {
 
@@ -38,6 +42,50 @@ bool in_conflict(const Segment& first, const Segment& second) {
     const bool starts_there = second.a == (a_shared ? first.a : first.b);
     const Vec2& other_tip = starts_there ? second.end : second.start;
     return orientation(common, tip, other_tip) == 0 && (tip - common).dot(other_tip - common) >= 0.0;
+}
+
+/// For each segment, indices of all others that may meet it.
+class Candidates {
+public:
+    explicit Candidates(const std::vector<Segment>& segments) {
+        constexpr std::size_t few = 64; // below which asking all costs less than a grid
+        if (segments.size() <= few) {
+            all_.resize(segments.size());
+            std::iota(all_.begin(), all_.end(), 0);
+            return;
+        }
+        std::vector<SegmentGrid::Segment> pairs;
+        for (const Segment& segment : segments) pairs.emplace_back(segment.start, segment.end);
+        grid_.emplace(std::move(pairs));
+    }
+
+    [[nodiscard]] std::vector<int> of(const Segment& segment) const {
+        return grid_ ? grid_->near(bounding_box({segment.start, segment.end})) : all_;
+    }
+
+private:
+    std::vector<int> all_;
+    std::optional<SegmentGrid> grid_;
+};
+
+/// Half-edges of a face that have more than a vertex in common with another one of it, or no length.
+std::vector<int> conflicting_half_edges(PlanarMap& map, int face) {
+    const std::vector<int>& list = map.half_edges_of(face);
+    std::vector<Segment> segments;
+    for (const int h : list) {
+        segments.push_back({map.start(h), map.end(h), map.positions[map.start(h)], map.positions[map.end(h)]});
+    }
+    const Candidates candidates(segments);
+    std::vector<int> found;
+    for (int i = 0; i < static_cast<int>(list.size()); ++i) {
+        const Segment& segment = segments[i];
+        const std::vector<int> others = candidates.of(segment);
+        const bool conflict = segment.start == segment.end || std::any_of(others.begin(), others.end(), [&](int j) {
+                                  return j != i && in_conflict(segment, segments[j]);
+                              });
+        if (conflict) found.push_back(list[i]);
+    }
+    return found;
 }
 
 Vec2 face_centroid(PlanarMap& map, int face) {
@@ -95,26 +143,25 @@ private:
         const Vec2& a = map_.positions[map_.start(arriving)];
         const Vec2& b = map_.positions[map_.end(leaving)];
         const Vec2& p = map_.positions[v];
-        return (p - a).dot(b - p) > 0.0 && distance_to_segment(p, a, b) <= limits_.collinear;
+        return (p - a).dot(b - p) > 0.0 && distance_to_segment(p, a, b) <= limits_.rounding;
     }
 
-    /// The half-edge across which a face goes into its neighbour; -1 if it has no neighbour.
-    int way_out(int face) {
+    /// Of a face's half-edges, the one across which it goes into its neighbour; -1 if none of them has one.
+    [[nodiscard]] int way_out(const std::vector<int>& half_edges) const {
         int best = -1;
         const auto worth = [this](int h) { return std::pair(is_tessellation(h), map_.length(h)); };
-        for (const int h : map_.half_edges_of(face)) {
+        for (const int h : half_edges) {
             if (map_.face(map_.twin(h)) == outside) continue;
             if (best < 0 || worth(h) > worth(best)) best = h;
         }
         return best;
     }
 
-    /// Returns the face that is left, or -1 if the face has no neighbour.
-    int merge_away(int face) {
-        const int exit = way_out(face);
-        if (exit < 0) return -1;
-        report_.merged.push_back({face_centroid(map_, face), std::max(0.0, map_.area(face))});
+    /// Merges the faces on both sides of an edge and returns the face that is left.
+    int merge_across(int exit) {
+        int face = map_.face(exit);
         int kept = map_.face(map_.twin(exit));
+        report_.merged.push_back({face_centroid(map_, face), std::max(0.0, map_.area(face))});
         if (map_.faces[kept].size() < map_.faces[face].size()) std::swap(kept, face);
         map_.merge_faces(kept, face);
         return kept;
@@ -134,10 +181,10 @@ private:
             const auto [area, face] = slivers.top();
             slivers.pop();
             if (map_.half_edges_of(face).empty() || map_.area(face) != area) continue;
-            const int kept = merge_away(face);
-            if (kept < 0) continue;
+            const int exit = way_out(map_.half_edges_of(face));
+            if (exit < 0) continue;
             merged = true;
-            judge(kept);
+            judge(merge_across(exit));
         }
         return merged;
     }
@@ -145,8 +192,9 @@ private:
     bool merge_broken_faces() {
         bool merged = false;
         for (int f = 0; f < map_.n_faces(); ++f) {
-            if (map_.half_edges_of(f).empty() || face_is_simple(map_, f)) continue;
-            merged = merge_away(f) >= 0 || merged;
+            const int exit = way_out(conflicting_half_edges(map_, f));
+            if (exit >= 0) merge_across(exit);
+            merged = merged || exit >= 0;
         }
         return merged;
     }
@@ -194,21 +242,21 @@ private:
     /// Returns the vertex that remains, or -1 where the edge has to stay.
     int collapse(int e) {
         const int h = 2 * e;
-        const int worth_start = worth(map_.start(h));
-        const int worth_end = worth(map_.end(h));
-        if (worth_start >= worth_end && can_contract(h)) return map_.contract_edge(h);
-        if (worth_end >= worth_start && can_contract(h + 1)) return map_.contract_edge(h + 1);
+        const int kept = worth(map_.start(h)) >= worth(map_.end(h)) ? h : h + 1; // runs from the vertex to keep
+        if (can_contract(kept)) return map_.contract_edge(kept);
+        if (can_contract(map_.twin(kept))) return map_.contract_edge(map_.twin(kept));
         return -1;
     }
 
-    /// Whether the end of h may move to its start.
+    /// Whether the end of h may move to its start. Where that is within rounding, what the faces look like now is as
+    /// much a matter of rounding as what they will look like.
     bool can_contract(int h) {
         if (map_.cycle_length(h, 4) < 4 || map_.cycle_length(map_.twin(h), 4) < 4) return false;
         const int kept = map_.start(h);
         const int lost = map_.end(h);
         const int at_stake = worth(lost);
         if (at_stake >= worth_of_corner || (at_stake >= worth_of_outline && !is_outline(h))) return false;
-        return !joined_otherwise(h) && !pinches(h) && star_fits(kept, lost);
+        return !joined_otherwise(h) && !pinches(h) && (map_.length(h) <= limits_.rounding || star_fits(kept, lost));
     }
 
     /// Whether a third vertex is joined to both ends of h, or a second edge joins these.
@@ -294,24 +342,11 @@ private:
 bool face_is_simple(PlanarMap& map, int face) {
     int n_positive = 0;
     for (const auto& loop : map.loops(face)) {
-        if (loop.size() < 3) return false;
         const double area = map.loop_area(loop);
-        if (area == 0.0) return false;
+        if (loop.size() < 3 || area == 0.0) return false;
         n_positive += area > 0.0 ? 1 : 0;
     }
-    if (n_positive != 1) return false;
-    const std::vector<int>& list = map.half_edges_of(face);
-    const auto segment = [&map](int h) {
-        return Segment{map.start(h), map.end(h), map.positions[map.start(h)], map.positions[map.end(h)]};
-    };
-    for (std::size_t i = 0; i < list.size(); ++i) {
-        const Segment first = segment(list[i]);
-        if (first.start == first.end) return false;
-        for (std::size_t j = i + 1; j < list.size(); ++j) {
-            if (in_conflict(first, segment(list[j]))) return false;
-        }
-    }
-    return true;
+    return n_positive == 1 && conflicting_half_edges(map, face).empty();
 }
 
 MendReport mend(PlanarMap& map, const MendLimits& limits) { return Mender(map, limits).run(); }

@@ -259,8 +259,7 @@ TEST(BlockCutter, HolesOfTheDomainBelongToNoBlock) {
 
 TEST(BlockCutter, NamesBelongToTheSidesInTheOrderGiven) {
     GeometrySpec spec = rectangle(2, 1);
-    std::reverse(spec.domain.begin(), spec.domain.end()); // sides: top, right to left; left; bottom; right
-    spec.domain = {{0, 1}, {2, 1}, {2, 0}, {0, 0}};       // sides: top, right, bottom, left
+    spec.domain = {{0, 1}, {2, 1}, {2, 0}, {0, 0}}; // sides: top, right, bottom, left
     spec.boundaries = {{"top", {0}}, {"walls", {1, 3}}};
     add_trace(spec, {{-1, 0.25}, {3, 0.25}});
     const BlockSystem system = sound_cut(spec).system;
@@ -497,6 +496,45 @@ TEST_P(RandomCut, IsAPartition) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomCut, testing::Range(0, 120));
+
+class DegenerateCut : public testing::TestWithParam<int> {};
+
+// Traces between the points of a coarse grid, so that many meet in a point, overlap or run along the outline; in odd
+// rounds moved off it by 1e-3 to 1e-16, so that they nearly do.
+TEST_P(DegenerateCut, OfTracesOnAGridIsAPartition) {
+    Uniform uniform(3000 + GetParam());
+    GeometrySpec spec = rectangle(1, 1);
+    if (GetParam() % 3 != 0) spec.tessellation = Tessellation{{.spacing = 0.125}, 1, {}};
+    const auto point = [&] {
+        const Vec2 at(std::round(16.0 * uniform(-0.1, 1.1)) / 16.0, std::round(16.0 * uniform(-0.1, 1.1)) / 16.0);
+        const double off = GetParam() % 2 == 0 ? 0.0 : std::pow(10.0, -uniform(3, 16));
+        return Vec2(at + off * Vec2(uniform(-1, 1), uniform(-1, 1)));
+    };
+    for (int i = 0; i < 30; ++i) {
+        const Vec2 a = point();
+        add_trace(spec, {a, point()});
+    }
+    EXPECT_EQ(faults(spec, cut_blocks(spec)), "");
+}
+
+// Up to 60 traces that differ by 1e-1 to 1e-17 of the body: their ends on the outline round to the same doubles.
+TEST_P(DegenerateCut, OfABundleOfTracesIsAPartition) {
+    Uniform uniform(4000 + GetParam());
+    GeometrySpec spec = rectangle(1, 1);
+    if (GetParam() % 2 == 0) spec.tessellation = Tessellation{{.spacing = 0.1, .rotation = uniform()}, 1, {}};
+    const std::vector<Vec2> first{{-0.1, uniform()}, {1.1, uniform()}};
+    for (int i = 0; i < 2 * GetParam(); ++i) {
+        std::vector<Vec2> points = first;
+        const double off = std::pow(10.0, -uniform(1, 17));
+        for (Vec2& p : points) p += off * Vec2(uniform(-1, 1), uniform(-1, 1));
+        add_trace(spec, points);
+    }
+    const CutBody body = cut_blocks(spec);
+    EXPECT_EQ(faults(spec, body), "");
+    EXPECT_GE(body.system.n_blocks(), GetParam() > 0 ? 2 : 1);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, DegenerateCut, testing::Range(0, 30));
 
 /// A domain, a spacing or an option out of range, and what the message must name.
 struct BadSpec {

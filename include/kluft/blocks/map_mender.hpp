@@ -10,9 +10,9 @@ namespace kluft {
 /// What counts as too small, and the meaning of the map's sources: those below `first_fracture` lie on the domain's
 /// outline, those from `tessellation` on are hexagon edges.
 struct MendLimits {
-    double area = 0.0;      ///< smallest face (m2)
-    double edge = 0.0;      ///< smallest edge (m)
-    double collinear = 0.0; ///< largest distance of a vertex from the line that replaces its two edges (m)
+    double area = 0.0;     ///< smallest face (m2)
+    double edge = 0.0;     ///< smallest edge (m)
+    double rounding = 0.0; ///< distance below which positions differ by rounding only (m)
     int first_fracture = 0;
     int tessellation = 0;
 };
@@ -30,10 +30,10 @@ struct MendReport {
 /// 1. each face below `limits.area`, smallest first, is merged with the neighbour across its longest tessellation edge,
 ///    otherwise across its longest interior edge; all edges between the two disappear;
 /// 2. each edge below `limits.edge`, shortest first, is collapsed to the end that is worth more (corner of the domain,
-///    then its outline, then more fracture edges), if every face around stays simple and positively oriented, the
+///    then its outline, then more fracture edges), otherwise to the other, if every face around stays simple and positively oriented, the
 ///    outline keeps its shape and corners, and no two vertices get joined twice;
-/// 3. vertices where two edges with one source go straight on are removed;
-/// 4. faces that rounding left not simple are merged as in 1.
+/// 3. vertices where two edges with one source go straight on, within `limits.rounding`, are removed;
+/// 4. faces that rounding left not simple are merged as in 1, but across an edge that is in the way of another.
 /// Expects no edge with the same face on both sides, and leaves none.
 [[nodiscard]] MendReport mend(PlanarMap& map, const MendLimits& limits);
 
