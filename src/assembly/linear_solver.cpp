@@ -134,7 +134,7 @@ struct LinearSolver::Backend {
         umfpack_dl_defaults(control);
         control[UMFPACK_STRATEGY] = UMFPACK_STRATEGY_SYMMETRIC;
         control[UMFPACK_PRL] = 0;
-        control[UMFPACK_IRSTEP] = 1;
+        control[UMFPACK_IRSTEP] = 0; // Newton corrects
     }
 
     ~Backend() {

@@ -17,6 +17,8 @@ const double facing_cosine = -std::sqrt(0.5);
 constexpr double shortest_overlap = 1e-6;
 /// Deeper than this part of the smaller block, two edges are not in contact but on opposite sides of a block.
 constexpr double deepest_penetration = 0.25;
+/// Two points of a fracture that were nearer than this part of its edge were one point; what is between is round-off.
+constexpr double same_point = 1e-12;
 /// Length that a vertex stands for, as a part of min(edge, h): decides convergence, not strength (measured).
 constexpr double vertex_weight = 0.2;
 
@@ -127,6 +129,7 @@ private:
         point.xi_a = block_coordinates(system_.blocks[a.block], x_a);
         point.xi_b = block_coordinates(system_.blocks[b.block], x_b);
         point.offset = x_b - x_a;
+        if (point.offset.norm() <= same_point * edge_a.length) point.offset.setZero();
         point.law = law_between(side_a, side_b);
         if (side_a.interface >= 0 && side_a.interface == side_b.interface) point.interface = side_a.interface;
         point.key = {a.block, edge_a.edge, b.block, edge_b.edge, -1};

@@ -253,7 +253,7 @@ PlottedCurve plotted_run(const RunCurve& run) {
     for (const StepRecord& record : platen_rows(run.history, run.platen_stage))
         curve.points.push_back({plotted(record), record.balanced});
     for (const StepRecord& record : platen_rows(run.equilibria, run.platen_stage))
-        curve.fine.push_back(plotted(record));
+        if (record.balanced) curve.fine.push_back(plotted(record));
     if (const auto peak = peak_row(run.equilibria.empty() ? run.history : run.equilibria)) {
         curve.peak = plotted(*peak);
         curve.peak_text = {fmt::format("{:#.3g} MPa at {:.2f} %", curve.peak->y(), curve.peak->x()),

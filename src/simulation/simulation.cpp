@@ -25,7 +25,7 @@ namespace {
 constexpr int max_balance_rounds = 12;
 constexpr double least_balance_progress = 0.7; ///< of the viscous share per round, else the body is moving
 constexpr double first_relaxation = 4.0;       ///< eta of a relaxation relative to the ordinary one
-constexpr double largest_relaxation = 1024.0;
+constexpr double largest_relaxation = 4.0e6;
 constexpr int max_relaxation_steps = 60;
 constexpr int max_event_trials = 12;
 constexpr double largest_useful_index = 10.0; ///< of f in the search for an event: a strength of zero gives infinity

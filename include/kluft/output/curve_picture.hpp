@@ -20,7 +20,7 @@ struct PlottedPoint {
 struct PlottedCurve {
     std::string label; ///< in the legend; empty: not listed there
     std::vector<PlottedPoint> points;
-    std::vector<Vec2> fine; ///< drawn faintly underneath: every equilibrium
+    std::vector<Vec2> fine; ///< drawn faintly underneath: every balanced equilibrium
     std::optional<Vec2> peak;
     std::vector<std::string> peak_text; ///< lines beside the peak
 };

@@ -1,0 +1,58 @@
+#include "kluft/output/canvas.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kluft/core/diagnostics.hpp"
+
+// Fontconfig keeps its caches until the program ends; the leak check of a sanitizer build looks away from them.
+extern "C" const char* __lsan_default_suppressions(); // NOLINT: the sanitizer's own name
+extern "C" const char* __lsan_default_suppressions() { return "leak:libfontconfig"; } // NOLINT
+
+namespace kluft {
+namespace {
+
+using ::testing::HasSubstr;
+
+int big_endian(const std::string& bytes, std::size_t at) {
+    int value = 0;
+    for (std::size_t i = at; i < at + 4; ++i) value = 256 * value + static_cast<unsigned char>(bytes[i]);
+    return value;
+}
+
+// Width and height stand at bytes 16 and 20 of a PNG file.
+TEST(Canvas, HasThePixelsOfThePage) {
+    const std::string png = draw_picture(PictureFormat::png, 100.0, 40.0, 2.5, [](Canvas& canvas) {
+        EXPECT_EQ(canvas.width(), 100.0);
+        canvas.line({0.0, 0.0}, {100.0, 40.0}, {});
+    });
+    EXPECT_EQ(big_endian(png, 16), 250);
+    EXPECT_EQ(big_endian(png, 20), 100);
+}
+
+TEST(Canvas, SaysWhenAPictureIsTooLarge) {
+    EXPECT_THROW((void)draw_picture(PictureFormat::png, 1e5, 1e5, 10.0, [](Canvas&) {}), ResourceError);
+}
+
+TEST(Canvas, ShrinksTextThatWouldBeTooWide) {
+    (void)draw_picture(PictureFormat::svg, 100.0, 40.0, 1.0, [](Canvas& canvas) {
+        const TextStyle style{.size = 10.0};
+        EXPECT_GT(canvas.text_width("wide text", style), canvas.text_width("text", style));
+        EXPECT_NO_THROW(canvas.text_within(5.0, {0.0, 20.0}, "wide text \xff", style));
+    });
+}
+
+TEST(Canvas, KnowsTheFormatFromTheNameOfTheFile) {
+    EXPECT_EQ(picture_format("a/b.png"), PictureFormat::png);
+    EXPECT_EQ(picture_format("b.svg"), PictureFormat::svg);
+    EXPECT_THROW((void)picture_format("b.pdf"), InputError);
+    EXPECT_THROW((void)picture_format("png"), InputError);
+}
+
+TEST(Canvas, HasColoursThatRepeatAfterSeven) {
+    EXPECT_EQ(series_colour(0).blue, series_colour(7).blue);
+    EXPECT_NEAR(colour(0x0072B2).green, 0x72 / 255.0, 1e-15);
+}
+
+} // namespace
+} // namespace kluft
