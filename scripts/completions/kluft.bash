@@ -57,7 +57,7 @@ _kluft() {
 _kluft_scenes() {
     mapfile -t COMPREPLY < <(
         compgen -d -- "$1"
-        compgen -f -X '!*.@(yaml|yml|json)' -- "$1"
+        for ending in yaml yml json; do compgen -f -X "!*.$ending" -- "$1"; done
     )
 }
 
