@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -13,6 +14,7 @@
 #include "kluft/scene/scene_check.hpp"
 #include "kluft/scene/scene_section.hpp"
 #include "kluft/scene/scene_text.hpp"
+#include "kluft/scene/scene_writer.hpp"
 
 namespace kluft {
 
@@ -147,6 +149,7 @@ Scene read_scene_text(std::string_view text, const std::vector<std::string>& ove
     errors.throw_if_any();
     scene.name = file.stem().string();
     scene.warnings = std::move(context.warnings);
+    scene.text = write_scene_tree(root, sources);
     return scene;
 }
 

@@ -497,6 +497,30 @@ TEST_P(RandomCut, IsAPartition) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomCut, testing::Range(0, 120));
 
+// Star-shaped outlines with acute corners in and out, and holes.
+TEST_P(RandomCut, OfABentDomainWithHolesIsAPartition) {
+    Uniform uniform(2000 + GetParam());
+    GeometrySpec spec;
+    const auto star = [&uniform](int n, double inner, double outer) {
+        Polygon polygon;
+        for (int i = 0; i < n; ++i) {
+            const double angle = 2.0 * std::numbers::pi * i / n;
+            polygon.push_back(Vec2(5, 7) + uniform(inner, outer) * Vec2(std::cos(angle), std::sin(angle)));
+        }
+        return polygon;
+    };
+    spec.domain = star(8 + GetParam() % 20, 2.0, 4.0);
+    if (GetParam() % 2 == 0) spec.holes = {star(5, 0.3, 1.0)};
+    if (GetParam() % 3 != 0) {
+        spec.tessellation = Tessellation{{.spacing = 0.6, .rotation = uniform(), .jitter = 0.1}, 1, {}};
+        if (GetParam() % 5 == 0) spec.tessellation->region = star(6, 1.0, 3.0);
+    } else {
+        spec.reference_spacing = 0.3;
+    }
+    add_random_traces(spec, 10, 10, 14, uniform);
+    EXPECT_EQ(faults(spec, cut_blocks(spec)), "");
+}
+
 class DegenerateCut : public testing::TestWithParam<int> {};
 
 // Traces between the points of a coarse grid, so that many meet in a point, overlap or run along the outline; in odd

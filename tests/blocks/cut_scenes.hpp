@@ -65,6 +65,15 @@ inline std::string faults(const GeometrySpec& spec, const CutBody& body) {
     expected.minimum_area = body.system.n_blocks() > 1 ? spec.minimum_area * hexagon_area(lattice_spacing(spec)) : 0.0;
     std::string text;
     for (const std::string& sentence : check_block_system(body.system, expected)) text += sentence + '\n';
+    const auto expect_corners = [&](const Polygon& polygon) {
+        const auto& vertices = body.system.vertices;
+        for (const Vec2& corner : polygon) {
+            const Vec2 local = corner - body.system.origin;
+            if (std::find(vertices.begin(), vertices.end(), local) == vertices.end()) text += "a corner has moved\n";
+        }
+    };
+    expect_corners(spec.domain);
+    for (const Polygon& hole : spec.holes) expect_corners(hole);
     return text;
 }
 

@@ -33,6 +33,7 @@ struct Scene {
     SolverOptions solver;
     OutputOptions output;
     std::vector<std::string> warnings; ///< what the reader noticed and accepted
+    std::string text; ///< YAML with all overrides and extended scenes in it; reading it gives the same scene
 };
 
 } // namespace kluft

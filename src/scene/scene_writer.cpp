@@ -1,0 +1,100 @@
+#include "kluft/scene/scene_writer.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <filesystem>
+#include <string_view>
+
+#include <fmt/format.h>
+
+namespace kluft {
+
+namespace {
+
+/// Whether YAML reads the text back as the same plain scalar, also inside [] and {}.
+bool is_plain(std::string_view text) {
+    const auto is_safe = [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+               std::string_view("_.+/% -").find(c) != std::string_view::npos;
+    };
+    if (text.empty() || !std::all_of(text.begin(), text.end(), is_safe)) return false;
+    const bool starts_well = text.front() != ' ' && text.front() != '%' && !text.starts_with("- ");
+    return starts_well && text.back() != ' ' && text != "-" && text != "null" && text != "Null" && text != "NULL" &&
+           !text.starts_with("---") && !text.starts_with("...");
+}
+
+std::string scalar_text(std::string_view text, bool quoted) {
+    if (!quoted && is_plain(text)) return std::string(text);
+    std::string result = "\"";
+    for (const char c : text) {
+        if (c == '"' || c == '\\')
+            result += fmt::format("\\{}", c);
+        else if (static_cast<unsigned char>(c) < 0x20)
+            result += fmt::format("\\x{:02x}", static_cast<unsigned>(static_cast<unsigned char>(c)));
+        else
+            result += c;
+    }
+    return result + "\"";
+}
+
+class TreeWriter {
+public:
+    explicit TreeWriter(const SceneSources& sources) : sources_(sources) {}
+
+    /// The entries of a mapping, one per line.
+    std::string block(const SceneNode& mapping, const std::string& path, int indent) const {
+        std::string text;
+        for (std::size_t i = 0; i < mapping.keys.size(); ++i) {
+            const std::string& key = mapping.keys[i].text;
+            if (path.empty() && key == "extends") continue;
+            const SceneNode& value = mapping.items[i];
+            text += fmt::format("{:{}}{}:", "", indent, scalar_text(key, false));
+            if (value.is_mapping() && !value.items.empty())
+                text += "\n" + block(value, joined_path(path, key), indent + 2);
+            else
+                text += fmt::format(" {}\n", inline_text(value, joined_path(path, key)));
+        }
+        return text;
+    }
+
+private:
+    [[nodiscard]] std::string inline_text(const SceneNode& node, const std::string& path) const {
+        switch (node.kind) {
+        case SceneNode::Kind::nothing:
+            return "null";
+        case SceneNode::Kind::scalar:
+            return is_file(path) ? scalar_text(absolute(node), false) : scalar_text(node.text, node.quoted);
+        case SceneNode::Kind::list:
+        case SceneNode::Kind::mapping:
+            return collection_text(node, path);
+        }
+        return {};
+    }
+
+    [[nodiscard]] std::string collection_text(const SceneNode& node, const std::string& path) const {
+        std::string text;
+        for (std::size_t i = 0; i < node.items.size(); ++i) {
+            const std::string key = node.is_mapping() ? node.keys[i].text : std::to_string(i);
+            if (i > 0) text += ", ";
+            if (node.is_mapping()) text += scalar_text(key, false) + ": ";
+            text += inline_text(node.items[i], joined_path(path, key));
+        }
+        return node.is_mapping() ? fmt::format("{{{}}}", text) : fmt::format("[{}]", text);
+    }
+
+    static bool is_file(std::string_view path) { return path.starts_with("geometry.") && path.ends_with(".file"); }
+
+    [[nodiscard]] std::string absolute(const SceneNode& node) const {
+        return std::filesystem::absolute(sources_.directory(node.at) / node.text).lexically_normal().string();
+    }
+
+    const SceneSources& sources_;
+};
+
+} // namespace
+
+std::string write_scene_tree(const SceneNode& root, const SceneSources& sources) {
+    return TreeWriter(sources).block(root, {}, 0);
+}
+
+} // namespace kluft

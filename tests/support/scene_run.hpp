@@ -1,0 +1,48 @@
+// Runs a scene given as text, for tests of whole runs.
+#pragma once
+
+#include <atomic>
+#include <string>
+#include <vector>
+
+#include "kluft/scene/scene_model.hpp"
+#include "kluft/scene/scene_reader.hpp"
+#include "kluft/simulation/simulation.hpp"
+
+namespace kluft {
+
+struct SceneRun {
+    Scene scene;
+    Model model;
+    State state;
+    RunReport report;
+    std::vector<StepRecord> history; ///< load steps, step 0 first
+    std::vector<StepRecord> equilibria;
+    std::vector<CrackRecord> cracks;
+};
+
+class RecordingObserver : public StepObserver {
+public:
+    explicit RecordingObserver(SceneRun& run) : run_(run) {}
+    void equilibrium(const StepRecord& record) override { run_.equilibria.push_back(record); }
+    void crack(const CrackRecord& crack) override { run_.cracks.push_back(crack); }
+    void step(const StepRecord& record, const State&, const std::function<FieldRecord()>&, bool) override {
+        run_.history.push_back(record);
+    }
+
+private:
+    SceneRun& run_;
+};
+
+inline SceneRun run_scene(const std::string& text, const std::vector<std::string>& overrides = {}) {
+    SceneRun run;
+    run.scene = read_scene_text(text, overrides);
+    run.model = build_scene_model(run.scene).model;
+    run.state = initial_state(run.model);
+    RecordingObserver observer(run);
+    const std::atomic<bool> stop{false};
+    run.report = run_simulation(run.model, run.scene.cracks, run.scene.solver, run.state, observer, stop);
+    return run;
+}
+
+} // namespace kluft
