@@ -2,11 +2,15 @@
 
 #include <algorithm>
 
+// With sanitizers the compiler takes an unused empty line of the kernel's for an uninitialised one.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #include <CGAL/Arr_curve_data_traits_2.h>
 #include <CGAL/Arr_extended_dcel.h>
 #include <CGAL/Arr_segment_traits_2.h>
 #include <CGAL/Arrangement_2.h>
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
+#pragma GCC diagnostic pop
 
 namespace kluft {
 

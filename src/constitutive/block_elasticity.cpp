@@ -30,6 +30,22 @@ Mat2 first_piola_stress(const Mat2& f, const ElasticModuli& moduli) {
     return 2.0 * moduli.mu * (f - rotation) + moduli.lambda * (trace - 2.0) * rotation;
 }
 
+Mat2 stress_of_gradient(const Mat2& h, const ElasticModuli& moduli) {
+    const double a = h.trace();
+    const double y = h(1, 0) - h(0, 1);
+    const double trace = std::hypot(2.0 + a, y);
+    const double excess = (a * (4.0 + a) + y * y) / (trace + 2.0); // tr S - 2
+    Mat2 rotation;
+    rotation << (2.0 + a) / trace, -y / trace, y / trace, (2.0 + a) / trace;
+    const double on_diagonal = (excess - a) / trace; // 1 - R11
+    Mat2 stretch = h;                                // F - R
+    stretch(0, 0) += on_diagonal;
+    stretch(1, 1) += on_diagonal;
+    stretch(0, 1) += y / trace;
+    stretch(1, 0) -= y / trace;
+    return 2.0 * moduli.mu * stretch + moduli.lambda * excess * rotation;
+}
+
 double strain_energy_density(const Mat2& f, const ElasticModuli& moduli) {
     const auto [rotation, trace] = polar(f);
     return moduli.mu * (f - rotation).squaredNorm() + 0.5 * moduli.lambda * (trace - 2.0) * (trace - 2.0);

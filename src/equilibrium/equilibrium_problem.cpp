@@ -129,7 +129,7 @@ void EquilibriumEvaluator::residual(const Eigen::VectorXd& q, Residual& result) 
     for (int b = 0; b < system.n_blocks(); ++b) {
         const Block& block = system.blocks[b];
         const ElasticModuli& moduli = (*problem_.moduli)[block.material];
-        const Mat2 force = block.size * first_piola_stress(deformation_gradient(q, b, block.size), moduli);
+        const Mat2 force = block.size * stress_of_gradient(displacement_gradient(q, b, block.size), moduli);
         const Eigen::Map<const Eigen::Vector4d> columns(force.data());
         result.forces.segment<4>(n_block_unknowns * b + 2) += columns;
         magnitudes_.segment<4>(n_block_unknowns * b + 2) += columns.cwiseAbs();

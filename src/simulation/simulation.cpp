@@ -170,7 +170,8 @@ private:
     void report_initial_state() {
         prepare();
         set_load(0.0);
-        const StepRecord record = measure(work_.displacement, 0.0);
+        StepRecord record = measure(work_.displacement, 0.0);
+        record.step = 0;
         notify_step(record, false);
     }
 

@@ -43,6 +43,18 @@ TEST(BlockElasticity, StressIsTheGradientOfTheStrainEnergy) {
     }
 }
 
+TEST(BlockElasticity, StressOfTheGradientAgreesAndKeepsTheDigitsOfSmallStrains) {
+    std::mt19937 generator(8);
+    for (int round = 0; round < 50; ++round) {
+        const Mat2 f = random_deformation(generator);
+        EXPECT_LT((stress_of_gradient(f - Mat2::Identity(), moduli) - first_piola_stress(f, moduli)).norm(),
+                  1e-13 * 6e9);
+    }
+    // Hooke for a strain of 1e-12, of which 1 + 1e-12 would keep four digits
+    const Mat2 h = (Mat2() << 1e-12, 0.0, 0.0, 0.0).finished();
+    EXPECT_NEAR(stress_of_gradient(h, moduli)(0, 0), (moduli.lambda + 2.0 * moduli.mu) * 1e-12, 1e-11 * 16e-3);
+}
+
 TEST(BlockElasticity, TangentIsTheDerivativeOfTheStress) {
     std::mt19937 generator(2);
     for (int round = 0; round < 50; ++round) {

@@ -14,6 +14,9 @@ using Mat4 = Eigen::Matrix4d;
 /// positive in tension). R is the closest rotation: with x = F11 + F22, y = F21 - F12, tr S = hypot(x, y).
 [[nodiscard]] Mat2 first_piola_stress(const Mat2& deformation_gradient, const ElasticModuli& moduli);
 
+/// The same from the displacement gradient H = F - I, without the round-off of 1 + H: small strains keep all digits.
+[[nodiscard]] Mat2 stress_of_gradient(const Mat2& displacement_gradient, const ElasticModuli& moduli);
+
 /// Strain energy density, mu |F - R|^2 + lambda/2 (tr S - 2)^2 (J/m3): the potential of first_piola_stress.
 [[nodiscard]] double strain_energy_density(const Mat2& deformation_gradient, const ElasticModuli& moduli);
 

@@ -25,12 +25,17 @@ using Mat6 = Eigen::Matrix<double, 6, 6>;
     return {v[0] + v[2] * xi.x() + v[4] * xi.y(), v[1] + v[3] * xi.x() + v[5] * xi.y()};
 }
 
+/// H = D/h of block `b`.
+[[nodiscard]] inline Mat2 displacement_gradient(const Eigen::VectorXd& q, int b, double size) {
+    const double* v = q.data() + n_block_unknowns * b;
+    Mat2 h;
+    h << v[2] / size, v[4] / size, v[3] / size, v[5] / size;
+    return h;
+}
+
 /// F = I + D/h of block `b`.
 [[nodiscard]] inline Mat2 deformation_gradient(const Eigen::VectorXd& q, int b, double size) {
-    const double* v = q.data() + n_block_unknowns * b;
-    Mat2 f;
-    f << 1.0 + v[2] / size, v[4] / size, v[3] / size, 1.0 + v[5] / size;
-    return f;
+    return Mat2::Identity() + displacement_gradient(q, b, size);
 }
 
 /// Adds the force f at the point xi to the generalised forces of block `b` (N per metre of thickness).
