@@ -192,8 +192,11 @@ RunSummary summary_in(const Json& json) {
 std::vector<StepRecord> platen_rows(const std::vector<StepRecord>& rows, int platen_stage) {
     auto first =
         std::find_if(rows.begin(), rows.end(), [&](const StepRecord& row) { return row.stage >= platen_stage; });
-    if (first != rows.begin() && first != rows.end()) --first;
-    return {first, rows.end()};
+    if (first == rows.begin() || first == rows.end()) return {first, rows.end()};
+    std::vector<StepRecord> result(first - 1, rows.end());
+    StepRecord& start = result.front(); // strains count from here
+    start.axial_strain = start.lateral_strain = start.volumetric_strain = 0.0;
+    return result;
 }
 
 std::optional<StepRecord> peak_row(const std::vector<StepRecord>& rows) {
