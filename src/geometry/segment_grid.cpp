@@ -31,7 +31,7 @@ SegmentGrid::SegmentGrid(std::vector<Segment> segments) : segments_(std::move(se
         for (int r = first; r <= last; ++r) {
             // The part of the segment in this row, and one column more on each side for rounding.
             const double rise = b.y() - a.y();
-            const auto x_at = [&](double y) {
+            const auto x_at = [&a = a, &b = b, rise](double y) {
                 const double t = rise > 0.0 ? std::clamp((y - a.y()) / rise, 0.0, 1.0) : 0.0;
                 return a.x() + t * (b.x() - a.x());
             };

@@ -63,7 +63,8 @@ ProgressLine ProgressLine::on_standard_error() {
 /// From the pace of the later half of the time so far: steps after the peak cost more than those before it.
 std::optional<double> ProgressLine::seconds_left(double fraction) const {
     if (steps_.size() < 2) return std::nullopt;
-    const auto [now, done] = steps_.back();
+    const double now = steps_.back().first;
+    const double done = steps_.back().second;
     const double middle = 0.5 * (steps_.front().first + now);
     const auto from = std::find_if(steps_.rbegin(), steps_.rend(),
                                    [&](const auto& step) { return step.first <= middle || step.second < done - 0.5; });

@@ -110,7 +110,7 @@ StageLoads::StageLoads(const Model& model, const State& stage_start, const Stage
                 if (!done.emplace(b, vertex).second) continue;
                 const Vec2 xi = block_coordinates(system.blocks[b], system.vertices[vertex]);
                 const Vec2 start = displacement_at(stage_start.displacement, b, xi);
-                const auto prescribe = [&](const Vec2& direction) {
+                const auto prescribe = [&, b = b](const Vec2& direction) {
                     rows.push_back({b, xi, direction, boundary, direction.dot(start)});
                     start_targets_.push_back(direction.dot(start));
                     target_rates_.push_back(direction.dot(motion));
