@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <ranges>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -47,10 +48,10 @@ std::optional<double> residual_stress(const Rows& history, std::optional<int> pl
     double sum = 0.0;
     int n_rows = 0;
     // From the end backwards, so that a strain that turns back does not bring earlier rows in.
-    for (auto row = rows.rbegin(); row != rows.rend(); ++row) {
+    for (const auto& row : std::ranges::reverse_view(rows)) {
         constexpr double rounding = 1e-9;
-        if (std::abs(last - row->axial_strain) > (residual_share + rounding) * range) break;
-        sum += row->axial_stress;
+        if (std::abs(last - row.axial_strain) > (residual_share + rounding) * range) break;
+        sum += row.axial_stress;
         ++n_rows;
     }
     return sum / n_rows;
@@ -192,8 +193,11 @@ RunSummary summary_in(const Json& json) {
 std::vector<StepRecord> platen_rows(const std::vector<StepRecord>& rows, int platen_stage) {
     auto first =
         std::find_if(rows.begin(), rows.end(), [&](const StepRecord& row) { return row.stage >= platen_stage; });
-    if (first != rows.begin() && first != rows.end()) --first;
-    return {first, rows.end()};
+    if (first == rows.begin() || first == rows.end()) return {first, rows.end()};
+    std::vector<StepRecord> result(first - 1, rows.end());
+    StepRecord& start = result.front(); // strains count from here
+    start.axial_strain = start.lateral_strain = start.volumetric_strain = 0.0;
+    return result;
 }
 
 std::optional<StepRecord> peak_row(const std::vector<StepRecord>& rows) {
