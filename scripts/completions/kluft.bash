@@ -24,7 +24,7 @@ _kluft() {
         return
         ;;
     --set | --threads | --jobs | --tolerance) return ;;
-    -o)
+    -o | --output)
         mapfile -t COMPREPLY < <(compgen -f -- "$word")
         return
         ;;
@@ -32,8 +32,10 @@ _kluft() {
 
     local options="--help"
     case "$command" in
-    run) options+=" -o --set --threads --quiet --resume" ;;
-    draw) options+=" -o" ;;
+    run) options+=" -o --output --set --threads --quiet --resume" ;;
+    check) options+=" --set" ;;
+    draw) options+=" -o --output --set" ;;
+    envelope) options+=" -o --output" ;;
     compare) options+=" --tolerance" ;;
     study) options+=" -o --jobs --emit --collect" ;;
     esac
@@ -43,8 +45,7 @@ _kluft() {
     fi
 
     case "$command" in
-    run | check | calibrate) _kluft_scenes "$word" ;;
-    draw) _kluft_scenes "$word" ;;
+    run | check | draw | calibrate) _kluft_scenes "$word" ;;
     study)
         _kluft_scenes "$word"
         [[ $previous != study ]] || mapfile -t -O "${#COMPREPLY[@]}" COMPREPLY < <(compgen -W "step-size trade" -- "$word")
