@@ -70,8 +70,7 @@ PointTraction bond_traction(const InterfaceLaw& law, double start_shear, double 
     return result;
 }
 
-PointTraction fracture_traction(const InterfaceLaw& law, const PointHistory& start, double gap, double slip,
-                                std::optional<double> frozen_limit) {
+PointTraction fracture_traction(const InterfaceLaw& law, const PointHistory& start, double gap, double slip) {
     PointTraction result;
     result.history.dilation = start.dilation;
     const double trial = start.shear_trial + law.shear_stiffness * slip;
@@ -79,14 +78,13 @@ PointTraction fracture_traction(const InterfaceLaw& law, const PointHistory& sta
     const double factor = 1.0 + law.friction_rounding;
     const double elastic_gap = gap - start.dilation;
 
-    const bool dilates = law.tan_dilation != 0.0 && !frozen_limit;
-    const double plastic = dilates ? plastic_slip(law, std::abs(trial), elastic_gap, factor) : 0.0;
+    const double plastic = law.tan_dilation != 0.0 ? plastic_slip(law, std::abs(trial), elastic_gap, factor) : 0.0;
     const auto pressure = contact_pressure(law, elastic_gap - law.tan_dilation * plastic);
     if (pressure.value <= 0.0) {
         result.state = ContactState::open;
         return result;
     }
-    const auto limit = frozen_limit ? ShearLimit{*frozen_limit, 0.0} : shear_limit(law, pressure.value);
+    const auto limit = shear_limit(law, pressure.value);
 
     // Derivatives of p with respect to (gap, |trial|), through the plastic slip where the point dilates.
     double dp_dgap = pressure.slope;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 #include "kluft/kinematics/affine.hpp"
 
@@ -82,8 +81,7 @@ Mat6 mass(const Block& block, double least_area) {
 PointTraction contact_traction(const EquilibriumProblem& problem, int i, const Eigen::VectorXd& q) {
     const ContactPoint& point = problem.contacts[i];
     const auto [gap, slip] = gap_and_slip(point, q);
-    const auto limit = problem.frozen_limits.empty() ? std::nullopt : std::optional(problem.frozen_limits[i]);
-    return fracture_traction((*problem.laws)[point.law], point.history, gap, slip, limit);
+    return fracture_traction((*problem.laws)[point.law], point.history, gap, slip);
 }
 
 PointTraction bond_traction(const EquilibriumProblem& problem, int i, const Eigen::VectorXd& q) {
@@ -111,12 +109,12 @@ EquilibriumEvaluator::EquilibriumEvaluator(const EquilibriumProblem& problem, co
         tangent.diagonal() << law.normal_stiffness, law.shear_stiffness;
         add_point_tangent(problem.bonds[i], tangent, bond_slots_[i], bonds_and_mass_);
     }
-    if (problem.eta > 0.0) add_mass_tangent(bonds_and_mass_);
+    if (!problem.eta.empty()) add_mass_tangent(bonds_and_mass_);
 }
 
 void EquilibriumEvaluator::add_mass_tangent(BlockMatrix& matrix) const {
     for (int b = 0; b < pattern_.n_blocks(); ++b) {
-        matrix.values[diagonal_[b]] += problem_.eta * mass(problem_.system->blocks[b], problem_.least_mass_area);
+        matrix.values[diagonal_[b]] += problem_.eta[b] * mass(problem_.system->blocks[b], problem_.least_mass_area);
     }
 }
 
@@ -159,12 +157,12 @@ void EquilibriumEvaluator::residual(const Eigen::VectorXd& q, Residual& result) 
         add_force(result.forces, edge.block, edge.xi_middle, -force);
         add_force(magnitudes_, edge.block, edge.xi_middle.cwiseAbs(), force.cwiseAbs());
     }
-    if (problem_.eta > 0.0) {
+    if (!problem_.eta.empty()) {
         for (int b = 0; b < system.n_blocks(); ++b) {
             const Vec6 moved = q.segment<n_block_unknowns>(n_block_unknowns * b) -
                                problem_.start.segment<n_block_unknowns>(n_block_unknowns * b);
             result.forces.segment<n_block_unknowns>(n_block_unknowns * b) +=
-                problem_.eta * (mass(system.blocks[b], problem_.least_mass_area) * moved);
+                problem_.eta[b] * (mass(system.blocks[b], problem_.least_mass_area) * moved);
         }
     }
     result.force_scale = magnitudes_.norm();
@@ -195,14 +193,14 @@ void EquilibriumEvaluator::tangent(const Eigen::VectorXd& q, TangentKind kind, B
 }
 
 double viscous_force(const EquilibriumProblem& problem, const Eigen::VectorXd& q) {
-    if (problem.eta == 0.0) return 0.0;
+    if (problem.eta.empty()) return 0.0;
     double sum = 0.0;
     for (int b = 0; b < problem.system->n_blocks(); ++b) {
         const Vec6 moved = q.segment<n_block_unknowns>(n_block_unknowns * b) -
                            problem.start.segment<n_block_unknowns>(n_block_unknowns * b);
-        sum += (mass(problem.system->blocks[b], problem.least_mass_area) * moved).squaredNorm();
+        sum += (problem.eta[b] * mass(problem.system->blocks[b], problem.least_mass_area) * moved).squaredNorm();
     }
-    return problem.eta * std::sqrt(sum);
+    return std::sqrt(sum);
 }
 
 std::vector<Mat2> block_stresses(const BlockSystem& system, const std::vector<ElasticModuli>& moduli,

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kluft/core/stopwatch.hpp"
+
 namespace kluft {
 
 namespace {
@@ -11,6 +13,8 @@ constexpr int iterations_before_halving = 8; ///< then the norm must fall, or it
 constexpr int max_search_residuals = 8;
 constexpr double accepted_end_slope = 0.3; ///< of |g(0)|: the full step is taken
 constexpr double accepted_root_slope = 0.1;
+constexpr int iterations_of_restless = 4; ///< at the end of a failed attempt
+constexpr double restless_share = 0.2;    ///< of the norm of the residual
 
 double typical_diagonal(const BlockMatrix& matrix) {
     const BlockPattern& pattern = *matrix.pattern;
@@ -32,6 +36,18 @@ int largest_block(const Eigen::VectorXd& forces) {
     return worst;
 }
 
+/// Adds the blocks that have a large part of the forces, or that limited the increment.
+void append_restless(const Eigen::VectorXd& forces, const std::vector<int>& limited, std::vector<int>& restless) {
+    restless.insert(restless.end(), limited.begin(), limited.end());
+    const double least = restless_share * forces.norm();
+    for (int b = 0; b < forces.size() / n_block_unknowns; ++b) {
+        if (forces.segment<n_block_unknowns>(n_block_unknowns * b).norm() >= least) restless.push_back(b);
+    }
+    std::ranges::sort(restless);
+    const auto repeated = std::ranges::unique(restless);
+    restless.erase(repeated.begin(), repeated.end());
+}
+
 } // namespace
 
 double OpenCloseSolver::free_norm(const EquilibriumProblem& problem, const Residual& residual) {
@@ -43,7 +59,7 @@ double OpenCloseSolver::free_norm(const EquilibriumProblem& problem, const Resid
 double OpenCloseSolver::slope_at(const EquilibriumProblem& problem, EquilibriumEvaluator& evaluator,
                                  const Eigen::VectorXd& q, double s) {
     position_ = q + s * increment_;
-    evaluator.residual(position_, trial_);
+    evaluate(evaluator, position_, trial_);
     problem.constraints.project(trial_.forces);
     return trial_.forces.dot(increment_);
 }
@@ -54,6 +70,7 @@ double OpenCloseSolver::step_along_root(const EquilibriumProblem& problem, Equil
     const double scale = std::abs(slope_at_zero);
     double high = 1.0;
     double g_high = slope_at(problem, evaluator, q, high);
+    full_step_forces_ = trial_.forces;
     if (g_high <= accepted_end_slope * scale) return high;
     double low = 0.0;
     double g_low = slope_at_zero;
@@ -83,8 +100,9 @@ double OpenCloseSolver::step_by_halving(const EquilibriumProblem& problem, Equil
     double s = 1.0;
     for (int i = 0; i < max_search_residuals; ++i, s *= 0.5) {
         position_ = q + s * increment_;
-        evaluator.residual(position_, trial_);
+        evaluate(evaluator, position_, trial_);
         const double norm = free_norm(problem, trial_);
+        if (i == 0) full_step_forces_ = scratch_;
         if (best_norm < 0.0 || norm < best_norm) {
             best = s;
             best_norm = norm;
@@ -95,40 +113,32 @@ double OpenCloseSolver::step_by_halving(const EquilibriumProblem& problem, Equil
 }
 
 void OpenCloseSolver::limit_increment(const BlockSystem& system) {
+    limited_.clear();
     double largest_motion = 0.0;
+    const double motion_limit = options_.motion_limit * system.spacing;
     for (int b = 0; b < system.n_blocks(); ++b) {
         auto block = increment_.segment<n_block_unknowns>(n_block_unknowns * b);
         const double change = block.tail<4>().norm();
         const double limit = options_.strain_limit * system.blocks[b].size;
         if (change > limit) block.tail<4>() *= limit / change;
-        largest_motion = std::max(largest_motion, block.head<2>().norm());
+        const double motion = block.head<2>().norm();
+        largest_motion = std::max(largest_motion, motion);
+        if (change > limit || motion > motion_limit) limited_.push_back(b);
     }
-    const double limit = options_.motion_limit * system.spacing;
-    if (largest_motion > limit) increment_ *= limit / largest_motion;
+    if (largest_motion > motion_limit) increment_ *= motion_limit / largest_motion;
 }
 
-OpenCloseSummary OpenCloseSolver::iterate(const EquilibriumProblem& problem, const BlockPattern& pattern,
-                                          TangentKind kind, Eigen::VectorXd& q) {
-    const BlockSystem& system = *problem.system;
-    EquilibriumEvaluator evaluator(problem, pattern);
-    OpenCloseSummary summary;
-    double previous_norm = -1.0;
-    for (;;) {
-        evaluator.residual(q, residual_);
-        problem.constraints.correction(q, prescribed_);
-        const double norm = free_norm(problem, residual_);
-        summary.force_scale = residual_.force_scale;
-        summary.residual_ratio = residual_.force_scale > 0.0 ? norm / residual_.force_scale : 0.0;
-        const double missing = prescribed_.lpNorm<Eigen::Infinity>();
-        const bool held = missing <= 1e-13 * (system.spacing + q.lpNorm<Eigen::Infinity>());
-        if (held && norm <= options_.tolerance * residual_.force_scale + residual_.roundoff) {
-            summary.termination = Termination::converged;
-            return summary;
-        }
-        summary.worst_block = largest_block(scratch_);
-        if (summary.iterations >= options_.max_iterations) return summary;
+void OpenCloseSolver::evaluate(EquilibriumEvaluator& evaluator, const Eigen::VectorXd& q, Residual& residual) {
+    const Stopwatch watch(assembly_seconds_);
+    evaluator.residual(q, residual);
+}
 
-        evaluator.tangent(q, kind, matrix_);
+/// Newton's increment at q, inside the limits. False if the stiffness cannot be factorized.
+bool OpenCloseSolver::find_increment(const EquilibriumProblem& problem, EquilibriumEvaluator& evaluator,
+                                     const Eigen::VectorXd& q, bool held) {
+    {
+        const Stopwatch watch(assembly_seconds_);
+        evaluator.tangent(q, options_.tangent, matrix_);
         right_side_ = -residual_.forces;
         if (!held) {
             matrix_.multiply(prescribed_, scratch_);
@@ -136,16 +146,41 @@ OpenCloseSummary OpenCloseSolver::iterate(const EquilibriumProblem& problem, con
         }
         problem.constraints.project(right_side_);
         problem.constraints.project(matrix_, typical_diagonal(matrix_));
-        const auto factorization = kind == TangentKind::exact ? Factorization::lu : Factorization::cholesky;
-        if (!linear_solver_.factorize(matrix_, factorization)) {
+    }
+    const bool exact = options_.tangent == TangentKind::exact;
+    if (!linear_solver_.factorize(matrix_, exact ? Factorization::lu : Factorization::cholesky)) return false;
+    linear_solver_.solve(right_side_, increment_);
+    problem.constraints.project(increment_);
+    if (!held) increment_ += prescribed_;
+    limit_increment(*problem.system);
+    return true;
+}
+
+OpenCloseSummary OpenCloseSolver::solve(const EquilibriumProblem& problem, const BlockPattern& pattern,
+                                        Eigen::VectorXd& q) {
+    EquilibriumEvaluator evaluator(problem, pattern);
+    OpenCloseSummary summary;
+    full_step_forces_.resize(0);
+    double previous_norm = -1.0;
+    for (;;) {
+        evaluate(evaluator, q, residual_);
+        problem.constraints.correction(q, prescribed_);
+        const double norm = free_norm(problem, residual_);
+        summary.force_scale = residual_.force_scale;
+        summary.residual_ratio = residual_.force_scale > 0.0 ? norm / residual_.force_scale : 0.0;
+        const double missing = prescribed_.lpNorm<Eigen::Infinity>();
+        const bool held = missing <= 1e-13 * (problem.system->spacing + q.lpNorm<Eigen::Infinity>());
+        if (held && norm <= options_.tolerance * residual_.force_scale + residual_.roundoff) {
+            summary.termination = Termination::converged;
+            return summary;
+        }
+        summary.worst_block = largest_block(scratch_);
+        if (summary.iterations >= options_.max_iterations) return summary;
+        if (!find_increment(problem, evaluator, q, held)) {
             summary.termination = Termination::singular;
             return summary;
         }
-        linear_solver_.solve(right_side_, increment_);
         ++summary.iterations;
-        problem.constraints.project(increment_);
-        if (!held) increment_ += prescribed_;
-        limit_increment(system);
 
         double s = 1.0;
         if (held) {
@@ -156,42 +191,12 @@ OpenCloseSummary OpenCloseSolver::iterate(const EquilibriumProblem& problem, con
             s = slope < 0.0 && !stalls ? step_along_root(problem, evaluator, q, slope)
                                        : step_by_halving(problem, evaluator, q, norm);
         }
+        if (summary.iterations + iterations_of_restless > options_.max_iterations) {
+            append_restless(full_step_forces_, limited_, summary.restless);
+        }
         q += s * increment_;
         previous_norm = norm;
     }
-}
-
-OpenCloseSummary OpenCloseSolver::solve(const EquilibriumProblem& problem, const BlockPattern& pattern,
-                                        Eigen::VectorXd& q) {
-    return iterate(problem, pattern, options_.tangent, q);
-}
-
-OpenCloseSummary OpenCloseSolver::solve_lagged(EquilibriumProblem& problem, const BlockPattern& pattern,
-                                               Eigen::VectorXd& q) {
-    OpenCloseSummary total;
-    for (int round = 0; round < options_.max_lagged_rounds; ++round) {
-        std::vector<double> limits;
-        limits.reserve(problem.contacts.size());
-        for (int i = 0; i < static_cast<int>(problem.contacts.size()); ++i) {
-            const double pressure = -contact_traction(problem, i, q).normal;
-            limits.push_back(shear_limit((*problem.laws)[problem.contacts[i].law], pressure).value);
-        }
-        problem.frozen_limits = std::move(limits);
-        OpenCloseSummary summary = iterate(problem, pattern, TangentKind::symmetric, q);
-        problem.frozen_limits.clear();
-        total.iterations += summary.iterations;
-        total.termination = summary.termination;
-        if (!summary.converged()) break;
-
-        EquilibriumEvaluator(problem, pattern).residual(q, residual_);
-        const double norm = free_norm(problem, residual_);
-        total.force_scale = residual_.force_scale;
-        total.residual_ratio = residual_.force_scale > 0.0 ? norm / residual_.force_scale : 0.0;
-        total.worst_block = largest_block(scratch_);
-        if (norm <= options_.tolerance * residual_.force_scale + residual_.roundoff) return total;
-        total.termination = Termination::max_iterations;
-    }
-    return total;
 }
 
 } // namespace kluft

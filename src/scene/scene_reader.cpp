@@ -49,7 +49,6 @@ SolverOptions read_solver_options(const SceneSection& section) {
     options.balance = section.number("balance");
     options.viscosity = section.number("viscosity");
     options.max_iterations = section.count("max_iterations");
-    options.max_cuts = section.count("max_cuts");
     options.max_unbalanced_steps = section.count("max_unbalanced_steps");
     options.tangent = static_cast<Tangent>(section.choice("tangent"));
     options.repeatable = section.boolean("repeatable");

@@ -11,6 +11,7 @@
 
 #include "kluft/contact/bonds.hpp"
 #include "kluft/core/diagnostics.hpp"
+#include "kluft/core/stopwatch.hpp"
 #include "kluft/equilibrium/open_close_solver.hpp"
 #include "kluft/fracture/crack_check.hpp"
 #include "kluft/kinematics/affine.hpp"
@@ -24,9 +25,11 @@ namespace {
 
 constexpr int max_balance_rounds = 12;
 constexpr double least_balance_progress = 0.7; ///< of the viscous share per round, else the body is moving
-constexpr double first_relaxation = 4.0;       ///< eta of a relaxation relative to the ordinary one
+constexpr double relaxation_growth = 16.0;     ///< of eta on the blocks that stop the iteration
+constexpr double relaxation_decay = 4.0;       ///< after a solve in a few iterations
+constexpr int easy_iterations = 6;
 constexpr double largest_relaxation = 4.0e6;
-constexpr int max_relaxation_steps = 60;
+constexpr int max_relaxation_attempts = 100;
 constexpr int max_event_trials = 12;
 constexpr double largest_useful_index = 10.0; ///< of f in the search for an event: a strength of zero gives infinity
 constexpr double critical_share = 0.95;       ///< of f_max in `critical_first`
@@ -38,18 +41,6 @@ struct NoEquilibrium {
 };
 
 using Clock = std::chrono::steady_clock;
-
-class Stopwatch {
-public:
-    explicit Stopwatch(double& total) : total_(total) {}
-    ~Stopwatch() { total_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
-    Stopwatch(const Stopwatch&) = delete;
-    Stopwatch& operator=(const Stopwatch&) = delete;
-
-private:
-    double& total_;
-    Clock::time_point start_ = Clock::now();
-};
 
 /// True if the constraints stop every rigid motion of every group of bonded blocks.
 bool is_held(const BlockSystem& system, const std::vector<char>& bonded, const Constraints& constraints) {
@@ -213,37 +204,22 @@ private:
     /// Brings the work state to the target load factor. True if nothing broke, was cut or relaxed on the way.
     bool advance(double target, bool check) {
         bool smooth = true;
-        int cuts = 0;
-        const double whole = target - work_.load_factor;
+        const bool by_events = check && cracks_.update == CrackUpdate::event;
         while (work_.load_factor < target) {
             const double from = work_.load_factor;
-            const double part = whole / (1 << cuts);
-            const double to = from + 1.01 * part < target ? from + part : target;
             prepare();
-            Trial trial = solve(to, predicted(to));
-            if (!trial.converged()) {
+            Trial trial = solve(target, predicted(target));
+            if (!trial.balanced) {
                 smooth = false;
-                if (cuts < options_.max_cuts) {
-                    ++cuts;
-                    ++report_.cuts;
-                    continue;
-                }
-                trial = relax(to);
-            } else if (!trial.balanced) {
-                smooth = false;
-                commit(trial, from);
-                trial = relax(to);
+                if (trial.converged()) commit(trial, from);
+                trial = relax(target, trial.summary.restless);
             }
-            double reached = to;
-            if (check && cracks_.update == CrackUpdate::event && trial.balanced) {
-                reached = locate_event(from, to, trial);
-            }
-            smooth = smooth && reached == to;
+            double reached = target;
+            if (by_events && trial.balanced) reached = locate_event(from, target, trial);
+            smooth = smooth && reached == target;
             commit(trial, reached);
             record_equilibrium(trial);
-            if (check && (cracks_.update == CrackUpdate::event || reached >= target) && break_bonds(reached)) {
-                smooth = false;
-            }
+            if (check && (by_events || reached >= target) && break_bonds(reached)) smooth = false;
         }
         return smooth;
     }
@@ -276,9 +252,20 @@ private:
         if (model_.gravity != Vec2::Zero()) problem_.densities = model_.densities;
         problem_.start = work_.displacement;
         problem_.least_mass_area = std::sqrt(0.75) * model_.system.spacing * model_.system.spacing;
-        const double height = (model_.system.upper - model_.system.lower).maxCoeff();
         const bool needs_mass = separated || !is_held(model_.system, bonded_, problem_.constraints);
-        problem_.eta = needs_mass ? options_.viscosity * model_.effective_modulus / (height * height) : 0.0;
+        if (needs_mass && options_.viscosity > 0.0) {
+            problem_.eta.assign(model_.system.blocks.size(), eta_of(options_.viscosity));
+        }
+    }
+
+    [[nodiscard]] double eta_of(double viscosity) const {
+        const double height = (model_.system.upper - model_.system.lower).maxCoeff();
+        return viscosity * model_.effective_modulus / (height * height);
+    }
+
+    /// A relaxation needs the mass-like term also where ordinary solves do without it.
+    [[nodiscard]] double relaxation_eta() const {
+        return eta_of(options_.viscosity > 0.0 ? options_.viscosity : SolverOptions{}.viscosity);
     }
 
     /// The pattern must hold every pair that touches; a new one costs an analysis.
@@ -315,12 +302,6 @@ private:
         trial.q = std::move(guess);
         trial.summary = open_close_.solve(problem_, pattern_, trial.q);
         report_.open_close_iterations += trial.summary.iterations;
-        if (!trial.converged() && !problem_.contacts.empty()) {
-            ++report_.lagged_solves;
-            trial.q = work_.displacement;
-            trial.summary = open_close_.solve_lagged(problem_, pattern_, trial.q);
-            report_.open_close_iterations += trial.summary.iterations;
-        }
         last_worst_block_ = trial.summary.worst_block;
         if (trial.converged()) balance(trial);
         notify_progress(load_factor);
@@ -349,37 +330,54 @@ private:
         trial.balanced = trial.viscous_share <= options_.balance;
     }
 
-    /// Pseudo-transient continuation at a load factor from the work state, which moves along.
-    Trial relax(double load_factor) {
+    /// Pseudo-transient continuation at a load factor from the work state, which moves along: eta grows on the blocks
+    /// that stop the iteration and falls again as they come to rest.
+    Trial relax(double load_factor, const std::vector<int>& restless) {
         ++report_.relaxations;
-        double factor = first_relaxation;
-        Trial trial;
-        for (int step = 0; step < max_relaxation_steps;) {
+        std::vector<double> factor(model_.system.blocks.size(), 1.0);
+        for (const int b : restless) factor[b] = relaxation_growth;
+        Trial last; // that converged
+        for (int attempt = 0; attempt < max_relaxation_attempts; ++attempt) {
             if (stop_) throw Interrupted{};
             prepare();
             set_load(load_factor);
-            problem_.eta *= factor;
-            trial = Trial{};
+            problem_.eta = factor;
+            for (double& eta : problem_.eta) eta *= relaxation_eta();
+            Trial trial;
             trial.q = work_.displacement;
             trial.summary = open_close_.solve(problem_, pattern_, trial.q);
             report_.open_close_iterations += trial.summary.iterations;
             last_worst_block_ = trial.summary.worst_block;
+            notify_progress(load_factor);
             if (!trial.converged()) {
-                factor *= 4.0;
-                if (factor > largest_relaxation) {
+                if (!grow_eta(trial.summary.restless, factor)) {
                     throw NoEquilibrium{trial.summary.worst_block, trial.summary.residual_ratio};
                 }
                 continue;
             }
-            ++step;
             trial.viscous_share = viscous_share(trial);
             trial.balanced = trial.viscous_share <= options_.balance;
-            if (trial.balanced) break;
+            if (trial.balanced) return trial;
             commit(trial, work_.load_factor);
-            if (trial.summary.iterations <= 4) factor = std::max(first_relaxation, 0.5 * factor);
-            notify_progress(load_factor);
+            if (trial.summary.iterations <= easy_iterations) {
+                for (double& f : factor) f = std::max(1.0, f / relaxation_decay);
+            }
+            last = std::move(trial);
         }
-        return trial;
+        if (!last.converged()) throw NoEquilibrium{last_worst_block_, last.summary.residual_ratio};
+        return last;
+    }
+
+    /// False if nothing is left to grow.
+    static bool grow_eta(const std::vector<int>& restless, std::vector<double>& factor) {
+        bool grown = false;
+        const auto grow = [&](double& f) {
+            grown = grown || f < largest_relaxation;
+            f = std::min(largest_relaxation, relaxation_growth * f);
+        };
+        for (const int b : restless) grow(factor[b]);
+        if (restless.empty()) std::ranges::for_each(factor, grow);
+        return grown;
     }
 
     /// The place where the work state changes.
@@ -484,11 +482,9 @@ private:
             std::ranges::sort(work_.contacts, {}, &ContactMemory::key);
             prepare();
             Trial trial = solve(load_factor, work_.displacement);
-            if (!trial.converged()) {
-                trial = relax(load_factor);
-            } else if (!trial.balanced) {
-                commit(trial, load_factor);
-                trial = relax(load_factor);
+            if (!trial.balanced) {
+                if (trial.converged()) commit(trial, load_factor);
+                trial = relax(load_factor, trial.summary.restless);
             }
             commit(trial, load_factor);
             record_equilibrium(trial);

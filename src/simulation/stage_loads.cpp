@@ -1,5 +1,6 @@
 #include "kluft/simulation/stage_loads.hpp"
 
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -14,6 +15,23 @@ template <typename Visit> void for_each_edge(const BlockSystem& system, int boun
         const Edge& edge = system.blocks[b].edges[e];
         visit(b, edge_start(system, edge), edge_end(system, edge));
     }
+}
+
+/// (block, vertex) on a boundary nearest to its middle.
+std::optional<std::pair<int, int>> middle_vertex(const BlockSystem& system, int boundary) {
+    const Vec2 middle = mean_position(system, boundary);
+    std::optional<std::pair<int, int>> nearest;
+    double least = 0.0;
+    for (const auto& [b, e] : system.boundaries[boundary].edges) {
+        const Edge& edge = system.blocks[b].edges[e];
+        for (const int vertex : {edge.start, edge.end}) {
+            const double distance = (system.vertices[vertex] - middle).norm();
+            if (nearest && distance >= least) continue;
+            nearest = std::pair(b, vertex);
+            least = distance;
+        }
+    }
+    return nearest;
 }
 
 } // namespace
@@ -84,7 +102,8 @@ StageLoads::StageLoads(const Model& model, const State& stage_start, const Stage
         const int fixed = opposite_boundary(system, moved);
         const Support kind = stage.platens == Platens::rough ? Support::fixed : Support::smooth;
         supports[moved] = kind;
-        if (fixed >= 0 && supports[fixed] != Support::fixed) supports[fixed] = kind;
+        if (fixed >= 0 && kind == Support::fixed) supports[fixed] = Support::fixed;
+        if (fixed >= 0 && supports[fixed] == Support::none) supports[fixed] = Support::pinned;
         const Vec2 inward = -boundary_frame(system, moved).normal;
         double distance = stage.motion->value;
         if (stage.motion->control == PlatenControl::strain) {
@@ -103,6 +122,8 @@ StageLoads::StageLoads(const Model& model, const State& stage_start, const Stage
         start_pressure_[boundary] = end_pressure_[boundary] = 0.0;
         const Vec2 normal = boundary_frame(system, boundary).normal;
         const Vec2 motion = boundary == moved ? velocity : Vec2::Zero();
+        const Vec2 along(-normal.y(), normal.x());
+        const auto pin = supports[boundary] == Support::pinned ? middle_vertex(system, boundary) : std::nullopt;
         std::set<std::pair<int, int>> done; // (block, vertex)
         for (const auto& [b, e] : system.boundaries[boundary].edges) {
             const Edge& edge = system.blocks[b].edges[e];
@@ -116,7 +137,7 @@ StageLoads::StageLoads(const Model& model, const State& stage_start, const Stage
                     target_rates_.push_back(direction.dot(motion));
                 };
                 prescribe(normal);
-                if (supports[boundary] == Support::fixed) prescribe(Vec2(-normal.y(), normal.x()));
+                if (supports[boundary] == Support::fixed || pin == std::pair(b, vertex)) prescribe(along);
             }
         }
     }

@@ -82,8 +82,8 @@ TEST(SceneErrors, DuplicateKeysAreErrors) {
     std::string text = test::short_scene + "title: a\ntitle: b\n";
     EXPECT_THAT(errors_in(text),
                 ElementsAre("scene.yaml:9:1: title: expected each key once, found 'title' again\n  title: b"));
-    EXPECT_THAT(errors_in(test::short_scene + "solver: {max_cuts: 1, max_cuts: 2}\n"),
-                ElementsAre(StartsWith("scene.yaml:8:23: solver.max_cuts: expected each key once")));
+    EXPECT_THAT(errors_in(test::short_scene + "solver: {balance: 1e-3, balance: 1e-4}\n"),
+                ElementsAre(StartsWith("scene.yaml:8:25: solver.balance: expected each key once")));
 }
 
 struct Refusal {
@@ -108,7 +108,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"title=[a]", "title: expected text, found a list of 1"},
         Refusal{"title=", "title: expected text, found nothing"},
         Refusal{"title=\"a\\tb\"", "title: expected text, found 'a b', which has control characters"},
-        Refusal{"solver=3", "solver: expected a mapping of tolerance, balance, viscosity, max_iterations, max_cuts, "
+        Refusal{"solver=3", "solver: expected a mapping of tolerance, balance, viscosity, max_iterations, "
                             "max_unbalanced_steps, tangent, repeatable, found '3'"},
         Refusal{"materials.rock.density={a: 1}",
                 "materials.rock.density: expected a number >= 0 in kg/m3, found a mapping"},

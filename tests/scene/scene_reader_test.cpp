@@ -137,7 +137,6 @@ TEST(SceneReader, ReadsOptions) {
     EXPECT_EQ(scene.solver.balance, 1e-4);
     EXPECT_EQ(scene.solver.viscosity, 0.1);
     EXPECT_EQ(scene.solver.max_iterations, 30);
-    EXPECT_EQ(scene.solver.max_cuts, 3);
     EXPECT_EQ(scene.solver.max_unbalanced_steps, 4);
     EXPECT_EQ(scene.solver.tangent, Tangent::symmetric);
     EXPECT_TRUE(scene.solver.repeatable);
@@ -163,7 +162,6 @@ TEST(SceneReader, LeavesDefaultsWhereTheSceneSaysNothing) {
     EXPECT_EQ(scene.solver.balance, solver.balance);
     EXPECT_EQ(scene.solver.viscosity, solver.viscosity);
     EXPECT_EQ(scene.solver.max_iterations, solver.max_iterations);
-    EXPECT_EQ(scene.solver.max_cuts, solver.max_cuts);
     EXPECT_EQ(scene.solver.max_unbalanced_steps, solver.max_unbalanced_steps);
     EXPECT_EQ(scene.solver.tangent, solver.tangent);
     EXPECT_EQ(scene.solver.repeatable, solver.repeatable);
@@ -308,7 +306,7 @@ TEST(TriaxialModels, EveryCaseHasAPressureStageAndAPlatenStage) {
         EXPECT_EQ(scene.loads.stages[1].name, "platen");
         EXPECT_EQ(scene.loads.stages[1].motion->boundary, 2);
         EXPECT_DOUBLE_EQ(scene.loads.stages[1].motion->value, strain) << name;
-        EXPECT_THAT(scene.loads.supports, ElementsAre(Support::smooth, Support::none, Support::none, Support::none));
+        EXPECT_THAT(scene.loads.supports, ElementsAre(Support::pinned, Support::none, Support::none, Support::none));
     }
 }
 

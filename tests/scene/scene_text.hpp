@@ -61,7 +61,7 @@ stages:
   - {name: push, displacement: {boundary: right, value: 3 mm}}
   - {name: load, stress: {boundary: top, value: 3 MPa}, steps: 5}
 cracks: {criterion: interface_traction, update: all, every: 2, event_tolerance: 1e-3}
-solver: {tolerance: 1e-6, balance: 1e-4, viscosity: 0.1, max_iterations: 30, max_cuts: 3, max_unbalanced_steps: 4,
+solver: {tolerance: 1e-6, balance: 1e-4, viscosity: 0.1, max_iterations: 30, max_unbalanced_steps: 4,
          tangent: symmetric, repeatable: true}
 output: {fields: false, fields_every: 10, pictures: false, checkpoint_every: 5}
 )";

@@ -168,8 +168,8 @@ TEST(Overrides, ApplyInOrderAndTheLastOneWins) {
 }
 
 TEST(Overrides, MappingsMergeAndNullRemoves) {
-    EXPECT_EQ(read_scene_text(test::full_scene, {"solver={max_cuts: 5}"}).solver.max_iterations, 30);
-    EXPECT_EQ(read_scene_text(test::full_scene, {"solver.max_iterations=null"}).solver.max_iterations, 20);
+    EXPECT_EQ(read_scene_text(test::full_scene, {"solver={max_unbalanced_steps: 5}"}).solver.max_iterations, 30);
+    EXPECT_EQ(read_scene_text(test::full_scene, {"solver.max_iterations=null"}).solver.max_iterations, 12);
     EXPECT_FALSE(read_scene_text(test::full_scene, {"geometry.tessellation=~"}).geometry.tessellation);
     EXPECT_EQ(read_scene_text(test::full_scene, {"stages.0=null"}).loads.stages.size(), 3U);
     EXPECT_THAT(errors_in(test::short_scene, {"geometry.tessellation=null"}), IsEmpty()) << "nothing to remove";

@@ -1,8 +1,6 @@
 // Traction of interfaces from their relative displacement: bonds and fractures (docs/theory.md).
 #pragma once
 
-#include <optional>
-
 #include "kluft/core/vector.hpp"
 
 namespace kluft {
@@ -56,9 +54,8 @@ struct ShearLimit {
 [[nodiscard]] PointTraction bond_traction(const InterfaceLaw& law, double start_shear, double gap, double slip);
 
 /// A point of a fracture: no tension, Coulomb friction with rounding, dilation by plastic slip. `gap` is total,
-/// `slip` counts from where `start` was kept. With `frozen_limit` the shear limit is that constant (the convex
-/// problem of the lagged limit).
+/// `slip` counts from where `start` was kept.
 [[nodiscard]] PointTraction fracture_traction(const InterfaceLaw& law, const PointHistory& start, double gap,
-                                              double slip, std::optional<double> frozen_limit = std::nullopt);
+                                              double slip);
 
 } // namespace kluft

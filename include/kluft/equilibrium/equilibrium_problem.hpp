@@ -28,10 +28,9 @@ struct EquilibriumProblem {
     std::vector<double> densities; ///< per material (kg/m3); empty without gravity
     Vec2 gravity = Vec2::Zero();   ///< m/s2
     Constraints constraints;
-    double eta = 0.0;                  ///< of the mass-like term (Pa/m2); 0 switches it off
-    double least_mass_area = 0.0;      ///< a block counts with at least this area in M (m2)
-    Eigen::VectorXd start;             ///< q_start of the mass-like term
-    std::vector<double> frozen_limits; ///< shear limits of the contacts in the convex problem; else empty
+    std::vector<double> eta;      ///< per block, of the mass-like term (Pa/m2); empty switches it off
+    double least_mass_area = 0.0; ///< a block counts with at least this area in M (m2)
+    Eigen::VectorXd start;        ///< q_start of the mass-like term
 };
 
 enum class TangentKind {

@@ -11,11 +11,10 @@ namespace kluft {
 
 struct OpenCloseOptions {
     double tolerance = 1e-5; ///< of |R|/F_ref
-    int max_iterations = 20; ///< linear solves per attempt: give up early, a cut step is cheaper
+    int max_iterations = 12; ///< linear solves per attempt: give up early, a relaxation is cheaper (measured)
     TangentKind tangent = TangentKind::exact;
     double strain_limit = 0.05; ///< largest change of D per iteration, relative to the block's own size
     double motion_limit = 0.04; ///< largest motion of a block per iteration, relative to the lattice spacing
-    int max_lagged_rounds = 20; ///< rounds of the lagged-limit scheme
 };
 
 enum class Termination {
@@ -30,6 +29,7 @@ struct OpenCloseSummary {
     double residual_ratio = 0.0; ///< |R|/F_ref at q
     double force_scale = 0.0;    ///< F_ref (N/m)
     int worst_block = -1;        ///< the block with the largest residual
+    std::vector<int> restless;   ///< blocks with a large part of the residual in the last iterations
     [[nodiscard]] bool converged() const { return termination == Termination::converged; }
 };
 
@@ -42,16 +42,13 @@ public:
     /// have analysed `pattern`.
     OpenCloseSummary solve(const EquilibriumProblem& problem, const BlockPattern& pattern, Eigen::VectorXd& q);
 
-    /// Convex scheme: friction limits are held while the symmetric problem is solved, then taken anew, until the
-    /// true residual is in tolerance. Slower, but it converges where single fragments stop Newton.
-    OpenCloseSummary solve_lagged(EquilibriumProblem& problem, const BlockPattern& pattern, Eigen::VectorXd& q);
-
     /// Time spent so far in residuals and tangents (s).
     [[nodiscard]] double assembly_seconds() const { return assembly_seconds_; }
 
 private:
-    OpenCloseSummary iterate(const EquilibriumProblem& problem, const BlockPattern& pattern, TangentKind kind,
-                             Eigen::VectorXd& q);
+    void evaluate(EquilibriumEvaluator& evaluator, const Eigen::VectorXd& q, Residual& residual);
+    [[nodiscard]] bool find_increment(const EquilibriumProblem& problem, EquilibriumEvaluator& evaluator,
+                                      const Eigen::VectorXd& q, bool held);
     void limit_increment(const BlockSystem& system);
     [[nodiscard]] double free_norm(const EquilibriumProblem& problem, const Residual& residual);
     [[nodiscard]] double step_along_root(const EquilibriumProblem& problem, EquilibriumEvaluator& evaluator,
@@ -68,6 +65,8 @@ private:
     Residual residual_;
     Residual trial_;
     Eigen::VectorXd prescribed_, right_side_, increment_, position_, scratch_;
+    std::vector<int> limited_;         ///< blocks whose motion limited the last increment
+    Eigen::VectorXd full_step_forces_; ///< residual at the end of the last full increment
 };
 
 } // namespace kluft

@@ -34,6 +34,7 @@ struct Stage {
 enum class Support {
     none,
     smooth, ///< no motion normal to the boundary
+    pinned, ///< as smooth, and one vertex near the middle does not move along the boundary: the body cannot drift
     fixed   ///< no motion
 };
 

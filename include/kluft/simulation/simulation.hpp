@@ -31,8 +31,6 @@ struct RunReport {
     int open_close_iterations = 0; ///< all linear solves
     int unbalanced_steps = 0;
     int relaxations = 0;
-    int cuts = 0;
-    int lagged_solves = 0;
     int events = 0; ///< equilibria at which potential cracks failed
     int detections = 0;
     int crack_checks = 0;

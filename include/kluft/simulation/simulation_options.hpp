@@ -31,8 +31,7 @@ struct SolverOptions {
     double tolerance = 1e-5;       ///< of |R|/F_ref
     double balance = 1e-3;         ///< largest share of the mass-like term in F_ref of a balanced step
     double viscosity = 0.05;       ///< eta H^2/E of the mass-like term
-    int max_iterations = 20;       ///< open-close iterations per attempt
-    int max_cuts = 2;              ///< halvings of a step before relaxation
+    int max_iterations = 12;       ///< open-close iterations per attempt
     int max_unbalanced_steps = 10; ///< successive unbalanced steps that end a run
     Tangent tangent = Tangent::unsymmetric;
     bool repeatable = false; ///< one BLAS thread, so that whole runs are bit-identical for any thread count
