@@ -112,20 +112,18 @@ double OpenCloseSolver::step_by_halving(const EquilibriumProblem& problem, Equil
     return best;
 }
 
+/// One factor for all blocks: the increment stays Newton's direction.
 void OpenCloseSolver::limit_increment(const BlockSystem& system) {
     limited_.clear();
-    double largest_motion = 0.0;
-    const double motion_limit = options_.motion_limit * system.spacing;
+    const double limit = options_.motion_limit * system.spacing;
+    double largest = 0.0;
     for (int b = 0; b < system.n_blocks(); ++b) {
-        auto block = increment_.segment<n_block_unknowns>(n_block_unknowns * b);
-        const double change = block.tail<4>().norm();
-        const double limit = options_.strain_limit * system.blocks[b].size;
-        if (change > limit) block.tail<4>() *= limit / change;
-        const double motion = block.head<2>().norm();
-        largest_motion = std::max(largest_motion, motion);
-        if (change > limit || motion > motion_limit) limited_.push_back(b);
+        const auto block = increment_.segment<n_block_unknowns>(n_block_unknowns * b);
+        const double motion = std::max(block.head<2>().norm(), block.tail<4>().norm());
+        if (motion > limit) limited_.push_back(b);
+        largest = std::max(largest, motion);
     }
-    if (largest_motion > motion_limit) increment_ *= motion_limit / largest_motion;
+    if (largest > limit) increment_ *= limit / largest;
 }
 
 void OpenCloseSolver::evaluate(EquilibriumEvaluator& evaluator, const Eigen::VectorXd& q, Residual& residual) {

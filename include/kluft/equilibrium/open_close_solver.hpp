@@ -13,8 +13,7 @@ struct OpenCloseOptions {
     double tolerance = 1e-5; ///< of |R|/F_ref
     int max_iterations = 12; ///< linear solves per attempt: give up early, a relaxation is cheaper (measured)
     TangentKind tangent = TangentKind::exact;
-    double strain_limit = 0.05; ///< largest change of D per iteration, relative to the block's own size
-    double motion_limit = 0.04; ///< largest motion of a block per iteration, relative to the lattice spacing
+    double motion_limit = 0.04; ///< largest change of a block's u or D per iteration, relative to the lattice spacing
 };
 
 enum class Termination {
