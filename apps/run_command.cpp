@@ -80,6 +80,7 @@ RunWriterOptions writer_options(const Scene& scene, const Model& model) {
     options.checkpoint_every = scene.output.checkpoint_every;
     options.title = scene.title.empty() ? scene.name : scene.title;
     options.fingerprint = fingerprint(model);
+    options.scene_text = scene.text;
     const int platen_stage = make_gauges(model).first_platen_stage;
     if (platen_stage >= 0) options.platen_stage = platen_stage;
     options.plane = scene.plane;
