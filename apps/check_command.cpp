@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "commands.hpp"
@@ -19,11 +18,6 @@
 namespace kluft {
 
 namespace {
-
-struct CheckArguments {
-    std::string scene;
-    std::vector<std::string> overrides;
-};
 
 void print_blocks(const Scene& scene, const SceneModel& built) {
     const BlockSystem& system = built.model.system;
@@ -91,6 +85,8 @@ bool looks_like_a_triaxial_test(const Scene& scene) {
     return platen && pressed;
 }
 
+} // namespace
+
 ExitCode check(const CheckArguments& arguments) {
     const Scene scene = read_scene(arguments.scene, arguments.overrides);
     const SceneModel built = build_scene_model(scene);
@@ -109,17 +105,6 @@ ExitCode check(const CheckArguments& arguments) {
                    scene.plane == Plane::strain ? "strain" : "stress");
     }
     return ExitCode::done;
-}
-
-} // namespace
-
-void add_check_command(CLI::App& app, std::function<ExitCode()>& command) {
-    auto arguments = std::make_shared<CheckArguments>();
-    CLI::App* sub = app.add_subcommand("check", "Say what a scene amounts to, without running it");
-    sub->add_option("scene", arguments->scene, "Scene file (YAML)")->required();
-    sub->add_option("--set", arguments->overrides, "Replace a value of the scene")->take_all()->allow_extra_args(false);
-    sub->footer("Example: kluft check models/triaxial/case-3-all.yaml");
-    sub->callback([arguments, &command] { command = [arguments] { return check(*arguments); }; });
 }
 
 } // namespace kluft

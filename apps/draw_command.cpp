@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "commands.hpp"
@@ -28,17 +27,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double mega = 1e6;
-
-struct DrawArguments {
-    std::vector<std::string> sources;
-    std::string picture;
-    std::string title;
-    std::vector<std::string> marks;
-    std::string limit;
-    std::vector<std::string> overrides;
-    bool curve = false;
-    bool blocks = false;
-};
 
 /// What is known of a run besides its tables; a killed run has no summary.
 struct RunHeading {
@@ -202,6 +190,8 @@ void draw_scene(const DrawArguments& arguments) {
     announce(picture);
 }
 
+} // namespace
+
 ExitCode draw(const DrawArguments& arguments) {
     if (!arguments.picture.empty()) (void)picture_format(arguments.picture);
     const bool several = arguments.sources.size() > 1;
@@ -225,34 +215,6 @@ ExitCode draw(const DrawArguments& arguments) {
         draw_scene(arguments);
     }
     return ExitCode::done;
-}
-
-} // namespace
-
-void add_draw_command(CLI::App& app, std::function<ExitCode()>& command) {
-    auto arguments = std::make_shared<DrawArguments>();
-    CLI::App* sub = app.add_subcommand(
-        "draw", "Draw a scene's blocks; the blocks and the curve of a run; the curves of several runs");
-    sub->add_option("source", arguments->sources, "Scene file, or directories of results")->required();
-    sub->add_option("-o,--output", arguments->picture,
-                    "One picture, .png or .svg; of a single run that of its blocks (default: <scene name>.png; "
-                    "DIR/curve and DIR/blocks, each .png and .svg; curves.png)");
-    CLI::Option* curve = sub->add_flag("--curve", arguments->curve, "Of a run only the curve");
-    sub->add_flag("--blocks", arguments->blocks, "Of a run only the blocks")->excludes(curve);
-    sub->add_option("--mark", arguments->marks,
-                    "A published value in the plot of curves: LABEL=STRESS is a level, LABEL=STRESS at STRAIN a point; "
-                    "RUN:LABEL=... takes the colour of a run")
-        ->take_all()
-        ->allow_extra_args(false);
-    sub->add_option("--limit", arguments->limit, "Where the stress axis of the curves ends, e.g. 5 MPa");
-    sub->add_option("--title", arguments->title, "Title of the picture");
-    sub->add_option("--set", arguments->overrides, "Replace a value of the scene")->take_all()->allow_extra_args(false);
-    sub->footer("Examples:\n"
-                "  kluft draw models/triaxial/case-3-all.yaml -o geometry.svg\n"
-                "  kluft draw results/case-3-all\n"
-                "  kluft draw results/case-3 results/case-3-all -o curves.png --mark 'published=1.205 MPa'\n"
-                "  kluft draw results/case-3 results/case-5 -o curves.png --mark 'case-5:published, 0 MPa=0.502 MPa'");
-    sub->callback([arguments, &command] { command = [arguments] { return draw(*arguments); }; });
 }
 
 } // namespace kluft

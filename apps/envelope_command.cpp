@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "commands.hpp"
@@ -20,13 +19,6 @@ namespace kluft {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct EnvelopeArguments {
-    std::vector<std::string> directories;
-    std::string picture = "envelope.png";
-    std::string title = "Strength envelope";
-    std::vector<std::string> others;
-};
 
 /// "LABEL=C,PHI", e.g. "published=0.118 MPa, 39.6 deg".
 NamedEnvelope named_envelope(const std::string& text) {
@@ -43,6 +35,8 @@ NamedEnvelope named_envelope(const std::string& text) {
                     "'{}'",
                     text));
 }
+
+} // namespace
 
 ExitCode envelope(const EnvelopeArguments& arguments) {
     std::vector<NamedEnvelope> others;
@@ -67,23 +61,6 @@ ExitCode envelope(const EnvelopeArguments& arguments) {
     write_file(table.replace_extension(".csv"), envelope_csv(peaks, fit));
     fmt::print("{}{}\n", envelope_text(peaks, fit), picture.string());
     return ExitCode::done;
-}
-
-} // namespace
-
-void add_envelope_command(CLI::App& app, std::function<ExitCode()>& command) {
-    auto arguments = std::make_shared<EnvelopeArguments>();
-    CLI::App* sub = app.add_subcommand(
-        "envelope", "Fit cohesion and friction angle to the peaks of several runs, draw Mohr's circles");
-    sub->add_option("directories", arguments->directories, "Directories of results")->required();
-    sub->add_option("-o,--output", arguments->picture, "Picture, .png or .svg; a table of the same name goes beside it")
-        ->capture_default_str();
-    sub->add_option("--compare", arguments->others, "Another envelope in the picture: LABEL=COHESION,ANGLE")
-        ->take_all()
-        ->allow_extra_args(false);
-    sub->add_option("--title", arguments->title, "Title of the picture")->capture_default_str();
-    sub->footer("Example: kluft envelope results/case-5-all results/case-3-all results/case-4-all results/case-6-all");
-    sub->callback([arguments, &command] { command = [arguments] { return envelope(*arguments); }; });
 }
 
 } // namespace kluft

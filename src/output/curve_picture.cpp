@@ -10,9 +10,9 @@
 
 #include "kluft/output/atomic_file.hpp"
 #include "kluft/output/axis.hpp"
+#include "kluft/output/page_box.hpp"
 #include "kluft/output/summary.hpp"
 #include "legend.hpp"
-#include "page_box.hpp"
 
 namespace kluft {
 

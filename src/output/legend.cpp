@@ -10,6 +10,12 @@ namespace {
 constexpr double indent = 27.0; // of the text behind its sample
 constexpr double gap = 8.0;     // between columns
 
+/// Of UTF-8 text: bytes that begin a character.
+std::size_t n_characters(const std::string& text) {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+}
+
 } // namespace
 
 LegendEntry line_entry(std::string label, const Stroke& stroke) {
@@ -22,7 +28,7 @@ LegendGrid::LegendGrid(std::vector<LegendEntry> entries, double width) : entries
     constexpr double letter = 4.9; // mean width; labels that are wider are drawn smaller
     constexpr std::size_t most_columns = 3;
     std::size_t letters = 1;
-    for (const LegendEntry& entry : entries_) letters = std::max(letters, entry.label.size());
+    for (const LegendEntry& entry : entries_) letters = std::max(letters, n_characters(entry.label));
     const auto fitting = static_cast<std::size_t>(width_ / (letter * static_cast<double>(letters) + indent + gap));
     n_columns_ = std::clamp(fitting, std::size_t{1}, most_columns);
     n_rows_ = (entries_.size() + n_columns_ - 1) / n_columns_;

@@ -1,4 +1,4 @@
-#include "page_box.hpp"
+#include "kluft/output/page_box.hpp"
 
 #include <algorithm>
 

@@ -158,7 +158,7 @@ RunSummary RunWriter::summary_of(const RunOutcome& outcome) const {
 
 RunSummary RunWriter::finish(const RunOutcome& outcome, const State& state,
                              const std::function<FieldRecord()>& fields) {
-    const RunSummary summary = summary_of(outcome);
+    RunSummary summary = summary_of(outcome);
     FirstError errors;
     errors.attempt([&] { checkpoint(state); });
     errors.attempt([&] { write_summary(directory_ / "summary.json", summary); });
@@ -173,6 +173,9 @@ RunSummary RunWriter::finish(const RunOutcome& outcome, const State& state,
         if (options_.pictures) parts.attempt([&] { write_pictures(last); });
         parts.rethrow();
     });
+    // The summary was written before the pictures, which may need more memory than there is; now it counts theirs too.
+    summary.peak_memory_bytes = peak_memory_bytes();
+    errors.attempt([&] { write_summary(directory_ / "summary.json", summary); });
     errors.rethrow();
     return summary;
 }
