@@ -299,7 +299,9 @@ void draw_plot(Canvas& canvas, const CurvePlot& plot, const LegendGrid& below) {
     canvas.text_within(frame.size.x(), {frame.corner.x(), 24.0}, plot.title,
                        {.size = 11.5, .colour = text_colour, .bold = true});
     draw_axes(canvas, frame, plot.x_name, plot.y_name);
-    canvas.begin_clip(frame.corner, frame.size);
+    const Vec2 room(4.0, 4.0); // markers on the frame are drawn whole, but nothing above a limit
+    const Vec2 above(0.0, plot.y_limit ? room.y() : 0.0);
+    canvas.begin_clip(frame.corner - room + above, frame.size + 2.0 * room - above);
     draw_references(canvas, frame, plot.references);
     for (std::size_t i = 0; i < plot.curves.size(); ++i) draw_curve(canvas, frame, plot.curves[i], curve_stroke(i));
     canvas.end_clip();
@@ -332,9 +334,8 @@ PlottedCurve plotted_run(const RunCurve& run, bool alone) {
     curve.label = run.label;
     for (const StepRecord& record : platen_rows(run.history, run.platen_stage))
         curve.points.push_back({plotted(record), record.balanced});
-    if (alone)
-        for (const StepRecord& record : platen_rows(run.equilibria, run.platen_stage))
-            if (record.balanced) curve.fine.push_back(plotted(record));
+    for (const StepRecord& record : platen_rows(run.equilibria, run.platen_stage))
+        if (record.balanced) curve.fine.push_back(plotted(record));
     if (const auto peak = peak_row(run.equilibria.empty() ? run.history : run.equilibria))
         add_peak(run, *peak, alone, curve);
     return curve;
