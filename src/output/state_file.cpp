@@ -272,7 +272,9 @@ State read_state(const std::filesystem::path& path, const std::string& expected_
 }
 
 std::string read_state_scene(const std::filesystem::path& path) {
-    return read_image(path, [](hid_t file) {
+    return read_image(path, [&](hid_t file) {
+        if (H5Lexists(file, "scene", H5P_DEFAULT) <= 0)
+            throw InputError(path.string() + ": holds no scene; it was saved by an earlier version");
         const auto bytes = read_array<std::uint8_t>(file, "scene");
         return std::string(bytes.begin(), bytes.end());
     });
