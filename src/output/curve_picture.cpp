@@ -261,7 +261,8 @@ Vec2 freest_corner(const Obstacles& obstacles, const PlotFrame& frame, const Vec
     Vec2 best = {high.x(), high.y()};
     std::size_t fewest = std::numeric_limits<std::size_t>::max();
     for (const Vec2& corner : {Vec2(high.x(), high.y()), Vec2(high.x(), low.y()), Vec2(low.x(), low.y())}) {
-        const std::size_t n_met = obstacles.met_by({corner, corner + size});
+        const Vec2 room(6.0, 6.0); // for markers
+        const std::size_t n_met = obstacles.met_by({corner - room, corner + size + room});
         if (n_met >= fewest) continue;
         fewest = n_met;
         best = corner;
@@ -270,13 +271,17 @@ Vec2 freest_corner(const Obstacles& obstacles, const PlotFrame& frame, const Vec
 }
 
 /// The legend of one curve, inside the frame.
-void draw_legend_inside(Canvas& canvas, const PlotFrame& frame, const std::vector<LegendEntry>& entries,
-                        Obstacles& obstacles) {
+void draw_legend_inside(Canvas& canvas, const PlotFrame& frame, const CurvePlot& plot, Obstacles& obstacles) {
+    const auto entries = legend_of(plot);
     if (entries.empty()) return;
     constexpr double indent = 34.0;
     const Vec2 size{label_width(canvas, entries) + indent + 8.0,
                     legend_line * static_cast<double>(entries.size()) + 6.0};
-    const Vec2 corner = freest_corner(obstacles, frame, size);
+    Obstacles with_levels = obstacles;
+    for (const PlottedReference& reference : plot.references)
+        with_levels.lines.push_back({frame.place({reference.x.value_or(frame.x.low), reference.y}),
+                                     frame.place({reference.x.value_or(frame.x.high), reference.y})});
+    const Vec2 corner = freest_corner(with_levels, frame, size);
     canvas.fill_rectangle(corner, size, colour(0xFFFFFF, 0.9));
     canvas.stroke_rectangle(corner, size, {colour(0xCCCCCC), 0.6});
     double y = corner.y() + 3.0 + 0.5 * legend_line;
@@ -307,7 +312,7 @@ void draw_plot(Canvas& canvas, const CurvePlot& plot, const LegendGrid& below) {
     canvas.end_clip();
     Obstacles obstacles = obstacles_of(plot, frame);
     below.draw(canvas, {frame.corner.x(), plot_height});
-    if (plot.curves.size() < 2) draw_legend_inside(canvas, frame, legend_of(plot), obstacles);
+    if (plot.curves.size() < 2) draw_legend_inside(canvas, frame, plot, obstacles);
     for (const PlottedReference& reference : plot.references)
         if (!reference.x) draw_level_label(canvas, frame, reference, obstacles);
     for (std::size_t i = 0; i < plot.curves.size(); ++i) draw_peak(canvas, frame, plot.curves[i], series_colour(i));
