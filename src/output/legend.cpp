@@ -39,8 +39,10 @@ double LegendGrid::height() const { return n_rows_ > 0 ? legend_line * static_ca
 void LegendGrid::draw(Canvas& canvas, const Vec2& corner) const {
     const double column = width_ / static_cast<double>(n_columns_);
     for (std::size_t i = 0; i < entries_.size(); ++i) {
-        const Vec2 at = corner + Vec2(column * static_cast<double>(i / n_rows_),
-                                      legend_line * (static_cast<double>(i % n_rows_) + 0.5));
+        const std::size_t place = i / n_rows_; // the column
+        const std::size_t row = i % n_rows_;
+        const Vec2 at =
+            corner + Vec2(column * static_cast<double>(place), legend_line * (static_cast<double>(row) + 0.5));
         entries_[i].draw_sample(canvas, at + Vec2(11.0, 0.0));
         canvas.text_within(column - indent - gap, at + Vec2(indent, 0.0), entries_[i].label, legend_style);
     }
