@@ -1,11 +1,9 @@
-// The subcommands: each adds itself to the command line and sets what is to be done.
+// The subcommands and what the command line tells them.
 #pragma once
 
-#include <functional>
-
-namespace CLI {
-class App;
-}
+#include <filesystem>
+#include <string>
+#include <vector>
 
 namespace kluft {
 
@@ -18,9 +16,47 @@ enum class ExitCode {
     interrupted = 130
 };
 
-void add_run_command(CLI::App& app, std::function<ExitCode()>& command);
-void add_check_command(CLI::App& app, std::function<ExitCode()>& command);
-void add_draw_command(CLI::App& app, std::function<ExitCode()>& command);
-void add_envelope_command(CLI::App& app, std::function<ExitCode()>& command);
+/// The name of a run: that of its directory, also of "." and "results/case-3/".
+[[nodiscard]] std::string run_name(const std::filesystem::path& directory);
+
+struct RunArguments {
+    std::string scene;
+    std::string directory;
+    std::vector<std::string> overrides;
+    int threads = 0;
+    bool quiet = false;
+    bool resume = false;
+};
+
+[[nodiscard]] ExitCode run(const RunArguments& arguments);
+
+struct CheckArguments {
+    std::string scene;
+    std::vector<std::string> overrides;
+};
+
+[[nodiscard]] ExitCode check(const CheckArguments& arguments);
+
+struct DrawArguments {
+    std::vector<std::string> sources;
+    std::string picture;
+    std::string title;
+    std::vector<std::string> marks;
+    std::string limit;
+    std::vector<std::string> overrides;
+    bool curve = false;
+    bool blocks = false;
+};
+
+[[nodiscard]] ExitCode draw(const DrawArguments& arguments);
+
+struct EnvelopeArguments {
+    std::vector<std::string> directories;
+    std::string picture = "envelope.png";
+    std::string title = "Strength envelope";
+    std::vector<std::string> others;
+};
+
+[[nodiscard]] ExitCode envelope(const EnvelopeArguments& arguments);
 
 } // namespace kluft

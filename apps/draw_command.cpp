@@ -1,10 +1,11 @@
-// kluft draw SCENE|DIR
+// kluft draw SCENE|DIR...
+#include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "commands.hpp"
@@ -12,9 +13,12 @@
 #include "kluft/output/blocks_picture.hpp"
 #include "kluft/output/curve_picture.hpp"
 #include "kluft/output/history_table.hpp"
+#include "kluft/output/state_file.hpp"
 #include "kluft/output/summary.hpp"
+#include "kluft/scene/quantity.hpp"
 #include "kluft/scene/scene_model.hpp"
 #include "kluft/scene/scene_reader.hpp"
+#include "kluft/simulation/state_points.hpp"
 
 namespace kluft {
 
@@ -22,64 +26,195 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct DrawArguments {
-    std::string source;
-    std::string picture;
-    std::vector<std::string> overrides;
+constexpr double mega = 1e6;
+
+/// What is known of a run besides its tables; a killed run has no summary.
+struct RunHeading {
+    std::string title;
+    int platen_stage = 0;
 };
 
-RunCurve read_curve(const fs::path& directory) {
+RunHeading heading_of(const fs::path& directory) {
+    if (!fs::exists(directory / "summary.json")) return {run_name(directory), 0};
+    const RunSummary summary = read_summary(directory / "summary.json");
+    return {summary.title, summary.platen_stage.value_or(0)};
+}
+
+RunCurve read_curve(const fs::path& directory, const std::string& label) {
+    if (!fs::exists(directory / "history.csv")) {
+        throw InputError(directory.string() + ": expected a directory of results, found no history.csv in it");
+    }
     RunCurve curve;
-    curve.label = directory.filename().string();
+    curve.label = label;
     curve.history = read_history(directory / "history.csv");
+    if (curve.history.empty()) throw InputError((directory / "history.csv").string() + ": no load step in it yet");
     if (fs::exists(directory / "equilibria.csv")) curve.equilibria = read_history(directory / "equilibria.csv");
-    curve.platen_stage = read_summary(directory / "summary.json").platen_stage.value_or(0);
+    curve.platen_stage = heading_of(directory).platen_stage;
     return curve;
 }
 
-void draw_run(const fs::path& directory, const fs::path& picture) {
-    const std::string title = read_summary(directory / "summary.json").title;
-    write_curves(picture, stress_strain_plot(title, {read_curve(directory)}));
+/// Names of the runs, or the directories where two runs have the same name.
+std::vector<std::string> labels_of(const std::vector<std::string>& directories) {
+    std::vector<std::string> labels;
+    for (const auto& directory : directories) labels.push_back(run_name(directory));
+    auto sorted = labels;
+    std::ranges::sort(sorted);
+    return std::ranges::adjacent_find(sorted) == sorted.end() ? labels : directories;
 }
 
-void draw_scene(const DrawArguments& arguments, const fs::path& picture) {
-    const Scene scene = read_scene(arguments.source, arguments.overrides);
-    const SceneModel built = build_scene_model(scene);
+[[noreturn]] void refuse_mark(const std::string& mark, const std::string& found) {
+    throw InputError(fmt::format("--mark '{}': expected [RUN:]LABEL=STRESS, or [RUN:]LABEL=STRESS at STRAIN as in "
+                                 "'published=1.205 MPa at 1.3 %', found {}",
+                                 mark, found));
+}
+
+double quantity_of(const std::string& mark, const std::string& text, Measure measure) {
+    const QuantityReading reading = read_quantity(text, measure);
+    if (!reading.value) refuse_mark(mark, "'" + text + "'" + reading.problem);
+    return *reading.value;
+}
+
+/// [RUN:]LABEL=STRESS[ at STRAIN]; the mark of a run has its colour.
+PlottedReference reference_of(const std::string& mark, const std::vector<std::string>& labels) {
+    constexpr double percent = 100.0;
+    const auto equals = mark.rfind('=');
+    if (equals == std::string::npos || equals == 0) refuse_mark(mark, "no '='");
+    PlottedReference reference;
+    reference.label = mark.substr(0, equals);
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+        if (!reference.label.starts_with(labels[i] + ":")) continue;
+        reference.curve = i;
+        reference.label.erase(0, labels[i].size() + 1);
+        break;
+    }
+    const std::string values = mark.substr(equals + 1);
+    const auto at = values.find(" at ");
+    reference.y = quantity_of(mark, values.substr(0, at), Measure::stress) / mega;
+    if (at != std::string::npos) reference.x = percent * quantity_of(mark, values.substr(at + 4), Measure::fraction);
+    return reference;
+}
+
+/// End of the stress axis (MPa).
+double limit_of(const std::string& text) {
+    const QuantityReading reading = read_quantity(text, Measure::stress);
+    if (!reading.value || !(*reading.value > 0.0)) {
+        throw InputError(fmt::format("--limit: expected a stress above 0 as in '5 MPa', found '{}'", text));
+    }
+    return *reading.value / mega;
+}
+
+void announce(const fs::path& picture) { fmt::print("{}\n", picture.string()); }
+
+void draw_curve(const DrawArguments& arguments, const std::vector<fs::path>& pictures) {
+    const auto labels = labels_of(arguments.sources);
+    std::vector<RunCurve> curves;
+    for (std::size_t i = 0; i < labels.size(); ++i) curves.push_back(read_curve(arguments.sources[i], labels[i]));
+    std::vector<PlottedReference> references;
+    for (const auto& mark : arguments.marks) references.push_back(reference_of(mark, labels));
+    std::string title = arguments.title;
+    if (curves.size() == 1) {
+        curves.front().label.clear();
+        if (title.empty()) title = heading_of(arguments.sources.front()).title;
+    }
+    CurvePlot plot = stress_strain_plot(title, curves, references);
+    if (!arguments.limit.empty()) plot.y_limit = limit_of(arguments.limit);
+    for (const auto& picture : pictures) {
+        write_curves(picture, plot);
+        announce(picture);
+    }
+}
+
+/// Blocks and their plot as they are in the scene, before any run.
+BlocksPlot plot_of(const Scene& scene) {
     BlocksPlot plot;
     plot.title = scene.title.empty() ? scene.name : scene.title;
     for (const Material& material : scene.materials) plot.material_names.push_back(material.name);
-    for (const char bond : built.model.bonds) plot.bonded_types.push_back(bond != 0);
-    write_geometry(picture, built.model.system, plot);
+    return plot;
 }
 
-ExitCode draw(const DrawArguments& arguments) {
-    const fs::path source = arguments.source;
-    const bool is_run = fs::is_directory(source);
-    if (!is_run && !fs::exists(source)) {
-        throw InputError(arguments.source + ": expected a scene file or a directory of results, found nothing");
+/// Before and after, from the last saved state and the scene that is saved with it.
+void draw_blocks_of_run(const DrawArguments& arguments, const std::vector<fs::path>& pictures) {
+    const fs::path directory = arguments.sources.front();
+    const fs::path saved = directory / "state.h5";
+    if (!fs::exists(saved)) {
+        throw InputError(directory.string() + ": expected a directory of results, found no state.h5 in it, from which "
+                                              "the blocks are drawn");
     }
-    fs::path picture = arguments.picture;
-    if (picture.empty()) picture = is_run ? source / "curve.png" : fs::path(source.stem().string() + ".png");
-    if (is_run) {
-        draw_run(source, picture);
-    } else {
-        draw_scene(arguments, picture);
+    const Scene scene = read_scene_text(read_state_scene(saved), {}, saved);
+    const SceneModel built = build_scene_model(scene);
+    const State state = read_state(saved, fingerprint(built.model));
+    auto history = read_curve(directory, {}).history;
+    std::erase_if(history, [&](const StepRecord& record) { return record.step > state.step; });
+    BlocksPlot plot = plot_of(scene);
+    plot.title = arguments.title.empty() ? heading_of(directory).title : arguments.title;
+    plot.after = after_title(history);
+    const FieldRecord fields = fields_of_state(built.model, state);
+    for (const auto& picture : pictures) {
+        write_blocks(picture, built.model.system, fields, plot);
+        announce(picture);
     }
-    fmt::print("{}\n", picture.string());
-    return ExitCode::done;
+}
+
+/// The pictures of a kind: the one asked for, or those that a run leaves in its directory.
+std::vector<fs::path> pictures_of(const DrawArguments& arguments, const char* stem) {
+    if (!arguments.picture.empty()) return {arguments.picture};
+    const fs::path directory = arguments.sources.front();
+    return {directory / fmt::format("{}.png", stem), directory / fmt::format("{}.svg", stem)};
+}
+
+void draw_run(const DrawArguments& arguments) {
+    const bool one_file = !arguments.picture.empty();
+    const bool curve = arguments.curve || (!arguments.blocks && (!one_file || !arguments.marks.empty()));
+    const bool blocks = arguments.blocks || (!arguments.curve && !curve) || (!arguments.curve && !one_file);
+    if (curve) draw_curve(arguments, pictures_of(arguments, "curve"));
+    if (blocks) draw_blocks_of_run(arguments, pictures_of(arguments, "blocks"));
+}
+
+void draw_several_runs(const DrawArguments& arguments) {
+    if (arguments.blocks) throw InputError("--blocks: expected one directory of results, found several");
+    draw_curve(arguments, {arguments.picture.empty() ? fs::path("curves.png") : fs::path(arguments.picture)});
+}
+
+void draw_scene(const DrawArguments& arguments) {
+    const fs::path source = arguments.sources.front();
+    if (arguments.curve || !arguments.marks.empty()) {
+        throw InputError(source.string() + ": expected a directory of results to draw a curve, found a file");
+    }
+    const Scene scene = read_scene(source, arguments.overrides);
+    const SceneModel built = build_scene_model(scene);
+    BlocksPlot plot = plot_of(scene);
+    if (!arguments.title.empty()) plot.title = arguments.title;
+    for (const char bond : built.model.bonds) plot.bonded_types.push_back(bond != 0);
+    const fs::path picture = arguments.picture.empty() ? source.stem().string() + ".png" : arguments.picture;
+    write_geometry(picture, built.model.system, plot);
+    announce(picture);
 }
 
 } // namespace
 
-void add_draw_command(CLI::App& app, std::function<ExitCode()>& command) {
-    auto arguments = std::make_shared<DrawArguments>();
-    CLI::App* sub = app.add_subcommand("draw", "Draw a scene's blocks, or the curve of a run");
-    sub->add_option("source", arguments->source, "Scene file, or directory of results")->required();
-    sub->add_option("-o,--output", arguments->picture,
-                    "Picture, .png or .svg (default: <scene name>.png, DIR/curve.png)");
-    sub->add_option("--set", arguments->overrides, "Replace a value of the scene")->take_all()->allow_extra_args(false);
-    sub->footer("Example: kluft draw models/triaxial/case-3-all.yaml -o blocks.svg");
-    sub->callback([arguments, &command] { command = [arguments] { return draw(*arguments); }; });
+ExitCode draw(const DrawArguments& arguments) {
+    if (!arguments.picture.empty()) (void)picture_format(arguments.picture);
+    const bool several = arguments.sources.size() > 1;
+    for (const auto& source : arguments.sources) {
+        if (!fs::exists(source)) {
+            throw InputError(source + ": expected a scene file or a directory of results, found nothing");
+        }
+        if (several && !fs::is_directory(source)) {
+            throw InputError(source + ": expected a directory of results beside the others, found a file");
+        }
+    }
+    const bool is_run = fs::is_directory(arguments.sources.front());
+    if (is_run && !arguments.overrides.empty()) {
+        throw InputError("--set: expected a scene file, found a directory of results, whose scene stays as it was run");
+    }
+    if (several) {
+        draw_several_runs(arguments);
+    } else if (is_run) {
+        draw_run(arguments);
+    } else {
+        draw_scene(arguments);
+    }
+    return ExitCode::done;
 }
 
 } // namespace kluft

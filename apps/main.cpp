@@ -1,7 +1,11 @@
 // The command line of Kluft.
 #include <cstdio>
 #include <exception>
+#include <functional>
+#include <memory>
 #include <new>
+#include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -13,6 +17,8 @@
 namespace {
 
 using kluft::ExitCode;
+
+using Command = std::function<ExitCode()>; ///< what the command line asks for
 
 int exit_with(ExitCode code) { return static_cast<int>(code); }
 
@@ -32,6 +38,74 @@ std::string unknown_command(int argc, char** argv) {
            kluft::suggestion(argv[1], commands);
 }
 
+void add_run_command(CLI::App& app, Command& command) {
+    auto arguments = std::make_shared<kluft::RunArguments>();
+    CLI::App* sub =
+        app.add_subcommand("run", "Run a scene: load it step by step and write curves, fields and pictures");
+    sub->add_option("scene", arguments->scene, "Scene file (YAML)")->required();
+    sub->add_option("-o,--output", arguments->directory, "Directory of the results (default: results/<scene name>)");
+    sub->add_option("--set", arguments->overrides, "Replace a value of the scene, e.g. --set stages.1.steps=200")
+        ->take_all()
+        ->allow_extra_args(false);
+    sub->add_option("--threads", arguments->threads, "Threads of the factorization (bodies of 20 000 unknowns or more)")
+        ->check(CLI::PositiveNumber);
+    sub->add_flag("--quiet", arguments->quiet, "No progress and no closing line");
+    sub->add_flag("--resume", arguments->resume, "Go on from the state saved in the directory");
+    sub->footer("Exit codes: 0 done, 2 bad input, 3 no equilibrium, 4 out of disk or memory, 130 interrupted.\n"
+                "Example: kluft run models/triaxial/case-3-all.yaml --set geometry.tessellation.hexagons.spacing=0.03");
+    sub->callback([arguments, &command] { command = [arguments] { return kluft::run(*arguments); }; });
+}
+
+void add_check_command(CLI::App& app, Command& command) {
+    auto arguments = std::make_shared<kluft::CheckArguments>();
+    CLI::App* sub = app.add_subcommand("check", "Say what a scene amounts to, without running it");
+    sub->add_option("scene", arguments->scene, "Scene file (YAML)")->required();
+    sub->add_option("--set", arguments->overrides, "Replace a value of the scene")->take_all()->allow_extra_args(false);
+    sub->footer("Example: kluft check models/triaxial/case-3-all.yaml");
+    sub->callback([arguments, &command] { command = [arguments] { return kluft::check(*arguments); }; });
+}
+
+void add_draw_command(CLI::App& app, Command& command) {
+    auto arguments = std::make_shared<kluft::DrawArguments>();
+    CLI::App* sub = app.add_subcommand(
+        "draw", "Draw a scene's blocks; the blocks and the curve of a run; the curves of several runs");
+    sub->add_option("source", arguments->sources, "Scene file, or directories of results")->required();
+    sub->add_option("-o,--output", arguments->picture,
+                    "One picture, .png or .svg; of a single run that of its blocks (default: <scene name>.png; "
+                    "DIR/curve and DIR/blocks, each .png and .svg; curves.png)");
+    CLI::Option* curve = sub->add_flag("--curve", arguments->curve, "Of a run only the curve");
+    sub->add_flag("--blocks", arguments->blocks, "Of a run only the blocks")->excludes(curve);
+    sub->add_option("--mark", arguments->marks,
+                    "A published value in the plot of curves: LABEL=STRESS is a level, LABEL=STRESS at STRAIN a point; "
+                    "RUN:LABEL=... takes the colour of a run")
+        ->take_all()
+        ->allow_extra_args(false);
+    sub->add_option("--limit", arguments->limit, "Where the stress axis of the curves ends, e.g. 5 MPa");
+    sub->add_option("--title", arguments->title, "Title of the picture");
+    sub->add_option("--set", arguments->overrides, "Replace a value of the scene")->take_all()->allow_extra_args(false);
+    sub->footer("Examples:\n"
+                "  kluft draw models/triaxial/case-3-all.yaml -o geometry.svg\n"
+                "  kluft draw results/case-3-all\n"
+                "  kluft draw results/case-3 results/case-3-all -o curves.png --mark 'published=1.205 MPa'\n"
+                "  kluft draw results/case-3 results/case-5 -o curves.png --mark 'case-5:published, 0 MPa=0.502 MPa'");
+    sub->callback([arguments, &command] { command = [arguments] { return kluft::draw(*arguments); }; });
+}
+
+void add_envelope_command(CLI::App& app, Command& command) {
+    auto arguments = std::make_shared<kluft::EnvelopeArguments>();
+    CLI::App* sub = app.add_subcommand(
+        "envelope", "Fit cohesion and friction angle to the peaks of several runs, draw Mohr's circles");
+    sub->add_option("directories", arguments->directories, "Directories of results")->required();
+    sub->add_option("-o,--output", arguments->picture, "Picture, .png or .svg; a table of the same name goes beside it")
+        ->capture_default_str();
+    sub->add_option("--compare", arguments->others, "Another envelope in the picture: LABEL=COHESION,ANGLE")
+        ->take_all()
+        ->allow_extra_args(false);
+    sub->add_option("--title", arguments->title, "Title of the picture")->capture_default_str();
+    sub->footer("Example: kluft envelope results/case-5-all results/case-3-all results/case-4-all results/case-6-all");
+    sub->callback([arguments, &command] { command = [arguments] { return kluft::envelope(*arguments); }; });
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
@@ -44,11 +118,11 @@ int main(int argc, char** argv) {
                "  kluft run models/triaxial/case-3-all.yaml --set cracks.update=all --set stages.1.steps=200\n"
                "  kluft draw results/case-3-all -o picture.png\n"
                "  kluft envelope results/case-5-all results/case-3-all results/case-4-all results/case-6-all");
-    std::function<ExitCode()> command;
-    kluft::add_run_command(app, command);
-    kluft::add_check_command(app, command);
-    kluft::add_draw_command(app, command);
-    kluft::add_envelope_command(app, command);
+    Command command;
+    add_run_command(app, command);
+    add_check_command(app, command);
+    add_draw_command(app, command);
+    add_envelope_command(app, command);
     if (const std::string message = unknown_command(argc, argv); !message.empty()) return bad_input(message);
     try {
         app.parse(argc, argv);

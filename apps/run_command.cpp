@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "commands.hpp"
@@ -38,15 +37,6 @@ constexpr int unknowns_worth_threads = 20000;
 std::atomic<bool> stop_requested{false};
 
 void request_stop(int) { stop_requested = true; }
-
-struct RunArguments {
-    std::string scene;
-    std::string directory;
-    std::vector<std::string> overrides;
-    int threads = 0;
-    bool quiet = false;
-    bool resume = false;
-};
 
 /// Passes everything on to the files and keeps the terminal informed.
 class RunObserver : public StepObserver {
@@ -80,6 +70,7 @@ RunWriterOptions writer_options(const Scene& scene, const Model& model) {
     options.checkpoint_every = scene.output.checkpoint_every;
     options.title = scene.title.empty() ? scene.name : scene.title;
     options.fingerprint = fingerprint(model);
+    options.scene_text = scene.text;
     const int platen_stage = make_gauges(model).first_platen_stage;
     if (platen_stage >= 0) options.platen_stage = platen_stage;
     options.plane = scene.plane;
@@ -165,6 +156,8 @@ ExitCode simulate(const Model& model, const Scene& scene, State& state, RunWrite
     return exit_code(report.status);
 }
 
+} // namespace
+
 ExitCode run(const RunArguments& arguments) {
     const Scene scene = read_scene(arguments.scene, arguments.overrides);
     const fs::path directory =
@@ -199,26 +192,6 @@ ExitCode run(const RunArguments& arguments) {
     std::signal(SIGINT, request_stop);
     std::signal(SIGTERM, request_stop);
     return simulate(model, scene, state, writer, log, directory, arguments.quiet);
-}
-
-} // namespace
-
-void add_run_command(CLI::App& app, std::function<ExitCode()>& command) {
-    auto arguments = std::make_shared<RunArguments>();
-    CLI::App* sub =
-        app.add_subcommand("run", "Run a scene: load it step by step and write curves, fields and pictures");
-    sub->add_option("scene", arguments->scene, "Scene file (YAML)")->required();
-    sub->add_option("-o,--output", arguments->directory, "Directory of the results (default: results/<scene name>)");
-    sub->add_option("--set", arguments->overrides, "Replace a value of the scene, e.g. --set stages.1.steps=200")
-        ->take_all()
-        ->allow_extra_args(false);
-    sub->add_option("--threads", arguments->threads, "Threads of the factorization (bodies of 20 000 unknowns or more)")
-        ->check(CLI::PositiveNumber);
-    sub->add_flag("--quiet", arguments->quiet, "No progress and no closing line");
-    sub->add_flag("--resume", arguments->resume, "Go on from the state saved in the directory");
-    sub->footer("Exit codes: 0 done, 2 bad input, 3 no equilibrium, 4 out of disk or memory, 130 interrupted.\n"
-                "Example: kluft run models/triaxial/case-3-all.yaml --set geometry.tessellation.hexagons.spacing=0.03");
-    sub->callback([arguments, &command] { command = [arguments] { return run(*arguments); }; });
 }
 
 } // namespace kluft

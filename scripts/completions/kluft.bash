@@ -23,7 +23,7 @@ _kluft() {
         mapfile -t COMPREPLY < <(compgen -W "slurm make" -- "$word")
         return
         ;;
-    --set | --threads | --jobs | --tolerance) return ;;
+    --set | --threads | --jobs | --tolerance | --mark | --limit | --title | --compare) return ;;
     -o | --output)
         mapfile -t COMPREPLY < <(compgen -f -- "$word")
         return
@@ -34,8 +34,8 @@ _kluft() {
     case "$command" in
     run) options+=" -o --output --set --threads --quiet --resume" ;;
     check) options+=" --set" ;;
-    draw) options+=" -o --output --set" ;;
-    envelope) options+=" -o --output" ;;
+    draw) options+=" -o --output --curve --blocks --mark --limit --title --set" ;;
+    envelope) options+=" -o --output --compare --title" ;;
     compare) options+=" --tolerance" ;;
     study) options+=" -o --jobs --emit --collect" ;;
     esac

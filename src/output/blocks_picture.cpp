@@ -14,6 +14,7 @@
 #include "kluft/output/axis.hpp"
 #include "kluft/output/colour_scale.hpp"
 #include "kluft/output/vtu.hpp"
+#include "legend.hpp"
 
 namespace kluft {
 
@@ -25,23 +26,10 @@ constexpr double panel_title_height = 18.0;
 constexpr double panel_gap = 34.0;
 constexpr double column_width = 158.0; // colour bar and legend
 constexpr double scale_bar_height = 34.0;
-constexpr double legend_line = 14.5;
 constexpr double mega = 1e6;
 const TextStyle title_style{.size = 11.5, .colour = colour(0x222222), .bold = true};
 const TextStyle panel_style{.size = 9.5, .colour = colour(0x222222), .down = Align::high};
-const TextStyle legend_style{.size = 8.5, .colour = colour(0x222222), .down = Align::middle};
 const TextStyle note_style{.size = 7.5, .colour = colour(0x666666), .down = Align::middle};
-
-struct LegendEntry {
-    std::string label;
-    std::function<void(Canvas&, const Vec2& middle)> draw_sample; ///< none: a note in small print
-};
-
-LegendEntry line_entry(std::string label, const Stroke& stroke) {
-    return {std::move(label), [stroke](Canvas& canvas, const Vec2& middle) {
-                canvas.line(middle - Vec2(9.0, 0.0), middle + Vec2(9.0, 0.0), stroke);
-            }};
-}
 
 LegendEntry patch_entry(std::string label, const Colour& fill) {
     return {std::move(label), [fill](Canvas& canvas, const Vec2& middle) {
@@ -50,6 +38,7 @@ LegendEntry patch_entry(std::string label, const Colour& fill) {
             }};
 }
 
+/// One column; entries without a sample are notes in small print.
 void draw_legend(Canvas& canvas, const Vec2& corner, const std::vector<LegendEntry>& entries) {
     Vec2 at = corner + Vec2(0.0, 0.5 * legend_line);
     for (const LegendEntry& entry : entries) {
@@ -57,7 +46,7 @@ void draw_legend(Canvas& canvas, const Vec2& corner, const std::vector<LegendEnt
         const TextStyle& style = entry.draw_sample ? legend_style : note_style;
         const double indent = entry.draw_sample ? 25.0 : 0.0;
         canvas.text_within(column_width - indent, at + Vec2(indent, 0.0), entry.label, style);
-        at.y() += entry.draw_sample ? legend_line : 0.8 * legend_line;
+        at.y() += legend_line;
     }
 }
 
@@ -77,12 +66,12 @@ std::pair<double, std::string> round_length(double metres) {
     return {length, fmt::format("{:g} mm", 1000.0 * length)};
 }
 
-void draw_scale_bar(Canvas& canvas, const Panel& panel) {
-    const double width = panel.size().x() / panel.scale;
+void draw_scale_bar(Canvas& canvas, const Panel& panel, const BlockSystem& body) {
+    const double width = body.upper.x() - body.lower.x();
     if (!(width > 0.0)) return;
     const auto [length, label] = round_length(0.4 * width);
     const double y = panel.corner.y() + panel.size().y() + 13.0;
-    const double x = panel.corner.x();
+    const double x = panel.place(body.lower).x();
     const double end = x + panel.scale * length;
     const Stroke stroke{ink::body, 1.2};
     canvas.segments({{{x, y}, {end, y}}, {{x, y - 3.0}, {x, y + 3.0}}, {{end, y - 3.0}, {end, y + 3.0}}}, stroke);
@@ -128,11 +117,9 @@ double pixels_per_point(const BlockSystem& system, double scale) {
 void draw_panel(Canvas& canvas, const Layout& layout, int index, const Box& box, const DrawnBody& body,
                 const std::string& title) {
     const Panel panel{layout.corner(index), box, layout.scale};
-    canvas.text({margin + index * (layout.slot + panel_gap) + 0.5 * (layout.slot - layout.panel_size.x()),
-                 panel.corner.y() - 8.0},
-                title, panel_style);
+    canvas.text({panel.place(body.system.lower).x(), panel.corner.y() - 8.0}, title, panel_style);
     draw_body(canvas, panel, body);
-    if (index == 0) draw_scale_bar(canvas, panel);
+    if (index == 0) draw_scale_bar(canvas, panel, body.system);
 }
 
 bool has(const DrawnBody& body, InterfaceLook look) {
@@ -158,6 +145,7 @@ std::string length_label(double metres) {
 
 /// Lines of samples in a legend do not become finer than can be seen there.
 Stroke sample(InterfaceLook look) {
+    if (look == InterfaceLook::bond) return {colour(0x000000, 0.5), 0.6};
     constexpr double block_size = 12.0;
     return stroke_of(look, block_size, 0.4);
 }
@@ -250,6 +238,11 @@ void refuse_large_svg(const BlockSystem& system, PictureFormat format) {
 }
 
 } // namespace
+
+std::string after_title(const std::vector<StepRecord>& history) {
+    if (history.empty()) return "after";
+    return fmt::format("after, axial strain {:.2f} %", 100.0 * history.back().axial_strain);
+}
 
 std::string draw_blocks(const BlockSystem& system, const FieldRecord& fields, const BlocksPlot& plot,
                         PictureFormat format) {

@@ -10,14 +10,18 @@
 
 #include "kluft/output/atomic_file.hpp"
 #include "kluft/output/axis.hpp"
+#include "kluft/output/page_box.hpp"
 #include "kluft/output/summary.hpp"
+#include "legend.hpp"
 
 namespace kluft {
 
 namespace {
 
-constexpr double page_width = 500.0; // points
-constexpr double page_height = 350.0;
+constexpr double page_width = 500.0;  // points
+constexpr double plot_height = 350.0; // without the legend of several curves
+constexpr double left_margin = 66.0;
+constexpr double right_margin = 18.0;
 constexpr double pixels_per_point = 3.2;
 constexpr double percent = 100.0;
 constexpr double mega = 1e6;
@@ -25,6 +29,18 @@ const Colour unbalanced_colour = colour(0xD7191C);
 const Colour reference_colour = colour(0x666666);
 const Colour text_colour = colour(0x222222);
 const Colour white = colour(0xFFFFFF);
+
+/// Each curve has a colour; beyond as many curves as there are colours, dashes tell them apart.
+Stroke curve_stroke(std::size_t index) {
+    constexpr std::size_t n_colours = 7;
+    Stroke stroke{series_colour(index), 1.5, {}, true};
+    if (index >= n_colours) stroke.dash = {5.0, 3.0};
+    return stroke;
+}
+
+Colour reference_stroke_colour(const PlottedReference& reference) {
+    return reference.curve ? series_colour(*reference.curve) : reference_colour;
+}
 
 bool finite(const Vec2& v) { return std::isfinite(v.x()) && std::isfinite(v.y()); }
 
@@ -54,12 +70,15 @@ Range range_of(const CurvePlot& plot) {
 
 PlotFrame frame_of(const CurvePlot& plot) {
     const Range range = range_of(plot);
-    constexpr double room_above = 1.1; // for the text beside a peak
+    const bool any_text = std::any_of(plot.curves.begin(), plot.curves.end(),
+                                      [](const PlottedCurve& curve) { return !curve.peak_text.empty(); });
+    const double room_above = any_text ? 1.1 : 1.04; // for the text beside a peak
     PlotFrame frame;
-    frame.corner = {66.0, plot.title.empty() ? 18.0 : 38.0};
-    frame.size = Vec2(page_width - 18.0, page_height - 46.0) - frame.corner;
+    frame.corner = {left_margin, plot.title.empty() ? 18.0 : 38.0};
+    frame.size = Vec2(page_width - right_margin, plot_height - 46.0) - frame.corner;
     frame.x = round_axis(std::min(0.0, range.low.x()), range.high.x(), 8);
     frame.y = round_axis(range.low.y(), room_above * range.high.y(), 6);
+    if (plot.y_limit) frame.y = round_axis(std::min(range.low.y(), *plot.y_limit), *plot.y_limit, 6);
     return frame;
 }
 
@@ -78,33 +97,33 @@ std::vector<Vec2> places(const PlotFrame& frame, const std::vector<Vec2>& values
 
 void draw_unbalanced_marker(Canvas& canvas, const Vec2& at) { canvas.circle(at, 2.6, white, {unbalanced_colour, 1.1}); }
 
-/// The curve in stretches: solid between balanced points, dashed to and from unbalanced ones.
-void draw_line(Canvas& canvas, const PlotFrame& frame, const std::vector<PlottedPoint>& points, const Colour& line) {
-    std::vector<Vec2> solid;
-    std::vector<std::pair<Vec2, Vec2>> dashed;
+/// The curve in stretches: its own stroke between balanced points, thin red dashes to and from unbalanced ones.
+void draw_line(Canvas& canvas, const PlotFrame& frame, const std::vector<PlottedPoint>& points, const Stroke& stroke) {
+    std::vector<Vec2> line;
+    std::vector<std::pair<Vec2, Vec2>> unbalanced;
     const PlottedPoint* before = nullptr;
     for (const PlottedPoint& point : points) {
         if (!finite(point.value)) continue;
         const Vec2 at = frame.place(point.value);
         if (before != nullptr && !(before->balanced && point.balanced)) {
-            dashed.emplace_back(frame.place(before->value), at);
-            canvas.polyline(solid, {line, 1.5, {}, true});
-            solid.clear();
+            unbalanced.emplace_back(frame.place(before->value), at);
+            canvas.polyline(line, stroke);
+            line.clear();
         }
-        solid.push_back(at);
+        line.push_back(at);
         before = &point;
     }
-    canvas.polyline(solid, {line, 1.5, {}, true});
-    canvas.segments(dashed, {unbalanced_colour, 0.8, {2.5, 2.0}});
+    canvas.polyline(line, stroke);
+    canvas.segments(unbalanced, {unbalanced_colour, 0.8, {2.5, 2.0}});
 }
 
-void draw_curve(Canvas& canvas, const PlotFrame& frame, const PlottedCurve& curve, const Colour& line) {
+void draw_curve(Canvas& canvas, const PlotFrame& frame, const PlottedCurve& curve, const Stroke& stroke) {
     if (!curve.fine.empty()) {
-        Colour faint = line;
+        Colour faint = stroke.colour;
         faint.alpha = 0.35;
         canvas.polyline(places(frame, curve.fine), {faint, 0.6});
     }
-    draw_line(canvas, frame, curve.points, line);
+    draw_line(canvas, frame, curve.points, stroke);
     constexpr std::size_t most_markers = 60;
     for (const PlottedPoint& point : curve.points) {
         if (!finite(point.value)) continue;
@@ -112,20 +131,30 @@ void draw_curve(Canvas& canvas, const PlotFrame& frame, const PlottedCurve& curv
         if (!point.balanced)
             draw_unbalanced_marker(canvas, at);
         else if (curve.points.size() <= most_markers)
-            canvas.circle(at, 1.5, line, {line, 0.3});
+            canvas.circle(at, 1.5, stroke.colour, {stroke.colour, 0.3});
     }
 }
 
-void draw_peak_marker(Canvas& canvas, const Vec2& at, const Colour& line) {
+/// Reached: a ring around a point. Still rising: a dashed ring.
+void draw_peak_marker(Canvas& canvas, const Vec2& at, const Colour& line, bool reached) {
+    if (!reached) {
+        canvas.circle(at, 3.6, white, {line, 1.2, {1.8, 1.2}});
+        return;
+    }
     canvas.circle(at, 3.6, white, {line, 1.6});
     canvas.circle(at, 1.3, line, {line, 0.3});
 }
 
+/// Whether the peak can be drawn: a number, and not above the limit of the plot.
+bool has_shown_peak(const PlotFrame& frame, const PlottedCurve& curve) {
+    return curve.peak && finite(*curve.peak) && curve.peak->y() <= frame.y.high;
+}
+
 /// Text above and beside the peak, on the side that has room, with a white halo.
 void draw_peak(Canvas& canvas, const PlotFrame& frame, const PlottedCurve& curve, const Colour& line) {
-    if (!curve.peak || !finite(*curve.peak)) return;
+    if (!has_shown_peak(frame, curve)) return;
     const Vec2 at = frame.place(*curve.peak);
-    draw_peak_marker(canvas, at, line);
+    draw_peak_marker(canvas, at, line, curve.peak_reached);
     const TextStyle style{.size = 8.5, .colour = line, .halo = 2.5};
     double width = 0.0;
     for (const std::string& text : curve.peak_text) width = std::max(width, canvas.text_width(text, style));
@@ -147,118 +176,173 @@ void draw_cross(Canvas& canvas, const Vec2& at, const Colour& line) {
                     {line, 1.5, {}, true});
 }
 
+Obstacles obstacles_of(const CurvePlot& plot, const PlotFrame& frame) {
+    Obstacles obstacles;
+    for (const PlottedCurve& curve : plot.curves) {
+        std::vector<Vec2> values;
+        for (const PlottedPoint& point : curve.points) values.push_back(point.value);
+        obstacles.lines.push_back(places(frame, values));
+        if (!has_shown_peak(frame, curve)) continue;
+        const Vec2 at = frame.place(*curve.peak);
+        const double above = curve.peak_text.empty() ? 4.0 : 8.0 + 11.0 * static_cast<double>(curve.peak_text.size());
+        const double beside = curve.peak_text.empty() ? 4.0 : 45.0;
+        obstacles.boxes.push_back({at - Vec2(beside, above), at + Vec2(beside, 4.0)});
+    }
+    return obstacles;
+}
+
+/// The label of a level stands above it or below, where it meets the fewest curves; rather to the right.
+void draw_level_label(Canvas& canvas, const PlotFrame& frame, const PlottedReference& reference, Obstacles& obstacles) {
+    const TextStyle style{.size = 8.0, .colour = reference_stroke_colour(reference), .halo = 2.0};
+    const double width = canvas.text_width(reference.label, style);
+    const double y = frame.place({0.0, reference.y}).y();
+    const double right = frame.corner.x() + frame.size.x() - 5.0 - width;
+    constexpr double height = 6.0;
+    constexpr double gap = 3.0;
+    constexpr int n_places = 24;
+    PageBox best;
+    std::size_t fewest = std::numeric_limits<std::size_t>::max();
+    for (const double base : {y - gap, y + gap + height})
+        for (int i = 0; i <= n_places; ++i) {
+            const double x = right - (right - frame.corner.x() - 5.0) * i / n_places;
+            const PageBox box{{x - 2.0, base - height - 2.0}, {x + width + 2.0, base + 2.0}};
+            if (box.low.y() < frame.corner.y() || box.high.y() > frame.corner.y() + frame.size.y()) continue;
+            const std::size_t n_met = obstacles.met_by(box);
+            if (n_met >= fewest) continue;
+            fewest = n_met;
+            best = box;
+        }
+    if (fewest == std::numeric_limits<std::size_t>::max()) return;
+    canvas.text({best.low.x() + 2.0, best.high.y() - 2.0}, reference.label, style);
+    obstacles.boxes.push_back(best);
+}
+
 void draw_references(Canvas& canvas, const PlotFrame& frame, const std::vector<PlottedReference>& references) {
     for (const PlottedReference& reference : references) {
-        const double right = frame.corner.x() + frame.size.x();
+        const Colour line = reference_stroke_colour(reference);
         if (reference.x) {
-            draw_cross(canvas, frame.place({*reference.x, reference.y}), reference_colour);
+            draw_cross(canvas, frame.place({*reference.x, reference.y}), line);
         } else {
             const double y = frame.place({0.0, reference.y}).y();
-            canvas.line({frame.corner.x(), y}, {right, y}, {reference_colour, 0.9, {5.0, 3.0}});
-            const TextStyle style{.size = 8.0, .colour = reference_colour, .across = Align::high, .halo = 2.0};
-            canvas.text({right - 5.0, y - 3.0}, reference.label, style);
+            canvas.line({frame.corner.x(), y}, {frame.corner.x() + frame.size.x(), y}, {line, 0.9, {5.0, 3.0}});
         }
     }
 }
-
-struct LegendEntry {
-    std::string label;
-    std::function<void(Canvas&, const Vec2& middle)> draw_sample;
-};
 
 std::vector<LegendEntry> legend_of(const CurvePlot& plot) {
     std::vector<LegendEntry> entries;
     for (std::size_t i = 0; i < plot.curves.size(); ++i) {
         if (plot.curves[i].label.empty()) continue;
-        const Colour line = series_colour(i);
-        entries.push_back({plot.curves[i].label, [line](Canvas& canvas, const Vec2& middle) {
-                               canvas.line(middle - Vec2(9.0, 0.0), middle + Vec2(9.0, 0.0), {line, 1.6});
-                           }});
+        entries.push_back(line_entry(plot.curves[i].label, curve_stroke(i)));
     }
     for (const PlottedReference& reference : plot.references) {
         const bool listed = std::any_of(entries.begin(), entries.end(),
                                         [&](const LegendEntry& entry) { return entry.label == reference.label; });
         if (!reference.x || reference.label.empty() || listed) continue;
-        entries.push_back({reference.label,
-                           [](Canvas& canvas, const Vec2& middle) { draw_cross(canvas, middle, reference_colour); }});
+        const Colour line = reference_stroke_colour(reference);
+        entries.push_back(
+            {reference.label, [line](Canvas& canvas, const Vec2& middle) { draw_cross(canvas, middle, line); }});
     }
     if (any_unbalanced(plot)) entries.push_back({"unbalanced step", draw_unbalanced_marker});
     return entries;
 }
 
-/// Number of curve points under a box on the page.
-std::size_t points_under(const CurvePlot& plot, const PlotFrame& frame, const Vec2& corner, const Vec2& size) {
-    std::size_t n_points = 0;
-    for (const PlottedCurve& curve : plot.curves)
-        for (const PlottedPoint& point : curve.points) {
-            const Vec2 at = frame.place(point.value) - corner;
-            n_points += at.x() > 0.0 && at.x() < size.x() && at.y() > -24.0 && at.y() < size.y() + 8.0 ? 1 : 0;
-        }
-    return n_points;
+double label_width(Canvas& canvas, const std::vector<LegendEntry>& entries) {
+    double width = 0.0;
+    for (const LegendEntry& entry : entries) width = std::max(width, canvas.text_width(entry.label, legend_style));
+    return width;
 }
 
-/// The corner of the frame where a box covers the fewest points of the curves.
-Vec2 freest_corner(const CurvePlot& plot, const PlotFrame& frame, const Vec2& size) {
+/// The corner of the frame where a box is met by the fewest curves.
+Vec2 freest_corner(const Obstacles& obstacles, const PlotFrame& frame, const Vec2& size) {
     constexpr double margin = 8.0;
     const Vec2 low = frame.corner + Vec2(margin, margin);
     const Vec2 high = frame.corner + frame.size - size - Vec2(margin, margin);
     Vec2 best = {high.x(), high.y()};
     std::size_t fewest = std::numeric_limits<std::size_t>::max();
     for (const Vec2& corner : {Vec2(high.x(), high.y()), Vec2(high.x(), low.y()), Vec2(low.x(), low.y())}) {
-        const std::size_t n_points = points_under(plot, frame, corner, size);
-        if (n_points >= fewest) continue;
-        fewest = n_points;
+        const Vec2 room(6.0, 6.0); // for markers
+        const std::size_t n_met = obstacles.met_by({corner - room, corner + size + room});
+        if (n_met >= fewest) continue;
+        fewest = n_met;
         best = corner;
     }
     return best;
 }
 
-void draw_legend(Canvas& canvas, const PlotFrame& frame, const CurvePlot& plot) {
+/// The legend of one curve, inside the frame.
+void draw_legend_inside(Canvas& canvas, const PlotFrame& frame, const CurvePlot& plot, Obstacles& obstacles) {
     const auto entries = legend_of(plot);
     if (entries.empty()) return;
-    const TextStyle style{.size = 8.5, .down = Align::middle};
-    constexpr double line_height = 14.0;
-    double width = 0.0;
-    for (const LegendEntry& entry : entries) width = std::max(width, canvas.text_width(entry.label, style));
-    const Vec2 size{width + 42.0, line_height * static_cast<double>(entries.size()) + 6.0};
-    const Vec2 corner = freest_corner(plot, frame, size);
+    constexpr double indent = 34.0;
+    const Vec2 size{label_width(canvas, entries) + indent + 8.0,
+                    legend_line * static_cast<double>(entries.size()) + 6.0};
+    Obstacles with_levels = obstacles;
+    for (const PlottedReference& reference : plot.references)
+        with_levels.lines.push_back({frame.place({reference.x.value_or(frame.x.low), reference.y}),
+                                     frame.place({reference.x.value_or(frame.x.high), reference.y})});
+    const Vec2 corner = freest_corner(with_levels, frame, size);
     canvas.fill_rectangle(corner, size, colour(0xFFFFFF, 0.9));
     canvas.stroke_rectangle(corner, size, {colour(0xCCCCCC), 0.6});
-    double y = corner.y() + 3.0 + 0.5 * line_height;
+    double y = corner.y() + 3.0 + 0.5 * legend_line;
     for (const LegendEntry& entry : entries) {
         entry.draw_sample(canvas, {corner.x() + 17.0, y});
-        canvas.text({corner.x() + 34.0, y}, entry.label, style);
-        y += line_height;
+        canvas.text({corner.x() + indent, y}, entry.label, legend_style);
+        y += legend_line;
     }
+    obstacles.boxes.push_back({corner, corner + size});
 }
 
-void draw_plot(Canvas& canvas, const CurvePlot& plot) {
+/// The legend of several curves stands below the plot.
+LegendGrid legend_below(const CurvePlot& plot) {
+    if (plot.curves.size() < 2) return {};
+    return {legend_of(plot), page_width - left_margin - right_margin};
+}
+
+void draw_plot(Canvas& canvas, const CurvePlot& plot, const LegendGrid& below) {
     const PlotFrame frame = frame_of(plot);
     canvas.text_within(frame.size.x(), {frame.corner.x(), 24.0}, plot.title,
                        {.size = 11.5, .colour = text_colour, .bold = true});
     draw_axes(canvas, frame, plot.x_name, plot.y_name);
-    canvas.begin_clip(frame.corner, frame.size);
+    const Vec2 room(4.0, 4.0); // markers on the frame are drawn whole, but nothing above a limit
+    const Vec2 above(0.0, plot.y_limit ? room.y() : 0.0);
+    canvas.begin_clip(frame.corner - room + above, frame.size + 2.0 * room - above);
     draw_references(canvas, frame, plot.references);
-    for (std::size_t i = 0; i < plot.curves.size(); ++i) draw_curve(canvas, frame, plot.curves[i], series_colour(i));
+    for (std::size_t i = 0; i < plot.curves.size(); ++i) draw_curve(canvas, frame, plot.curves[i], curve_stroke(i));
     canvas.end_clip();
-    draw_legend(canvas, frame, plot);
+    Obstacles obstacles = obstacles_of(plot, frame);
+    below.draw(canvas, {frame.corner.x(), plot_height});
+    if (plot.curves.size() < 2) draw_legend_inside(canvas, frame, plot, obstacles);
+    for (const PlottedReference& reference : plot.references)
+        if (!reference.x) draw_level_label(canvas, frame, reference, obstacles);
     for (std::size_t i = 0; i < plot.curves.size(); ++i) draw_peak(canvas, frame, plot.curves[i], series_colour(i));
 }
 
 Vec2 plotted(const StepRecord& record) { return {percent * record.axial_strain, record.differential_stress / mega}; }
 
-PlottedCurve plotted_run(const RunCurve& run) {
+/// Peak and text of a run; `alone`: the values stand beside the peak, otherwise in the legend.
+void add_peak(const RunCurve& run, const StepRecord& peak, bool alone, PlottedCurve& curve) {
+    const auto& rows = run.equilibria.empty() ? run.history : run.equilibria;
+    curve.peak = plotted(peak);
+    curve.peak_reached = curve_numbers(rows, {}, std::nullopt, Plane::strain).peak_reached;
+    const std::string values = fmt::format("{:#.3g} MPa at {:.2f} %", curve.peak->y(), curve.peak->x());
+    if (alone) {
+        curve.peak_text = {values, fmt::format("\u03c3\u2081 = {:#.3g} MPa", peak.axial_stress / mega)};
+        if (!curve.peak_reached) curve.peak_text.emplace_back("still rising");
+    } else {
+        curve.label += curve.peak_reached ? ": " + values : ": still rising";
+    }
+}
+
+PlottedCurve plotted_run(const RunCurve& run, bool alone) {
     PlottedCurve curve;
     curve.label = run.label;
     for (const StepRecord& record : platen_rows(run.history, run.platen_stage))
         curve.points.push_back({plotted(record), record.balanced});
     for (const StepRecord& record : platen_rows(run.equilibria, run.platen_stage))
         if (record.balanced) curve.fine.push_back(plotted(record));
-    if (const auto peak = peak_row(run.equilibria.empty() ? run.history : run.equilibria)) {
-        curve.peak = plotted(*peak);
-        curve.peak_text = {fmt::format("{:#.3g} MPa at {:.2f} %", curve.peak->y(), curve.peak->x()),
-                           fmt::format("\u03c3\u2081 = {:#.3g} MPa", peak->axial_stress / mega)};
-    }
+    if (const auto peak = peak_row(run.equilibria.empty() ? run.history : run.equilibria))
+        add_peak(run, *peak, alone, curve);
     return curve;
 }
 
@@ -267,13 +351,14 @@ PlottedCurve plotted_run(const RunCurve& run) {
 CurvePlot stress_strain_plot(const std::string& title, const std::vector<RunCurve>& runs,
                              const std::vector<PlottedReference>& references) {
     CurvePlot plot{title, "axial strain (%)", "differential stress (MPa)", {}, references};
-    for (const RunCurve& run : runs) plot.curves.push_back(plotted_run(run));
+    for (const RunCurve& run : runs) plot.curves.push_back(plotted_run(run, runs.size() == 1));
     return plot;
 }
 
 std::string draw_curves(const CurvePlot& plot, PictureFormat format) {
-    return draw_picture(format, page_width, page_height, pixels_per_point,
-                        [&](Canvas& canvas) { draw_plot(canvas, plot); });
+    const LegendGrid below = legend_below(plot);
+    return draw_picture(format, page_width, plot_height + below.height(), pixels_per_point,
+                        [&](Canvas& canvas) { draw_plot(canvas, plot, below); });
 }
 
 void write_curves(const std::filesystem::path& path, const CurvePlot& plot) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <numbers>
 
 #include <fmt/format.h>
@@ -69,8 +68,8 @@ Envelope fit_envelope(const std::vector<PeakPoint>& points) {
 std::string envelope_csv(const std::vector<PeakPoint>& points, const Envelope& fit) {
     std::string text = "run,sigma_3,sigma_1,fitted_sigma_1,peak_reached\n";
     for (const PeakPoint& point : points)
-        fmt::format_to(std::back_inserter(text), "{},{:.17g},{:.17g},{:.17g},{}\n", point.run, point.sigma_3,
-                       point.sigma_1, fit.sigma_1(point.sigma_3), point.peak_reached ? 1 : 0);
+        text += fmt::format("{},{:.17g},{:.17g},{:.17g},{}\n", point.run, point.sigma_3, point.sigma_1,
+                            fit.sigma_1(point.sigma_3), point.peak_reached ? 1 : 0);
     return text;
 }
 
@@ -79,9 +78,9 @@ std::string envelope_text(const std::vector<PeakPoint>& points, const Envelope& 
     for (const PeakPoint& point : points) width = std::max(width, point.run.size());
     std::string text = fmt::format("{:<{}}  sigma_3 (MPa)  sigma_1 (MPa)  fitted (MPa)\n", "run", width);
     for (const PeakPoint& point : points)
-        fmt::format_to(std::back_inserter(text), "{:<{}}  {:13.4f}  {:13.4f}  {:12.4f}{}\n", point.run, width,
-                       point.sigma_3 / mega, point.sigma_1 / mega, fit.sigma_1(point.sigma_3) / mega,
-                       point.peak_reached ? "" : "  still rising");
+        text += fmt::format("{:<{}}  {:13.4f}  {:13.4f}  {:12.4f}{}\n", point.run, width, point.sigma_3 / mega,
+                            point.sigma_1 / mega, fit.sigma_1(point.sigma_3) / mega,
+                            point.peak_reached ? "" : "  still rising");
     return text + fmt::format("cohesion {:.4f} MPa, friction angle {:.2f} deg\n", fit.cohesion / mega,
                               fit.friction_angle * degrees);
 }

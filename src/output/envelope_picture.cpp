@@ -7,6 +7,7 @@
 
 #include "kluft/output/axis.hpp"
 #include "kluft/output/envelope.hpp"
+#include "legend.hpp"
 
 namespace kluft {
 
@@ -20,6 +21,7 @@ constexpr double bottom_margin = 48.0;
 constexpr double pixels_per_point = 3.2;
 constexpr double degrees = 180.0 / std::numbers::pi;
 constexpr double mega = 1e6;
+const Stroke fit_stroke{colour(0x1A1A1A), 1.5};
 
 /// Shear strength on a plane under the normal stress sigma (both in MPa).
 double shear_strength(const Envelope& envelope, double sigma) {
@@ -48,12 +50,16 @@ PlotFrame frame_of(const std::vector<PeakPoint>& points, const Envelope& fit) {
     return frame;
 }
 
-void draw_circle(Canvas& canvas, const PlotFrame& frame, const PeakPoint& point, const Colour& line) {
+Stroke circle_stroke(std::size_t index, bool peak_reached) {
+    Stroke stroke{series_colour(index), 1.4};
+    if (!peak_reached) stroke.dash = {4.0, 2.5};
+    return stroke;
+}
+
+void draw_circle(Canvas& canvas, const PlotFrame& frame, const PeakPoint& point, const Stroke& stroke) {
     const double middle = 0.5 * (point.sigma_1 + point.sigma_3) / mega;
     const double radius = 0.5 * std::abs(point.sigma_1 - point.sigma_3) / mega;
     const double points_per_mega = frame.size.x() / (frame.x.high - frame.x.low);
-    Stroke stroke{line, 1.4};
-    if (!point.peak_reached) stroke.dash = {4.0, 2.5};
     canvas.arc(frame.place({middle, 0.0}), radius * points_per_mega, std::numbers::pi, 2.0 * std::numbers::pi, stroke);
 }
 
@@ -76,19 +82,18 @@ Stroke other_stroke(std::size_t index) {
     return {colour(0x666666), 1.1, dashes[index % dashes.size()]};
 }
 
-void draw_legend(Canvas& canvas, const PlotFrame& frame, const Envelope& fit, const std::vector<NamedEnvelope>& others,
-                 bool any_rising) {
-    const TextStyle style{.size = 8.5, .down = Align::middle, .halo = 2.0};
-    Vec2 at = frame.corner + Vec2(10.0, 13.0);
-    const auto entry = [&](const std::string& label, const Stroke& stroke) {
-        canvas.line(at, at + Vec2(20.0, 0.0), stroke);
-        canvas.text(at + Vec2(26.0, 0.0), label, style);
-        at.y() += 14.0;
-    };
-    entry("fit: " + constants(fit), {colour(0x1A1A1A), 1.5});
+/// One entry per circle, then the lines.
+std::vector<LegendEntry> legend_of(const std::vector<PeakPoint>& points, const Envelope& fit,
+                                   const std::vector<NamedEnvelope>& others) {
+    std::vector<LegendEntry> entries{line_entry("fit: " + constants(fit), fit_stroke)};
     for (std::size_t i = 0; i < others.size(); ++i)
-        entry(others[i].label + ": " + constants(others[i].envelope), other_stroke(i));
-    if (any_rising) entry("peak not reached", {colour(0x1A1A1A), 1.4, {4.0, 2.5}});
+        entries.push_back(line_entry(others[i].label + ": " + constants(others[i].envelope), other_stroke(i)));
+    for (std::size_t i = 0; i < points.size(); ++i)
+        entries.push_back(line_entry(fmt::format("{}: \u03c3\u2083 = {:.2f}, \u03c3\u2081 = {:#.3g} MPa{}",
+                                                 points[i].run, points[i].sigma_3 / mega, points[i].sigma_1 / mega,
+                                                 points[i].peak_reached ? "" : ", still rising"),
+                                     circle_stroke(i, points[i].peak_reached)));
+    return entries;
 }
 
 } // namespace
@@ -96,18 +101,19 @@ void draw_legend(Canvas& canvas, const PlotFrame& frame, const Envelope& fit, co
 std::string draw_envelope(const std::string& title, const std::vector<PeakPoint>& points, const Envelope& fit,
                           const std::vector<NamedEnvelope>& others, PictureFormat format) {
     const PlotFrame frame = frame_of(points, fit);
-    const Vec2 page = frame.corner + frame.size + Vec2(right_margin, bottom_margin);
-    const bool any_rising =
-        std::any_of(points.begin(), points.end(), [](const PeakPoint& point) { return !point.peak_reached; });
+    const LegendGrid below(legend_of(points, fit, others), frame.size.x());
+    const double bottom = frame.corner.y() + frame.size.y() + bottom_margin;
+    const Vec2 page(frame.corner.x() + frame.size.x() + right_margin, bottom + below.height());
     return draw_picture(format, page.x(), page.y(), pixels_per_point, [&](Canvas& canvas) {
         canvas.text_within(frame.size.x(), {frame.corner.x(), 26.0}, title, {.size = 11.5, .bold = true});
         draw_axes(canvas, frame, "normal stress (MPa, compression positive)", "shear stress (MPa)");
         canvas.begin_clip(frame.corner, frame.size);
-        for (std::size_t i = 0; i < points.size(); ++i) draw_circle(canvas, frame, points[i], series_colour(i));
+        for (std::size_t i = 0; i < points.size(); ++i)
+            draw_circle(canvas, frame, points[i], circle_stroke(i, points[i].peak_reached));
         for (std::size_t i = 0; i < others.size(); ++i) draw_line(canvas, frame, others[i].envelope, other_stroke(i));
-        draw_line(canvas, frame, fit, {colour(0x1A1A1A), 1.5});
+        draw_line(canvas, frame, fit, fit_stroke);
         canvas.end_clip();
-        draw_legend(canvas, frame, fit, others, any_rising);
+        below.draw(canvas, {frame.corner.x(), bottom});
     });
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <iterator>
 #include <string_view>
 #include <type_traits>
 
@@ -62,7 +61,7 @@ std::string cell(CrackMode mode) { return mode == CrackMode::tension ? "tension"
 template <class Record> std::string header_of() {
     std::string line;
     Record record;
-    visit_columns(record, [&](std::string_view name, auto&) { fmt::format_to(std::back_inserter(line), ",{}", name); });
+    visit_columns(record, [&](std::string_view name, auto&) { line += fmt::format(",{}", name); });
     return line.substr(1);
 }
 

@@ -36,8 +36,8 @@ RunLog::RunLog(RunLog&&) noexcept = default;
 RunLog& RunLog::operator=(RunLog&&) noexcept = default;
 RunLog::~RunLog() = default;
 
-void RunLog::info(std::string_view message) { sink_->logger.info("{}", message); }
-void RunLog::warning(std::string_view message) { sink_->logger.warn("{}", message); }
-void RunLog::error(std::string_view message) { sink_->logger.error("{}", message); }
+void RunLog::info(std::string_view message) { sink_->logger.log(spdlog::level::info, message); }
+void RunLog::warning(std::string_view message) { sink_->logger.log(spdlog::level::warn, message); }
+void RunLog::error(std::string_view message) { sink_->logger.log(spdlog::level::err, message); }
 
 } // namespace kluft

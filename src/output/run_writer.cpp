@@ -52,11 +52,6 @@ private:
 
 bool is_due(int step, int every) { return every > 0 && step % every == 0; }
 
-std::string after_title(const std::vector<StepRecord>& history) {
-    if (history.empty()) return "after";
-    return fmt::format("after, axial strain {:.2f} %", 100.0 * history.back().axial_strain);
-}
-
 } // namespace
 
 void remove_results(const fs::path& directory) {
@@ -121,7 +116,7 @@ void RunWriter::checkpoint(const State& state) {
     tables_->history.sync();
     tables_->equilibria.sync();
     tables_->cracks.sync();
-    write_state(directory_ / "state.h5", state, options_.fingerprint);
+    write_state(directory_ / "state.h5", state, options_.fingerprint, options_.scene_text);
 }
 
 void RunWriter::write_fields(const StepRecord& record, const FieldRecord& fields) {
@@ -163,7 +158,7 @@ RunSummary RunWriter::summary_of(const RunOutcome& outcome) const {
 
 RunSummary RunWriter::finish(const RunOutcome& outcome, const State& state,
                              const std::function<FieldRecord()>& fields) {
-    const RunSummary summary = summary_of(outcome);
+    RunSummary summary = summary_of(outcome);
     FirstError errors;
     errors.attempt([&] { checkpoint(state); });
     errors.attempt([&] { write_summary(directory_ / "summary.json", summary); });
@@ -178,6 +173,9 @@ RunSummary RunWriter::finish(const RunOutcome& outcome, const State& state,
         if (options_.pictures) parts.attempt([&] { write_pictures(last); });
         parts.rethrow();
     });
+    // The summary was written before the pictures, which may need more memory than there is; now it counts theirs too.
+    summary.peak_memory_bytes = peak_memory_bytes();
+    errors.attempt([&] { write_summary(directory_ / "summary.json", summary); });
     errors.rethrow();
     return summary;
 }

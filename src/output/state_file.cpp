@@ -211,12 +211,13 @@ template <class Members, class Visit> void visit_members(Members& state, Visit&&
     visit("unbalanced_in_succession", state.unbalanced_in_succession);
 }
 
-std::string file_image(const State& state, const std::string& fingerprint) {
+std::string file_image(const State& state, const std::string& fingerprint, const std::string& scene) {
     const Identifier access = memory_access();
     const Identifier file(H5Fcreate("state", H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose, "no file");
     write_text(file, "format", format_name);
     write_text(file, "fingerprint", fingerprint);
     write_array(file, "format_version", &format_version, 1);
+    write_array(file, "scene", std::vector<std::uint8_t>(scene.begin(), scene.end()).data(), scene.size());
     visit_members(state, Writer{file});
     checked(H5Fflush(file, H5F_SCOPE_GLOBAL), "not flushed");
     const ssize_t size = H5Fget_file_image(file, nullptr, 0);
@@ -226,15 +227,27 @@ std::string file_image(const State& state, const std::string& fingerprint) {
     return image;
 }
 
-State state_in_image(std::string& image, const std::string& place, const std::string& expected_fingerprint) {
-    const Identifier access = memory_access();
-    checked(H5Pset_file_image(access, image.data(), image.size()), "no image");
-    const Identifier file(H5Fopen("state", H5F_ACC_RDONLY, access), H5Fclose, "not a whole HDF5 file");
-    if (read_text(file, "format") != format_name) throw Hdf5Failure{"no state in it"};
-    const int version = read_scalar<int>(file, "format_version");
-    if (version != format_version)
-        throw InputError(place + ": expected a state of version " + std::to_string(format_version) + ", found " +
-                         std::to_string(version));
+/// Calls read(file) with the file of a state, after a look at its format and version.
+template <class Read> auto read_image(const std::filesystem::path& path, Read&& read) {
+    const SilentErrors silent;
+    const std::string place = path.string();
+    std::string image = read_file(path);
+    try {
+        const Identifier access = memory_access();
+        checked(H5Pset_file_image(access, image.data(), image.size()), "no image");
+        const Identifier file(H5Fopen("state", H5F_ACC_RDONLY, access), H5Fclose, "not a whole HDF5 file");
+        if (read_text(file, "format") != format_name) throw Hdf5Failure{"no state in it"};
+        const int version = read_scalar<int>(file, "format_version");
+        if (version != format_version)
+            throw InputError(place + ": expected a state of version " + std::to_string(format_version) + ", found " +
+                             std::to_string(version));
+        return read(file);
+    } catch (const Hdf5Failure& failure) {
+        throw InputError(place + ": expected a saved state, found a damaged or foreign file (" + failure.what + ")");
+    }
+}
+
+State state_in(hid_t file, const std::string& place, const std::string& expected_fingerprint) {
     if (read_text(file, "fingerprint") != expected_fingerprint)
         throw InputError(place + ": belongs to another scene, or the scene was changed since it was saved");
     State state;
@@ -244,24 +257,27 @@ State state_in_image(std::string& image, const std::string& place, const std::st
 
 } // namespace
 
-void write_state(const std::filesystem::path& path, const State& state, const std::string& fingerprint) {
+void write_state(const std::filesystem::path& path, const State& state, const std::string& fingerprint,
+                 const std::string& scene) {
     const SilentErrors silent;
     try {
-        write_file(path, file_image(state, fingerprint));
+        write_file(path, file_image(state, fingerprint, scene));
     } catch (const Hdf5Failure& failure) {
         throw ResourceError(path.string() + ": cannot store the state in memory: " + failure.what);
     }
 }
 
 State read_state(const std::filesystem::path& path, const std::string& expected_fingerprint) {
-    const SilentErrors silent;
-    std::string image = read_file(path);
-    try {
-        return state_in_image(image, path.string(), expected_fingerprint);
-    } catch (const Hdf5Failure& failure) {
-        throw InputError(path.string() + ": expected a saved state, found a damaged or foreign file (" + failure.what +
-                         ")");
-    }
+    return read_image(path, [&](hid_t file) { return state_in(file, path.string(), expected_fingerprint); });
+}
+
+std::string read_state_scene(const std::filesystem::path& path) {
+    return read_image(path, [&](hid_t file) {
+        if (H5Lexists(file, "scene", H5P_DEFAULT) <= 0)
+            throw InputError(path.string() + ": holds no scene; it was saved by an earlier version");
+        const auto bytes = read_array<std::uint8_t>(file, "scene");
+        return std::string(bytes.begin(), bytes.end());
+    });
 }
 
 } // namespace kluft

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <ranges>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -48,10 +47,10 @@ std::optional<double> residual_stress(const Rows& history, std::optional<int> pl
     double sum = 0.0;
     int n_rows = 0;
     // From the end backwards, so that a strain that turns back does not bring earlier rows in.
-    for (const auto& row : std::ranges::reverse_view(rows)) {
+    for (auto row = rows.rbegin(); row != rows.rend(); ++row) {
         constexpr double rounding = 1e-9;
-        if (std::abs(last - row.axial_strain) > (residual_share + rounding) * range) break;
-        sum += row.axial_stress;
+        if (std::abs(last - row->axial_strain) > (residual_share + rounding) * range) break;
+        sum += row->axial_stress;
         ++n_rows;
     }
     return sum / n_rows;

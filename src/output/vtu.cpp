@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <iterator>
 #include <optional>
 #include <string_view>
 #include <system_error>
@@ -243,9 +242,8 @@ void FieldSeries::write_series() const {
     for (const int step : steps_) {
         int part = 0;
         for (const std::string_view name : {"blocks", "interfaces"})
-            fmt::format_to(std::back_inserter(text),
-                           "<DataSet timestep=\"{}\" group=\"\" part=\"{}\" file=\"fields/{}\"/>\n", step, part++,
-                           file_name(name, step));
+            text += fmt::format("<DataSet timestep=\"{}\" group=\"\" part=\"{}\" file=\"fields/{}\"/>\n", step, part++,
+                                file_name(name, step));
     }
     write_file(directory_ / "fields.pvd", text + "</Collection>\n</VTKFile>\n");
 }

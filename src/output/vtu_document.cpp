@@ -2,7 +2,6 @@
 
 #include <bit>
 #include <cmath>
-#include <iterator>
 
 #include <fmt/format.h>
 
@@ -19,8 +18,7 @@ std::vector<double> VtuDocument::finite(const std::vector<double>& values) {
 }
 
 void VtuDocument::add_array(std::string& section, std::string_view attributes, const void* bytes, std::size_t size) {
-    fmt::format_to(std::back_inserter(section), "<DataArray {} format=\"appended\" offset=\"{}\"/>\n", attributes,
-                   appended_.size());
+    section += fmt::format("<DataArray {} format=\"appended\" offset=\"{}\"/>\n", attributes, appended_.size());
     const std::uint64_t length = size;
     appended_.append(reinterpret_cast<const char*>(&length), sizeof length);
     appended_.append(static_cast<const char*>(bytes), size);
@@ -60,25 +58,22 @@ void VtuDocument::add_cell_field(std::string_view name, const std::vector<std::i
 
 void VtuDocument::add_field(std::string_view name, double value) {
     const double checked = finite({value}).front();
-    fmt::format_to(std::back_inserter(field_data_),
-                   "<DataArray type=\"Float64\" Name=\"{}\" NumberOfTuples=\"1\" format=\"ascii\">{}</DataArray>\n",
-                   name, checked);
+    field_data_ +=
+        fmt::format("<DataArray type=\"Float64\" Name=\"{}\" NumberOfTuples=\"1\" format=\"ascii\">{}</DataArray>\n",
+                    name, checked);
 }
 
 void VtuDocument::add_field(std::string_view name, std::int32_t value) {
-    fmt::format_to(std::back_inserter(field_data_),
-                   "<DataArray type=\"Int32\" Name=\"{}\" NumberOfTuples=\"1\" format=\"ascii\">{}</DataArray>\n", name,
-                   value);
+    field_data_ += fmt::format(
+        "<DataArray type=\"Int32\" Name=\"{}\" NumberOfTuples=\"1\" format=\"ascii\">{}</DataArray>\n", name, value);
 }
 
 void VtuDocument::add_field(std::string_view name, const std::vector<std::string>& texts) {
-    fmt::format_to(std::back_inserter(field_data_),
-                   "<DataArray type=\"String\" Name=\"{}\" NumberOfTuples=\"{}\" format=\"ascii\">", name,
-                   texts.size());
+    field_data_ += fmt::format("<DataArray type=\"String\" Name=\"{}\" NumberOfTuples=\"{}\" format=\"ascii\">", name,
+                               texts.size());
     for (const std::string& text : texts) {
         for (const char character : text)
-            fmt::format_to(std::back_inserter(field_data_), "{} ",
-                           static_cast<int>(static_cast<unsigned char>(character)));
+            field_data_ += fmt::format("{} ", static_cast<int>(static_cast<unsigned char>(character)));
         field_data_ += "0 ";
     }
     field_data_ += "</DataArray>\n";

@@ -57,6 +57,32 @@ TEST(CurvePicture, NeverCallsAnUnbalancedStepAPeak) {
     EXPECT_FALSE(plot.curves[0].points[80].balanced);
 }
 
+TEST(CurvePicture, SaysThatACurveIsStillRising) {
+    auto history = synthetic_history(1.4e6);
+    history.resize(60); // before the peak
+    const auto plot = stress_strain_plot("t", {{"a", history, {}, 1}});
+    EXPECT_FALSE(plot.curves[0].peak_reached);
+    EXPECT_EQ(plot.curves[0].peak_text.back(), "still rising");
+}
+
+TEST(CurvePicture, ListsThePeaksOfSeveralRunsInTheLegend) {
+    auto rising = synthetic_history(1.4e6);
+    rising.resize(60);
+    auto unbalanced = synthetic_history(5.0e6);
+    unbalanced.back().balanced = false;
+    CurvePlot plot = stress_strain_plot(
+        "t", {{"a", synthetic_history(1.4e6), {}, 1}, {"b", rising, {}, 1}, {"c", unbalanced, {}, 1}},
+        {{"published peak", {}, 1.205, 0}, {"level", {}, 2.0}, {"point", 1.0, 1.0, 1}});
+    EXPECT_EQ(plot.curves[0].label, "a: 1.20 MPa at 1.20 %");
+    EXPECT_EQ(plot.curves[1].label, "b: still rising");
+    EXPECT_TRUE(plot.curves[0].peak_text.empty());
+    plot.y_limit = 3.0; // the third curve leaves the plot
+    const std::string alone = draw_curves(stress_strain_plot("t", {{"a", rising, {}, 1}}), PictureFormat::svg);
+    const std::string all = draw_curves(plot, PictureFormat::svg);
+    EXPECT_THAT(alone, HasSubstr("height=\"350"));
+    EXPECT_THAT(all, ::testing::Not(HasSubstr("height=\"350"))); // the legend stands below
+}
+
 TEST(CurvePicture, IsWrittenAsPngAndSvg) {
     const TemporaryDirectory directory;
     auto history = synthetic_history(1.405e6);

@@ -69,6 +69,16 @@ TEST(StateFile, IsReadBackBitForBit) {
     }
 }
 
+TEST(StateFile, CarriesTheTextOfItsScene) {
+    const TemporaryDirectory directory;
+    const std::string text = "kluft: 1\ntitle: \"Kl\u00fcfte\"\n" + std::string(100000, '#') + "\n";
+    write_state(directory / "state.h5", state_of(2), "scene 1", text);
+    EXPECT_EQ(read_state_scene(directory / "state.h5"), text);
+    write_state(directory / "state.h5", state_of(2), "scene 1");
+    EXPECT_EQ(read_state_scene(directory / "state.h5"), "");
+    EXPECT_THROW((void)read_state_scene(directory / "absent.h5"), InputError);
+}
+
 TEST(StateFile, HoldsAStateWithoutBlocksOrContacts) {
     const TemporaryDirectory directory;
     write_state(directory / "state.h5", State{}, "");

@@ -20,6 +20,9 @@ struct BlocksPlot {
     std::vector<bool> bonded_types; ///< one per interface type: whether it is a potential crack; for draw_geometry
 };
 
+/// The words above the deformed body after the given load steps.
+[[nodiscard]] std::string after_title(const std::vector<StepRecord>& history);
+
 /// Bodies with more blocks than this are drawn as PNG only: an SVG would take longer to open than to compute.
 inline constexpr int most_blocks_in_svg = 20000;
 

@@ -23,14 +23,16 @@ struct PlottedCurve {
     std::vector<Vec2> fine; ///< drawn faintly underneath: every balanced equilibrium
     std::optional<Vec2> peak;
     std::vector<std::string> peak_text; ///< lines beside the peak
+    bool peak_reached = true;           ///< otherwise drawn dashed: the curve was still rising
 };
 
 /// A published value to compare with, in the units of the plot: a level across it (no x; the label stands on the line)
-/// or a point (a cross; equal labels are listed once in the legend).
+/// or a point (a cross; equal labels of one colour are listed once in the legend).
 struct PlottedReference {
     std::string label;
     std::optional<double> x;
     double y = 0.0;
+    std::optional<std::size_t> curve = {}; ///< drawn in this curve's colour; grey without
 };
 
 struct CurvePlot {
@@ -39,6 +41,7 @@ struct CurvePlot {
     std::string y_name;
     std::vector<PlottedCurve> curves;
     std::vector<PlottedReference> references;
+    std::optional<double> y_limit = {}; ///< end of the vertical axis, which cuts off what is above; none: all is shown
 };
 
 /// The rows of one run as written to its tables.
@@ -50,7 +53,8 @@ struct RunCurve {
 };
 
 /// Differential stress (MPa) against axial strain (%), positive in compression, from the state before the platen
-/// moves. The peak is the balanced equilibrium with the largest axial stress (see summary.hpp), marked with its values.
+/// moves. The peak is the balanced equilibrium with the largest axial stress (see summary.hpp), marked with its values;
+/// of several runs these stand in the legend.
 [[nodiscard]] CurvePlot stress_strain_plot(const std::string& title, const std::vector<RunCurve>& runs,
                                            const std::vector<PlottedReference>& references = {});
 

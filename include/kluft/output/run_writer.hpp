@@ -24,6 +24,7 @@ struct RunWriterOptions {
     int checkpoint_every = 0; ///< load steps between two state.h5; 0: at the end of each stage and of the run
     std::string title;
     std::string fingerprint;         ///< of the scene, kept in state.h5
+    std::string scene_text;          ///< kept in state.h5 too, so that the run can be drawn again
     std::optional<int> resumed_step; ///< load step of the saved state that the run goes on from; none: a new run
     std::optional<int> platen_stage; ///< the first stage that moves a platen
     Plane plane = Plane::strain;
