@@ -133,10 +133,10 @@ void OpenCloseSolver::evaluate(EquilibriumEvaluator& evaluator, const Eigen::Vec
 
 /// Newton's increment at q, inside the limits. False if the stiffness cannot be factorized.
 bool OpenCloseSolver::find_increment(const EquilibriumProblem& problem, EquilibriumEvaluator& evaluator,
-                                     const Eigen::VectorXd& q, bool held) {
+                                     const Eigen::VectorXd& q, bool held, TangentKind kind) {
     {
         const Stopwatch watch(assembly_seconds_);
-        evaluator.tangent(q, options_.tangent, matrix_);
+        evaluator.tangent(q, kind, matrix_);
         right_side_ = -residual_.forces;
         if (!held) {
             matrix_.multiply(prescribed_, scratch_);
@@ -145,8 +145,7 @@ bool OpenCloseSolver::find_increment(const EquilibriumProblem& problem, Equilibr
         problem.constraints.project(right_side_);
         problem.constraints.project(matrix_, typical_diagonal(matrix_));
     }
-    const bool exact = options_.tangent == TangentKind::exact;
-    if (!linear_solver_.factorize(matrix_, exact ? Factorization::lu : Factorization::cholesky)) return false;
+    if (!linear_solver_.factorize(matrix_, kind == TangentKind::exact ? Factorization::lu : Factorization::cholesky)) return false;
     linear_solver_.solve(right_side_, increment_);
     problem.constraints.project(increment_);
     if (!held) increment_ += prescribed_;
@@ -155,7 +154,7 @@ bool OpenCloseSolver::find_increment(const EquilibriumProblem& problem, Equilibr
 }
 
 OpenCloseSummary OpenCloseSolver::solve(const EquilibriumProblem& problem, const BlockPattern& pattern,
-                                        Eigen::VectorXd& q) {
+                                        Eigen::VectorXd& q, bool unloaded) {
     EquilibriumEvaluator evaluator(problem, pattern);
     OpenCloseSummary summary;
     full_step_forces_.resize(0);
@@ -174,7 +173,8 @@ OpenCloseSummary OpenCloseSolver::solve(const EquilibriumProblem& problem, const
         }
         summary.worst_block = largest_block(scratch_);
         if (summary.iterations >= options_.max_iterations) return summary;
-        if (!find_increment(problem, evaluator, q, held)) {
+        const bool first = summary.iterations == 0;
+        if (!find_increment(problem, evaluator, q, held, first && unloaded ? TangentKind::touching : options_.tangent)) {
             summary.termination = Termination::singular;
             return summary;
         }

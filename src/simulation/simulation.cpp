@@ -300,7 +300,7 @@ private:
         problem_.start = work_.displacement;
         Trial trial;
         trial.q = std::move(guess);
-        trial.summary = open_close_.solve(problem_, pattern_, trial.q);
+        trial.summary = open_close_.solve(problem_, pattern_, trial.q, work_.contacts.empty());
         report_.open_close_iterations += trial.summary.iterations;
         last_worst_block_ = trial.summary.worst_block;
         if (trial.converged()) balance(trial);
@@ -345,7 +345,7 @@ private:
             for (double& eta : problem_.eta) eta *= relaxation_eta();
             Trial trial;
             trial.q = work_.displacement;
-            trial.summary = open_close_.solve(problem_, pattern_, trial.q);
+            trial.summary = open_close_.solve(problem_, pattern_, trial.q, work_.contacts.empty());
             report_.open_close_iterations += trial.summary.iterations;
             last_worst_block_ = trial.summary.worst_block;
             notify_progress(load_factor);

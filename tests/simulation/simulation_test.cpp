@@ -73,6 +73,26 @@ solver: {{tolerance: 1e-10, balance: 1e-9}}
     EXPECT_EQ(run.report.detections, 0);
 }
 
+// Touching blocks that no load has closed yet have no stiffness. The load of the first step closes them: within the
+// rounding the lateral pressure arrives at the blocks as it is (equilibrium).
+TEST(Simulation, LooseHexagonsCloseUnderTheirFirstLoad) {
+    const auto run = run_scene(R"(
+kluft: 1
+materials: {rock: {youngs_modulus: 1500 MPa, poissons_ratio: 0.25}}
+interfaces: {joint: {kind: fracture, normal_stiffness: 6.7e9, shear_stiffness: 3.3e9, friction_angle: 27, contact_rounding: 4e3, friction_rounding: 0.05}}
+geometry:
+  domain: {rectangle: {width: 0.38, height: 0.6}}
+  tessellation: {hexagons: {spacing: 0.03, rotation: 20, offset: [0.0166667, 0.0166667]}, interface: joint}
+boundaries: {bottom: {support: pinned}}
+stages: [{name: pressure, pressure: {left: 0.2 MPa, right: 0.2 MPa, top: 0.2 MPa}, steps: 4}]
+)");
+    ASSERT_EQ(run.report.status, RunStatus::done);
+    EXPECT_EQ(run.report.unbalanced_steps, 0);
+    EXPECT_EQ(run.report.relaxations, 0);
+    EXPECT_NEAR(run.history.back().lateral_stress, 0.2e6, 1e2);
+    EXPECT_NEAR(run.history.back().axial_stress, 0.2e6, 2e3);
+}
+
 std::string incline(double slope_degrees) {
     return fmt::format(R"(
 kluft: 1

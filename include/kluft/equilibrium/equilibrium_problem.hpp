@@ -34,8 +34,9 @@ struct EquilibriumProblem {
 };
 
 enum class TangentKind {
-    exact,    ///< unsymmetric where points slide or pressures follow
-    symmetric ///< positive definite part: sliding points without shear stiffness, no load stiffness
+    exact,     ///< unsymmetric where points slide or pressures follow
+    symmetric, ///< positive definite part: sliding points without shear stiffness, no load stiffness
+    touching   ///< every point without a gap closed and locked: for a body that no load has closed yet
 };
 
 struct Residual {

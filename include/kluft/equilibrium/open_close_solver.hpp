@@ -38,8 +38,10 @@ public:
         : linear_solver_(linear_solver), options_(options) {}
 
     /// Newton with root finding on R . dq from the guess q, which becomes the last iterate. The linear solver must
-    /// have analysed `pattern`.
-    OpenCloseSummary solve(const EquilibriumProblem& problem, const BlockPattern& pattern, Eigen::VectorXd& q);
+    /// have analysed `pattern`. From an `unloaded` body, whose contacts carry no force yet and therefore have no
+    /// stiffness, the first increment takes the touching ones as closed.
+    OpenCloseSummary solve(const EquilibriumProblem& problem, const BlockPattern& pattern, Eigen::VectorXd& q,
+                           bool unloaded = false);
 
     /// Time spent so far in residuals and tangents (s).
     [[nodiscard]] double assembly_seconds() const { return assembly_seconds_; }
@@ -47,7 +49,7 @@ public:
 private:
     void evaluate(EquilibriumEvaluator& evaluator, const Eigen::VectorXd& q, Residual& residual);
     [[nodiscard]] bool find_increment(const EquilibriumProblem& problem, EquilibriumEvaluator& evaluator,
-                                      const Eigen::VectorXd& q, bool held);
+                                      const Eigen::VectorXd& q, bool held, TangentKind kind);
     void limit_increment(const BlockSystem& system);
     [[nodiscard]] double free_norm(const EquilibriumProblem& problem, const Residual& residual);
     [[nodiscard]] double step_along_root(const EquilibriumProblem& problem, EquilibriumEvaluator& evaluator,
