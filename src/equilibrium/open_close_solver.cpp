@@ -145,7 +145,8 @@ bool OpenCloseSolver::find_increment(const EquilibriumProblem& problem, Equilibr
         problem.constraints.project(right_side_);
         problem.constraints.project(matrix_, typical_diagonal(matrix_));
     }
-    if (!linear_solver_.factorize(matrix_, kind == TangentKind::exact ? Factorization::lu : Factorization::cholesky)) return false;
+    if (!linear_solver_.factorize(matrix_, kind == TangentKind::exact ? Factorization::lu : Factorization::cholesky))
+        return false;
     linear_solver_.solve(right_side_, increment_);
     problem.constraints.project(increment_);
     if (!held) increment_ += prescribed_;
@@ -174,7 +175,8 @@ OpenCloseSummary OpenCloseSolver::solve(const EquilibriumProblem& problem, const
         summary.worst_block = largest_block(scratch_);
         if (summary.iterations >= options_.max_iterations) return summary;
         const bool first = summary.iterations == 0;
-        if (!find_increment(problem, evaluator, q, held, first && unloaded ? TangentKind::touching : options_.tangent)) {
+        if (!find_increment(problem, evaluator, q, held,
+                            first && unloaded ? TangentKind::touching : options_.tangent)) {
             summary.termination = Termination::singular;
             return summary;
         }
