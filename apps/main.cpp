@@ -1,5 +1,6 @@
 // The command line of Kluft.
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <functional>
 #include <memory>
@@ -21,6 +22,12 @@ using kluft::ExitCode;
 using Command = std::function<ExitCode()>; ///< what the command line asks for
 
 int exit_with(ExitCode code) { return static_cast<int>(code); }
+
+/// Without the exit handlers of libraries: OpenBLAS waits there for a thread that waits for memory.
+[[noreturn]] void leave_out_of_resources() {
+    std::fflush(nullptr);
+    std::_Exit(exit_with(ExitCode::out_of_resources));
+}
 
 int bad_input(const std::string& message) {
     std::fprintf(stderr, "%s\n", message.c_str());
@@ -126,7 +133,9 @@ int main(int argc, char** argv) {
     if (const std::string message = unknown_command(argc, argv); !message.empty()) return bad_input(message);
     try {
         app.parse(argc, argv);
-        return exit_with(command());
+        const ExitCode code = command();
+        if (code == ExitCode::out_of_resources) leave_out_of_resources();
+        return exit_with(code);
     } catch (const CLI::Success& help) {
         return app.exit(help);
     } catch (const CLI::ParseError& error) {
@@ -139,9 +148,9 @@ int main(int argc, char** argv) {
         return exit_with(ExitCode::no_equilibrium);
     } catch (const kluft::ResourceError& error) {
         std::fprintf(stderr, "%s\n", error.what());
-        return exit_with(ExitCode::out_of_resources);
+        leave_out_of_resources();
     } catch (const std::bad_alloc&) {
         std::fprintf(stderr, "out of memory\n");
-        return exit_with(ExitCode::out_of_resources);
+        leave_out_of_resources();
     }
 }

@@ -4,7 +4,6 @@
 #include <csignal>
 #include <filesystem>
 #include <memory>
-#include <new>
 #include <string>
 #include <vector>
 
@@ -78,10 +77,11 @@ RunWriterOptions writer_options(const Scene& scene, const Model& model) {
     return options;
 }
 
-RunOutcome outcome_of(const RunReport& report, const Model& model, double elapsed_s) {
+RunOutcome outcome_of(const RunReport& report, const Model& model, double elapsed_s, bool resumed) {
     RunOutcome outcome;
     outcome.status = report.status;
     outcome.message = report.diagnosis;
+    if (!resumed) outcome.open_close_iterations = report.open_close_iterations;
     outcome.factorizations = report.linear.factorizations;
     outcome.analyses = report.linear.analyses;
     outcome.unknowns = n_block_unknowns * model.system.n_blocks();
@@ -117,42 +117,29 @@ std::string closing_line(const RunReport& report, const RunSummary& summary, con
                             summary.numbers.peak_reached ? "" : " (still rising)");
     }
     text += fmt::format(", {} tension and {} shear cracks, {} solves, {:.1f} s; results in {}",
-                        summary.numbers.cracks_tension, summary.numbers.cracks_shear, report.open_close_iterations,
-                        summary.elapsed_s, directory.string());
+                        summary.numbers.cracks_tension, summary.numbers.cracks_shear,
+                        summary.numbers.open_close_iterations, summary.elapsed_s, directory.string());
     if (report.unbalanced_steps > 0) text += fmt::format("; {} steps unbalanced", report.unbalanced_steps);
     return text;
 }
 
 /// The run itself; whatever happens, the last committed state and the tables reach the disk if the disk allows it.
 ExitCode simulate(const Model& model, const Scene& scene, State& state, RunWriter& writer, RunLog& log,
-                  const fs::path& directory, bool quiet) {
+                  const fs::path& directory, const RunArguments& arguments) {
     const auto start = std::chrono::steady_clock::now();
-    RunObserver observer(writer, quiet);
-    RunReport report;
-    std::string resource_message;
-    try {
-        report = run_simulation(model, scene.cracks, scene.solver, state, observer, stop_requested);
-    } catch (const ResourceError& error) {
-        resource_message = error.what();
-    } catch (const std::bad_alloc&) {
-        resource_message = "out of memory";
-    }
+    RunObserver observer(writer, arguments.quiet);
+    const RunReport report = run_simulation(model, scene.cracks, scene.solver, state, observer, stop_requested);
     observer.clear();
-    if (!resource_message.empty()) {
-        report.status = RunStatus::out_of_resources;
-        report.diagnosis = resource_message;
-        log.error(resource_message);
-    }
     const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    const auto summary =
-        writer.finish(outcome_of(report, model, elapsed), state, [&] { return fields_of_state(model, state); });
+    const auto summary = writer.finish(outcome_of(report, model, elapsed, arguments.resume), state,
+                                       [&] { return fields_of_state(model, state); });
     const std::string closing = closing_line(report, summary, directory);
     log.info(closing);
     if (!report.diagnosis.empty()) {
         log.error(report.diagnosis);
         fmt::print(stderr, "{}\n", report.diagnosis);
     }
-    if (!quiet) fmt::print("{}\n", closing);
+    if (!arguments.quiet) fmt::print("{}\n", closing);
     return exit_code(report.status);
 }
 
@@ -191,7 +178,7 @@ ExitCode run(const RunArguments& arguments) {
     }
     std::signal(SIGINT, request_stop);
     std::signal(SIGTERM, request_stop);
-    return simulate(model, scene, state, writer, log, directory, arguments.quiet);
+    return simulate(model, scene, state, writer, log, directory, arguments);
 }
 
 } // namespace kluft

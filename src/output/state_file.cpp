@@ -15,7 +15,7 @@ namespace kluft {
 
 namespace {
 
-constexpr int format_version = 1;
+constexpr int format_version = 2;
 constexpr std::string_view format_name = "kluft state";
 
 /// What went wrong inside HDF5; the callers add the file's name.
@@ -201,12 +201,12 @@ template <class Members, class Visit> void visit_members(Members& state, Visit&&
     visit("displacement", state.displacement);
     visit("stage_start_displacement", state.stage_start_displacement);
     visit("reference_displacement", state.reference_displacement);
+    visit("last_increment", state.last_increment);
     visit("reference_set", state.reference_set);
     visit("interfaces", state.interfaces);
     visit("bond_shear", state.bond_shear);
     visit("contacts", state.contacts);
     visit("boundary_pressure", state.boundary_pressure);
-    visit("boundary_axial", state.boundary_axial);
     visit("unbalanced_ratio", state.unbalanced_ratio);
     visit("unbalanced_in_succession", state.unbalanced_in_succession);
 }

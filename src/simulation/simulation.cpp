@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <new>
 #include <numeric>
 #include <optional>
 
@@ -90,6 +91,12 @@ public:
             report_.status =
                 is_loaded_by_stress() && accepted_.step > 0 ? RunStatus::collapsed : RunStatus::no_equilibrium;
             report_.diagnosis = diagnose(failure);
+        } catch (const ResourceError& error) {
+            report_.status = RunStatus::out_of_resources;
+            report_.diagnosis = error.what();
+        } catch (const std::bad_alloc&) {
+            report_.status = RunStatus::out_of_resources;
+            report_.diagnosis = "out of memory";
         }
         report_.linear = linear_.statistics();
         report_.seconds.analysis = report_.linear.analyze_seconds;
@@ -136,6 +143,7 @@ private:
     void begin_stage(const Stage& stage) {
         if (work_.step_in_stage == 0) {
             work_.stage_start_displacement = work_.displacement;
+            work_.last_increment.resize(0);
             if (stage.motion && !work_.reference_set) {
                 work_.reference_displacement = work_.displacement;
                 work_.reference_set = true;
@@ -145,7 +153,6 @@ private:
         start.displacement = work_.stage_start_displacement;
         start.boundary_pressure = work_.boundary_pressure;
         loads_.emplace(model_, start, stage);
-        last_increment_.resize(0);
     }
 
     void next_stage() {
@@ -184,9 +191,9 @@ private:
         work_.unbalanced_in_succession = step_balanced_ ? 0 : work_.unbalanced_in_succession + 1;
         if (!step_balanced_) ++report_.unbalanced_steps;
         if (smooth) {
-            last_increment_ = (work_.displacement - before) / (target - factor_before);
+            work_.last_increment = (work_.displacement - before) / (target - factor_before);
         } else {
-            last_increment_.resize(0);
+            work_.last_increment.resize(0);
         }
         StepRecord record = last_record_;
         record.step = work_.step;
@@ -307,8 +314,8 @@ private:
     }
 
     [[nodiscard]] Eigen::VectorXd predicted(double load_factor) const {
-        if (last_increment_.size() == 0) return work_.displacement;
-        return work_.displacement + (load_factor - work_.load_factor) * last_increment_;
+        if (work_.last_increment.size() == 0) return work_.displacement;
+        return work_.displacement + (load_factor - work_.load_factor) * work_.last_increment;
     }
 
     Trial solve(double load_factor, Eigen::VectorXd guess) {
@@ -648,7 +655,6 @@ private:
     BlockPattern pattern_;
     EquilibriumProblem problem_;
     std::optional<StageLoads> loads_;
-    Eigen::VectorXd last_increment_; ///< per unit of load factor, of the last step if it was smooth; else empty
     Residual last_residual_;
     StepRecord last_record_;
     RunReport report_;

@@ -29,11 +29,12 @@ struct State {
     Eigen::VectorXd
         reference_displacement; ///< at the start of the first stage that moves a platen: zero of the strains
     bool reference_set = false;
+    Eigen::VectorXd last_increment; ///< of displacement per unit of load factor in the last load step, which predicts
+                                    ///< the next; empty after one with an event
     std::vector<InterfaceStatus> interfaces; ///< one per interface
     std::vector<double> bond_shear; ///< shear traction at the two Gauss points of each bond, size 2 n_interfaces, Pa
     std::vector<ContactMemory> contacts;   ///< of touching contact points, sorted by key
     std::vector<double> boundary_pressure; ///< at the start of the stage, one per boundary, Pa
-    std::vector<double> boundary_axial;    ///< platen stress at the start of the stage, one per boundary, Pa
     double unbalanced_ratio = 0.0;
     int unbalanced_in_succession = 0;
 };
