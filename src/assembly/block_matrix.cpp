@@ -48,4 +48,15 @@ void BlockMatrix::multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const {
     }
 }
 
+void BlockMatrix::multiply_transposed(const Eigen::VectorXd& x, Eigen::VectorXd& y) const {
+    y.setZero(x.size());
+    for (int row = 0; row < pattern->n_blocks(); ++row) {
+        const auto x_row = x.segment<n_block_unknowns>(n_block_unknowns * row);
+        for (int entry = pattern->row_start(row); entry < pattern->row_start(row + 1); ++entry) {
+            y.segment<n_block_unknowns>(n_block_unknowns * pattern->column(entry)).noalias() +=
+                values[entry].transpose() * x_row;
+        }
+    }
+}
+
 } // namespace kluft

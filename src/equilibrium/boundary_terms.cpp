@@ -45,18 +45,15 @@ void add_pressure_tangent(const PressureEdge& edge, double pressure, Mat6& diago
     }
 }
 
-Vec6 constraint_row(const PrescribedDisplacement& prescribed) {
-    Vec6 row;
-    row << prescribed.direction, prescribed.xi.x() * prescribed.direction, prescribed.xi.y() * prescribed.direction;
-    return row;
-}
-
 Constraints::Constraints(std::vector<PrescribedDisplacement> rows) : rows_(std::move(rows)) {
     std::map<int, std::vector<int>> by_block;
     for (int r = 0; r < static_cast<int>(rows_.size()); ++r) by_block[rows_[r].block].push_back(r);
     for (const auto& [block, indices] : by_block) {
         Eigen::MatrixXd matrix(indices.size(), n_block_unknowns);
-        for (std::size_t i = 0; i < indices.size(); ++i) matrix.row(i) = constraint_row(rows_[indices[i]]).transpose();
+        for (std::size_t i = 0; i < indices.size(); ++i) {
+            const auto& row = rows_[indices[i]];
+            matrix.row(i) = displacement_row(row.direction, row.xi).transpose();
+        }
         const Eigen::JacobiSVD<Eigen::MatrixXd> svd(matrix, Eigen::ComputeThinU | Eigen::ComputeFullV);
         const auto& singular = svd.singularValues();
         const auto rank = (singular.array() > rank_tolerance * singular[0]).count();
@@ -70,14 +67,34 @@ Constraints::Constraints(std::vector<PrescribedDisplacement> rows) : rows_(std::
 
 void Constraints::correction(const Eigen::VectorXd& q, Eigen::VectorXd& dq) const {
     dq.setZero(q.size());
+    const auto missing_at = [&](const PrescribedDisplacement& row) {
+        return row.target - row.direction.dot(displacement_at(q, row.block, row.xi));
+    };
+    double travel = 0.0;
+    double squares = 0.0;
+    for (const auto& row : rows_) {
+        travel -= row.rate * missing_at(row);
+        squares += row.rate * row.rate;
+    }
+    if (squares > 0.0) travel /= squares;
     for (const Constrained& c : blocks_) {
         Eigen::VectorXd missing(c.rows.size());
         for (std::size_t i = 0; i < c.rows.size(); ++i) {
             const auto& row = rows_[c.rows[i]];
-            missing[i] = row.target - row.direction.dot(displacement_at(q, c.block, row.xi));
+            missing[i] = missing_at(row) + row.rate * travel;
         }
         dq.segment<n_block_unknowns>(n_block_unknowns * c.block) = c.inverse * missing;
     }
+}
+
+Eigen::VectorXd Constraints::travel_motion(Eigen::Index n) const {
+    Eigen::VectorXd motion = Eigen::VectorXd::Zero(n);
+    for (const Constrained& c : blocks_) {
+        Eigen::VectorXd rates(c.rows.size());
+        for (std::size_t i = 0; i < c.rows.size(); ++i) rates[i] = rows_[c.rows[i]].rate;
+        motion.segment<n_block_unknowns>(n_block_unknowns * c.block) = c.inverse * rates;
+    }
+    return motion;
 }
 
 void Constraints::project(Eigen::VectorXd& v) const {

@@ -10,6 +10,8 @@ namespace kluft {
 
 namespace {
 
+constexpr double touching_gap = 1e-6; ///< of the lattice spacing
+
 /// (1, xi): the weights of u, D's first and D's second column in the displacement of a point.
 std::array<double, 3> shape(const Vec2& xi) { return {1.0, xi.x(), xi.y()}; }
 
@@ -41,6 +43,10 @@ void add_point_force(const ContactPoint& point, const Vec2& force, Eigen::Vector
     const Vec2 size = force.cwiseAbs();
     add_force(magnitudes, point.block_b, point.xi_b.cwiseAbs(), size);
     add_force(magnitudes, point.block_a, point.xi_a.cwiseAbs(), size);
+}
+
+Mat2 full_stiffness(const InterfaceLaw& law) {
+    return Eigen::Vector2d(law.normal_stiffness, law.shear_stiffness).asDiagonal();
 }
 
 Mat2 symmetric_part(const PointTraction& traction) {
@@ -104,9 +110,7 @@ EquilibriumEvaluator::EquilibriumEvaluator(const EquilibriumProblem& problem, co
 
     bonds_and_mass_.reset(pattern);
     for (std::size_t i = 0; i < problem.bonds.size(); ++i) {
-        const InterfaceLaw& law = (*problem.laws)[problem.bonds[i].law];
-        Mat2 tangent = Mat2::Zero();
-        tangent.diagonal() << law.normal_stiffness, law.shear_stiffness;
+        const Mat2 tangent = full_stiffness((*problem.laws)[problem.bonds[i].law]);
         add_point_tangent(problem.bonds[i], tangent, bond_slots_[i], bonds_and_mass_);
     }
     if (!problem.eta.empty()) add_mass_tangent(bonds_and_mass_);
@@ -177,15 +181,21 @@ void EquilibriumEvaluator::tangent(const Eigen::VectorXd& q, TangentKind kind, B
     for (int b = 0; b < system.n_blocks(); ++b) {
         const Block& block = system.blocks[b];
         matrix.values[diagonal_[b]].block<4, 4>(2, 2) += elastic_tangent(
-            deformation_gradient(q, b, block.size), (*problem_.moduli)[block.material], kind == TangentKind::symmetric);
+            deformation_gradient(q, b, block.size), (*problem_.moduli)[block.material], kind != TangentKind::exact);
     }
     for (std::size_t i = 0; i < problem_.contacts.size(); ++i) {
+        const ContactPoint& point = problem_.contacts[i];
+        if (kind == TangentKind::touching) {
+            if (gap_and_slip(point, q).gap > touching_gap * system.spacing) continue;
+            add_point_tangent(point, full_stiffness((*problem_.laws)[point.law]), contact_slots_[i], matrix);
+            continue;
+        }
         const auto traction = contact_traction(problem_, static_cast<int>(i), q);
         if (traction.state == ContactState::open) continue;
         const Mat2 tangent = kind == TangentKind::symmetric ? symmetric_part(traction) : traction.tangent;
-        add_point_tangent(problem_.contacts[i], tangent, contact_slots_[i], matrix);
+        add_point_tangent(point, tangent, contact_slots_[i], matrix);
     }
-    if (kind == TangentKind::symmetric) return;
+    if (kind != TangentKind::exact) return;
     for (const PressureEdge& edge : problem_.pressure_edges) {
         const double pressure = problem_.pressures[edge.boundary];
         if (pressure != 0.0) add_pressure_tangent(edge, pressure, matrix.values[diagonal_[edge.block]]);

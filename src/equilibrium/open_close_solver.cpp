@@ -50,17 +50,20 @@ void append_restless(const Eigen::VectorXd& forces, const std::vector<int>& limi
 
 } // namespace
 
-double OpenCloseSolver::free_norm(const EquilibriumProblem& problem, const Residual& residual) {
-    scratch_ = residual.forces;
-    problem.constraints.project(scratch_);
-    return scratch_.norm();
+/// Removes the reactions; what remains has the work of the forces in every free motion, the platen's travel included.
+void OpenCloseSolver::keep_free_part(const EquilibriumProblem& problem, const Eigen::VectorXd& q,
+                                     Eigen::VectorXd& forces) const {
+    const bool travels = problem.platen_force.has_value();
+    const double missing = travels ? travel_.dot(forces) - problem.platen_force->at(q) : 0.0;
+    problem.constraints.project(forces);
+    if (travels) forces += missing / travel_.squaredNorm() * travel_;
 }
 
 double OpenCloseSolver::slope_at(const EquilibriumProblem& problem, EquilibriumEvaluator& evaluator,
                                  const Eigen::VectorXd& q, double s) {
     position_ = q + s * increment_;
     evaluate(evaluator, position_, trial_);
-    problem.constraints.project(trial_.forces);
+    keep_free_part(problem, position_, trial_.forces);
     return trial_.forces.dot(increment_);
 }
 
@@ -101,8 +104,9 @@ double OpenCloseSolver::step_by_halving(const EquilibriumProblem& problem, Equil
     for (int i = 0; i < max_search_residuals; ++i, s *= 0.5) {
         position_ = q + s * increment_;
         evaluate(evaluator, position_, trial_);
-        const double norm = free_norm(problem, trial_);
-        if (i == 0) full_step_forces_ = scratch_;
+        keep_free_part(problem, position_, trial_.forces);
+        const double norm = trial_.forces.norm();
+        if (i == 0) full_step_forces_ = trial_.forces;
         if (best_norm < 0.0 || norm < best_norm) {
             best = s;
             best_norm = norm;
@@ -131,13 +135,32 @@ void OpenCloseSolver::evaluate(EquilibriumEvaluator& evaluator, const Eigen::Vec
     evaluator.residual(q, residual);
 }
 
+/// The increment for the platen's travel as a bordered system, by a second solution with the same factor:
+/// travel_row . increment = out_of_balance.
+void OpenCloseSolver::add_travel(const EquilibriumProblem& problem, double out_of_balance) {
+    travel_column_ *= -1.0;
+    problem.constraints.project(travel_column_);
+    linear_solver_.solve(travel_column_, response_);
+    problem.constraints.project(response_);
+    response_ += travel_;
+    increment_ += (out_of_balance - travel_row_.dot(increment_)) / travel_row_.dot(response_) * response_;
+}
+
 /// Newton's increment at q, inside the limits. False if the stiffness cannot be factorized.
 bool OpenCloseSolver::find_increment(const EquilibriumProblem& problem, EquilibriumEvaluator& evaluator,
-                                     const Eigen::VectorXd& q, bool held) {
+                                     const Eigen::VectorXd& q, bool held, TangentKind kind) {
+    double out_of_balance = 0.0; // of the platen
     {
         const Stopwatch watch(assembly_seconds_);
-        evaluator.tangent(q, options_.tangent, matrix_);
+        evaluator.tangent(q, kind, matrix_);
         right_side_ = -residual_.forces;
+        if (problem.platen_force) {
+            matrix_.multiply(travel_, travel_column_);
+            matrix_.multiply_transposed(travel_, travel_row_);
+            travel_row_ -= problem.platen_force->stress * problem.platen_force->widening;
+            out_of_balance = problem.platen_force->at(q) - travel_.dot(residual_.forces);
+            if (!held) out_of_balance -= travel_row_.dot(prescribed_);
+        }
         if (!held) {
             matrix_.multiply(prescribed_, scratch_);
             right_side_ -= scratch_;
@@ -145,25 +168,30 @@ bool OpenCloseSolver::find_increment(const EquilibriumProblem& problem, Equilibr
         problem.constraints.project(right_side_);
         problem.constraints.project(matrix_, typical_diagonal(matrix_));
     }
-    const bool exact = options_.tangent == TangentKind::exact;
-    if (!linear_solver_.factorize(matrix_, exact ? Factorization::lu : Factorization::cholesky)) return false;
+    if (!linear_solver_.factorize(matrix_, kind == TangentKind::exact ? Factorization::lu : Factorization::cholesky))
+        return false;
     linear_solver_.solve(right_side_, increment_);
     problem.constraints.project(increment_);
+    if (problem.platen_force) add_travel(problem, out_of_balance);
     if (!held) increment_ += prescribed_;
     limit_increment(*problem.system);
     return true;
 }
 
 OpenCloseSummary OpenCloseSolver::solve(const EquilibriumProblem& problem, const BlockPattern& pattern,
-                                        Eigen::VectorXd& q) {
+                                        Eigen::VectorXd& q, bool unloaded) {
     EquilibriumEvaluator evaluator(problem, pattern);
     OpenCloseSummary summary;
     full_step_forces_.resize(0);
     double previous_norm = -1.0;
+    if (problem.platen_force) travel_ = problem.constraints.travel_motion(q.size());
+    Eigen::VectorXd free_forces;
     for (;;) {
         evaluate(evaluator, q, residual_);
         problem.constraints.correction(q, prescribed_);
-        const double norm = free_norm(problem, residual_);
+        free_forces = residual_.forces;
+        keep_free_part(problem, q, free_forces);
+        const double norm = free_forces.norm();
         summary.force_scale = residual_.force_scale;
         summary.residual_ratio = residual_.force_scale > 0.0 ? norm / residual_.force_scale : 0.0;
         const double missing = prescribed_.lpNorm<Eigen::Infinity>();
@@ -172,9 +200,11 @@ OpenCloseSummary OpenCloseSolver::solve(const EquilibriumProblem& problem, const
             summary.termination = Termination::converged;
             return summary;
         }
-        summary.worst_block = largest_block(scratch_);
+        summary.worst_block = largest_block(free_forces);
         if (summary.iterations >= options_.max_iterations) return summary;
-        if (!find_increment(problem, evaluator, q, held)) {
+        const bool first = summary.iterations == 0;
+        if (!find_increment(problem, evaluator, q, held,
+                            first && unloaded ? TangentKind::touching : options_.tangent)) {
             summary.termination = Termination::singular;
             return summary;
         }
@@ -182,9 +212,7 @@ OpenCloseSummary OpenCloseSolver::solve(const EquilibriumProblem& problem, const
 
         double s = 1.0;
         if (held) {
-            scratch_ = residual_.forces;
-            problem.constraints.project(scratch_);
-            const double slope = scratch_.dot(increment_);
+            const double slope = free_forces.dot(increment_);
             const bool stalls = summary.iterations > iterations_before_halving && norm >= previous_norm;
             s = slope < 0.0 && !stalls ? step_along_root(problem, evaluator, q, slope)
                                        : step_by_halving(problem, evaluator, q, norm);

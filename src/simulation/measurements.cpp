@@ -55,25 +55,8 @@ Gauges make_gauges(const Model& model) {
     gauges.opposite = opposite_boundary(system, gauges.moved);
     const Vec2 base = gauges.opposite >= 0 ? mean_position(system, gauges.opposite) : system.lower;
     gauges.length = std::abs(gauges.axial_normal.dot(mean_position(system, gauges.moved) - base));
-    for (const double side : {1.0, -1.0}) {
-        int best = -1;
-        double most_lateral = 0.7;
-        for (int i = 0; i < static_cast<int>(system.boundaries.size()); ++i) {
-            const double cosine = side * gauges.lateral_normal.dot(boundary_frame(system, i).normal);
-            if (cosine > most_lateral) {
-                most_lateral = cosine;
-                best = i;
-            }
-        }
-        if (best >= 0) gauges.lateral.push_back(best);
-    }
-    gauges.width = boundary_frame(system, gauges.moved).length;
-    if (gauges.lateral.size() == 2) {
-        gauges.width = std::abs(gauges.lateral_normal.dot(mean_position(system, gauges.lateral[0]) -
-                                                          mean_position(system, gauges.lateral[1])));
-    } else {
-        gauges.lateral.clear();
-    }
+    gauges.lateral = lateral_boundaries(system, gauges.moved);
+    gauges.width = width_across(system, gauges.moved).width;
     return gauges;
 }
 

@@ -29,7 +29,8 @@ constexpr double relaxation_growth = 16.0;     ///< of eta on the blocks that st
 constexpr double relaxation_decay = 4.0;       ///< after a solve in a few iterations
 constexpr int easy_iterations = 6;
 constexpr double largest_relaxation = 4.0e6;
-constexpr int max_relaxation_attempts = 100;
+constexpr int max_relaxation_attempts = 250;
+constexpr double collapse_motion = 0.5; ///< of a block in one load step, in lattice spacings
 constexpr int max_event_trials = 12;
 constexpr double largest_useful_index = 10.0; ///< of f in the search for an event: a strength of zero gives infinity
 constexpr double critical_share = 0.95;       ///< of f_max in `critical_first`
@@ -57,6 +58,7 @@ bool is_held(const BlockSystem& system, const std::vector<char>& bonded, const C
     const Vec2 centre = 0.5 * (system.lower + system.upper);
     const double size = (system.upper - system.lower).maxCoeff();
     for (const auto& row : constraints.rows()) {
+        if (row.rate != 0.0) continue; // the platen travels
         const Block& block = system.blocks[row.block];
         const Vec2 arm = (block.centroid + block.size * row.xi - centre) / size;
         const Eigen::Vector3d motion(row.direction.x(), row.direction.y(), cross(arm, row.direction));
@@ -85,9 +87,8 @@ public:
         } catch (const Interrupted&) {
             report_.status = RunStatus::interrupted;
         } catch (const NoEquilibrium& failure) {
-            const auto& motion = model_.loads.stages[work_.stage].motion;
-            const bool by_stress = !motion || motion->control == PlatenControl::stress;
-            report_.status = by_stress && accepted_.step > 0 ? RunStatus::collapsed : RunStatus::no_equilibrium;
+            report_.status =
+                is_loaded_by_stress() && accepted_.step > 0 ? RunStatus::collapsed : RunStatus::no_equilibrium;
             report_.diagnosis = diagnose(failure);
         }
         report_.linear = linear_.statistics();
@@ -224,6 +225,21 @@ private:
         return smooth;
     }
 
+    [[nodiscard]] bool is_loaded_by_stress() const {
+        const auto& motion = model_.loads.stages[work_.stage].motion;
+        return !motion || motion->control == PlatenControl::stress;
+    }
+
+    /// Under a given stress or weight a body that lost its balance may fall for ever.
+    [[nodiscard]] bool is_falling() const {
+        if (!is_loaded_by_stress()) return false;
+        const Eigen::VectorXd moved = work_.displacement - accepted_.displacement;
+        for (int b = 0; b < model_.system.n_blocks(); ++b) {
+            if (moved.segment<2>(n_block_unknowns * b).norm() > collapse_motion * model_.system.spacing) return true;
+        }
+        return false;
+    }
+
     // ---- one equilibrium -------------------------------------------------------------------------------------
 
     /// Contacts and frames of the work state; what all trials from it share.
@@ -285,6 +301,7 @@ private:
 
     void set_load(double load_factor) {
         problem_.pressures = loads_->pressures(load_factor);
+        problem_.platen_force = loads_->platen_force(load_factor);
         loads_->set_targets(problem_.constraints, load_factor);
         problem_.gravity = work_.stage == 0 ? Vec2(load_factor * model_.gravity) : model_.gravity;
     }
@@ -300,7 +317,7 @@ private:
         problem_.start = work_.displacement;
         Trial trial;
         trial.q = std::move(guess);
-        trial.summary = open_close_.solve(problem_, pattern_, trial.q);
+        trial.summary = open_close_.solve(problem_, pattern_, trial.q, work_.contacts.empty());
         report_.open_close_iterations += trial.summary.iterations;
         last_worst_block_ = trial.summary.worst_block;
         if (trial.converged()) balance(trial);
@@ -345,7 +362,7 @@ private:
             for (double& eta : problem_.eta) eta *= relaxation_eta();
             Trial trial;
             trial.q = work_.displacement;
-            trial.summary = open_close_.solve(problem_, pattern_, trial.q);
+            trial.summary = open_close_.solve(problem_, pattern_, trial.q, work_.contacts.empty());
             report_.open_close_iterations += trial.summary.iterations;
             last_worst_block_ = trial.summary.worst_block;
             notify_progress(load_factor);
@@ -359,12 +376,17 @@ private:
             trial.balanced = trial.viscous_share <= options_.balance;
             if (trial.balanced) return trial;
             commit(trial, work_.load_factor);
+            if (is_falling()) throw NoEquilibrium{trial.summary.worst_block, trial.viscous_share};
             if (trial.summary.iterations <= easy_iterations) {
                 for (double& f : factor) f = std::max(1.0, f / relaxation_decay);
             }
             last = std::move(trial);
         }
         if (!last.converged()) throw NoEquilibrium{last_worst_block_, last.summary.residual_ratio};
+        const auto& motion = model_.loads.stages[work_.stage].motion;
+        if (motion && motion->control == PlatenControl::stress) { // the platen keeps moving: past the strength
+            throw NoEquilibrium{last.summary.worst_block, last.viscous_share};
+        }
         return last;
     }
 

@@ -86,6 +86,47 @@ Vec2 mean_displacement(const BlockSystem& system, const Eigen::VectorXd& q, int 
     return length > 0.0 ? Vec2(sum / length) : sum;
 }
 
+std::vector<int> lateral_boundaries(const BlockSystem& system, int boundary) {
+    const Vec2 normal = boundary_frame(system, boundary).normal;
+    const Vec2 lateral(normal.y(), -normal.x());
+    std::vector<int> result;
+    for (const double side : {1.0, -1.0}) {
+        int best = -1;
+        double most_lateral = 0.7;
+        for (int i = 0; i < static_cast<int>(system.boundaries.size()); ++i) {
+            const double cosine = side * lateral.dot(boundary_frame(system, i).normal);
+            if (cosine > most_lateral) {
+                most_lateral = cosine;
+                best = i;
+            }
+        }
+        if (best >= 0) result.push_back(best);
+    }
+    if (result.size() < 2) result.clear();
+    return result;
+}
+
+PlatenForce width_across(const BlockSystem& system, int boundary) {
+    PlatenForce force;
+    force.widening.setZero(n_block_unknowns * system.n_blocks());
+    force.width = boundary_frame(system, boundary).length;
+    const auto sides = lateral_boundaries(system, boundary);
+    if (sides.empty()) return force;
+    const Vec2 normal = boundary_frame(system, boundary).normal;
+    const Vec2 lateral(normal.y(), -normal.x());
+    force.width = std::abs(lateral.dot(mean_position(system, sides[0]) - mean_position(system, sides[1])));
+    for (const double side : {1.0, -1.0}) {
+        const int i = sides[side > 0.0 ? 0 : 1];
+        const double length = boundary_frame(system, i).length;
+        for_each_edge(system, i, [&](int b, const Vec2& start, const Vec2& end) {
+            const Vec2 xi = block_coordinates(system.blocks[b], 0.5 * (start + end));
+            const double share = side * (end - start).norm() / length;
+            force.widening.segment<n_block_unknowns>(n_block_unknowns * b) += share * displacement_row(lateral, xi);
+        });
+    }
+    return force;
+}
+
 StageLoads::StageLoads(const Model& model, const State& stage_start, const Stage& stage) {
     const BlockSystem& system = model.system;
     const int n = static_cast<int>(system.boundaries.size());
@@ -97,7 +138,8 @@ StageLoads::StageLoads(const Model& model, const State& stage_start, const Stage
     std::vector<Support> supports = model.loads.supports;
     Vec2 velocity = Vec2::Zero(); // of the moved platen per unit of load factor
     int moved = -1;
-    if (stage.motion && stage.motion->control != PlatenControl::stress) {
+    bool by_stress = false;
+    if (stage.motion) {
         moved = stage.motion->boundary;
         const int fixed = opposite_boundary(system, moved);
         const Support kind = stage.platens == Platens::rough ? Support::fixed : Support::smooth;
@@ -111,8 +153,13 @@ StageLoads::StageLoads(const Model& model, const State& stage_start, const Stage
             distance *= std::abs(inward.dot(base - mean_position(system, moved)));
         }
         velocity = distance * inward;
-    } else if (stage.motion) {
-        end_pressure_[stage.motion->boundary] = stage.motion->value;
+        by_stress = stage.motion->control == PlatenControl::stress;
+        if (by_stress) {
+            velocity = inward; // per unit of its unknown travel
+            start_platen_stress_ = start_pressure_[moved];
+            end_platen_stress_ = stage.motion->value;
+            platen_force_ = width_across(system, moved);
+        }
     }
 
     std::vector<PrescribedDisplacement> rows;
@@ -132,9 +179,10 @@ StageLoads::StageLoads(const Model& model, const State& stage_start, const Stage
                 const Vec2 xi = block_coordinates(system.blocks[b], system.vertices[vertex]);
                 const Vec2 start = displacement_at(stage_start.displacement, b, xi);
                 const auto prescribe = [&, b = b](const Vec2& direction) {
-                    rows.push_back({b, xi, direction, boundary, direction.dot(start)});
+                    const double rate = direction.dot(motion);
+                    rows.push_back({b, xi, direction, boundary, direction.dot(start), by_stress ? rate : 0.0});
                     start_targets_.push_back(direction.dot(start));
-                    target_rates_.push_back(direction.dot(motion));
+                    target_rates_.push_back(by_stress ? 0.0 : rate);
                 };
                 prescribe(normal);
                 if (supports[boundary] == Support::fixed || pin == std::pair(b, vertex)) prescribe(along);
@@ -155,6 +203,12 @@ std::vector<double> StageLoads::pressures(double load_factor) const {
         result[i] = start_pressure_[i] + load_factor * (end_pressure_[i] - start_pressure_[i]);
     }
     return result;
+}
+
+std::optional<PlatenForce> StageLoads::platen_force(double load_factor) const {
+    auto force = platen_force_;
+    if (force) force->stress = start_platen_stress_ + load_factor * (end_platen_stress_ - start_platen_stress_);
+    return force;
 }
 
 void StageLoads::set_targets(Constraints& constraints, double load_factor) const {

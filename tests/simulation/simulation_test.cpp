@@ -73,6 +73,57 @@ solver: {{tolerance: 1e-10, balance: 1e-9}}
     EXPECT_EQ(run.report.detections, 0);
 }
 
+// Touching blocks that no load has closed yet have no stiffness. The load of the first step closes them: within the
+// rounding the lateral pressure arrives at the blocks as it is (equilibrium).
+TEST(Simulation, LooseHexagonsCloseUnderTheirFirstLoad) {
+    const auto run = run_scene(R"(
+kluft: 1
+materials: {rock: {youngs_modulus: 1500 MPa, poissons_ratio: 0.25}}
+interfaces: {joint: {kind: fracture, normal_stiffness: 6.7e9, shear_stiffness: 3.3e9, friction_angle: 27, contact_rounding: 4e3, friction_rounding: 0.05}}
+geometry:
+  domain: {rectangle: {width: 0.38, height: 0.6}}
+  tessellation: {hexagons: {spacing: 0.03, rotation: 20, offset: [0.0166667, 0.0166667]}, interface: joint}
+boundaries: {bottom: {support: pinned}}
+stages: [{name: pressure, pressure: {left: 0.2 MPa, right: 0.2 MPa, top: 0.2 MPa}, steps: 4}]
+)");
+    ASSERT_EQ(run.report.status, RunStatus::done);
+    EXPECT_EQ(run.report.unbalanced_steps, 0);
+    EXPECT_EQ(run.report.relaxations, 0);
+    EXPECT_NEAR(run.history.back().lateral_stress, 0.2e6, 1e2);
+    EXPECT_NEAR(run.history.back().axial_stress, 0.2e6, 2e3);
+}
+
+// A rigid platen shortens both columns alike, whatever their stiffness: u (w/(L/E + 1/k_n) + w/(L/E)) = stress 2 w, with
+// a bond of stiffness k_n across the left column, no friction between the columns and no lateral strain (nu = 0).
+TEST(Simulation, PlatenUnderAGivenStressStaysFlat) {
+    const double e = 10e9, kn = 5e9, length = 2.0, stress = 1e4;
+    for (const char* platens : {"smooth", "rough"}) {
+        const auto run = run_scene(fmt::format(R"(
+kluft: 1
+analysis: {{plane: stress}}
+materials: {{rock: {{youngs_modulus: {}, poissons_ratio: 0, cohesion: 1e9, friction_angle: 30, tensile_strength: 1e9}}}}
+interfaces:
+  joint: {{kind: fracture, normal_stiffness: 1e9, shear_stiffness: 1e9, friction_angle: 0}}
+  soft: {{kind: potential_crack, normal_stiffness: {}, shear_stiffness: 1e9, fails_to: joint}}
+geometry:
+  domain: {{rectangle: {{width: 1.0, height: {}}}}}
+  fractures:
+    - {{name: between, trace: [[0.5, -1], [0.5, 3]], interface: joint}}
+    - {{name: across, trace: [[-1, 0.8], [0.5, 0.8]], interface: soft}}
+  reference_spacing: 1.0
+boundaries: {{bottom: {{support: fixed}}}}
+stages: [{{name: platen, stress: {{boundary: top, value: {}}}, platens: {}, steps: 2}}]
+solver: {{tolerance: 1e-10, balance: 1e-8}}
+)",
+                                               e, kn, length, stress, platens));
+        ASSERT_EQ(run.report.status, RunStatus::done);
+        const double shortening = 2 * stress / (1 / (length / e + 1 / kn) + 1 / (length / e));
+        const StepRecord& last = run.history.back();
+        EXPECT_NEAR(last.axial_strain, shortening / length, 1e-4 * shortening / length) << platens;
+        EXPECT_NEAR(last.axial_stress, stress, 1e-6 * stress) << platens;
+    }
+}
+
 std::string incline(double slope_degrees) {
     return fmt::format(R"(
 kluft: 1
@@ -99,33 +150,48 @@ TEST(Simulation, BlockOnInclineStaysBelowTheFrictionAngleAndSlipsAboveIt) {
     EXPECT_TRUE(slips.report.status != RunStatus::done || slips.report.unbalanced_steps > 0);
 }
 
-// Jaeger: p1 - p3 = 2 (c + p3 tan phi)/((1 - tan phi cot beta) sin 2 beta) on a plane whose normal makes beta with p1.
-TEST(Simulation, PlaneOfWeaknessSlipsAtJaegersStress) {
-    const double c = 0.1e6, phi = 30 * degree, p3 = 0.2e6;
-    for (const double beta_degrees : {50.0, 60.0}) {
-        const double beta = beta_degrees * degree;
-        const double rise = 1.4 * std::tan(beta) / 2;
-        const std::string scene = fmt::format(R"(
+// A plane with c = 0.1 MPa and phi = 30 degrees at 0.2 MPa lateral pressure; its normal makes `beta` with p1.
+std::string plane_of_weakness(double beta, const char* platen) {
+    const double rise = 1.4 * std::tan(beta) / 2;
+    return fmt::format(R"(
 kluft: 1
 materials: {{rock: {{youngs_modulus: 50 GPa, poissons_ratio: 0.2}}}}
-interfaces: {{joint: {{kind: fracture, normal_stiffness: 1e11, shear_stiffness: 1e11, friction_angle: 30, cohesion: {}, cohesion_onset: 10, contact_rounding: 0, friction_rounding: 0}}}}
+interfaces: {{joint: {{kind: fracture, normal_stiffness: 1e11, shear_stiffness: 1e11, friction_angle: 30, cohesion: 0.1 MPa, cohesion_onset: 10, contact_rounding: 0, friction_rounding: 0}}}}
 geometry:
   domain: {{rectangle: {{width: 1.0, height: 3.0}}}}
   fractures: [{{name: plane, trace: [[-0.2, {:.17g}], [1.2, {:.17g}]], interface: joint}}]
   reference_spacing: 1.0
 boundaries: {{bottom: {{support: smooth}}}}
 stages:
-  - {{name: pressure, pressure: {{left: {}, right: {}, top: {}}}, steps: 1}}
-  - {{name: platen, strain: {{boundary: top, value: 1e-4}}, platens: smooth, steps: 20}}
+  - {{name: pressure, pressure: {{left: 0.2 MPa, right: 0.2 MPa, top: 0.2 MPa}}, steps: 1}}
+  - {{name: platen, {}, platens: smooth, steps: 20}}
 )",
-                                              c, 1.5 - rise, 1.5 + rise, p3, p3, p3);
-        const auto run = run_scene(scene);
+                       1.5 - rise, 1.5 + rise, platen);
+}
+
+// Jaeger: p1 - p3 = 2 (c + p3 tan phi)/((1 - tan phi cot beta) sin 2 beta).
+double jaegers_stress(double beta) {
+    const double c = 0.1e6, tan_phi = std::tan(30 * degree), p3 = 0.2e6;
+    return 2 * (c + p3 * tan_phi) / ((1 - tan_phi / std::tan(beta)) * std::sin(2 * beta));
+}
+
+TEST(Simulation, PlaneOfWeaknessSlipsAtJaegersStress) {
+    for (const double beta : {50 * degree, 60 * degree}) {
+        const auto run = run_scene(plane_of_weakness(beta, "strain: {boundary: top, value: 1e-4}"));
         ASSERT_EQ(run.report.status, RunStatus::done) << run.report.diagnosis;
-        const double expected =
-            2 * (c + p3 * std::tan(phi)) / ((1 - std::tan(phi) / std::tan(beta)) * std::sin(2 * beta));
-        EXPECT_NEAR(run.history.back().differential_stress, expected, 2e-3 * expected) << beta_degrees;
+        const double expected = jaegers_stress(beta);
+        EXPECT_NEAR(run.history.back().differential_stress, expected, 2e-3 * expected) << beta;
         EXPECT_EQ(run.report.crack_checks, 0);
     }
+}
+
+TEST(Simulation, BodyUnderAGivenStressCollapsesAtTheStepThatPassesJaegersStress) {
+    const double beta = 60 * degree;
+    const auto run = run_scene(plane_of_weakness(beta, "stress: {boundary: top, value: 1.1 MPa}"));
+    EXPECT_EQ(run.report.status, RunStatus::collapsed);
+    const double step = (1.1e6 - 0.2e6) / 20;
+    EXPECT_LT(run.history.back().differential_stress, jaegers_stress(beta));
+    EXPECT_GT(run.history.back().differential_stress, jaegers_stress(beta) - step);
 }
 
 const char* const bonded_pair = R"(

@@ -38,6 +38,8 @@ struct BlockMatrix {
     void set_zero();
     /// y = K x, sizes 6 n_blocks.
     void multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const;
+    /// y = K^T x.
+    void multiply_transposed(const Eigen::VectorXd& x, Eigen::VectorXd& y) const;
 };
 
 } // namespace kluft

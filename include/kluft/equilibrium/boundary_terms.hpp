@@ -29,13 +29,22 @@ struct PressureEdge {
 /// Adds minus the derivative of pressure_force to the block's diagonal entry.
 void add_pressure_tangent(const PressureEdge& edge, double pressure, Mat6& diagonal);
 
-/// direction . displacement(xi) of a block is prescribed to be `target` (m).
+/// direction . displacement(xi) of a block is prescribed to be target + rate * travel (m).
 struct PrescribedDisplacement {
     int block = 0;
     Vec2 xi = Vec2::Zero();
     Vec2 direction = Vec2::Zero();
     int boundary = 0;
     double target = 0.0;
+    double rate = 0.0; ///< not zero: moves with a rigid platen whose travel is unknown
+};
+
+/// The force on a rigid platen that its travel follows from: stress times the current width.
+struct PlatenForce {
+    double stress = 0.0;      ///< Pa, positive in compression
+    double width = 0.0;       ///< before loading (m)
+    Eigen::VectorXd widening; ///< derivative of the width by the unknowns
+    [[nodiscard]] double at(const Eigen::VectorXd& q) const { return stress * (width + widening.dot(q)); }
 };
 
 /// Prescribed displacements, block by block. They hold exactly: the unknowns move in the null space of the rows.
@@ -44,13 +53,14 @@ public:
     Constraints() = default;
     explicit Constraints(std::vector<PrescribedDisplacement> rows);
 
-    [[nodiscard]] bool empty() const { return rows_.empty(); }
     [[nodiscard]] const std::vector<PrescribedDisplacement>& rows() const { return rows_; }
     void set_target(int row, double target) { rows_[row].target = target; }
 
-    /// Least-norm change of q that fulfils the rows (zero where they hold). Where rows of a block contradict each
-    /// other it is the least-squares compromise.
+    /// Least-norm change of q that fulfils the rows (zero where they hold), with the travel that is nearest to q. Where
+    /// rows of a block contradict each other it is the least-squares compromise.
     void correction(const Eigen::VectorXd& q, Eigen::VectorXd& dq) const;
+    /// Least-norm motion of the unknowns (size n) for unit travel; zero without a travelling platen.
+    [[nodiscard]] Eigen::VectorXd travel_motion(Eigen::Index n) const;
     /// Removes the constrained part of a vector of unknowns or forces.
     void project(Eigen::VectorXd& v) const;
     /// K := P K P + scale (1 - P).
@@ -68,8 +78,5 @@ private:
     std::vector<PrescribedDisplacement> rows_;
     std::vector<Constrained> blocks_;
 };
-
-/// The row of a prescribed displacement over the six unknowns of its block.
-[[nodiscard]] Vec6 constraint_row(const PrescribedDisplacement& prescribed);
 
 } // namespace kluft

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -28,14 +29,16 @@ struct EquilibriumProblem {
     std::vector<double> densities; ///< per material (kg/m3); empty without gravity
     Vec2 gravity = Vec2::Zero();   ///< m/s2
     Constraints constraints;
-    std::vector<double> eta;      ///< per block, of the mass-like term (Pa/m2); empty switches it off
-    double least_mass_area = 0.0; ///< a block counts with at least this area in M (m2)
-    Eigen::VectorXd start;        ///< q_start of the mass-like term
+    std::optional<PlatenForce> platen_force; ///< on the platen whose travel is unknown
+    std::vector<double> eta;                 ///< per block, of the mass-like term (Pa/m2); empty switches it off
+    double least_mass_area = 0.0;            ///< a block counts with at least this area in M (m2)
+    Eigen::VectorXd start;                   ///< q_start of the mass-like term
 };
 
 enum class TangentKind {
-    exact,    ///< unsymmetric where points slide or pressures follow
-    symmetric ///< positive definite part: sliding points without shear stiffness, no load stiffness
+    exact,     ///< unsymmetric where points slide or pressures follow
+    symmetric, ///< positive definite part: sliding points without shear stiffness, no load stiffness
+    touching   ///< every point without a gap closed and locked: for a body that no load has closed yet
 };
 
 struct Residual {

@@ -38,8 +38,10 @@ public:
         : linear_solver_(linear_solver), options_(options) {}
 
     /// Newton with root finding on R . dq from the guess q, which becomes the last iterate. The linear solver must
-    /// have analysed `pattern`.
-    OpenCloseSummary solve(const EquilibriumProblem& problem, const BlockPattern& pattern, Eigen::VectorXd& q);
+    /// have analysed `pattern`. From an `unloaded` body, whose contacts carry no force yet and therefore have no
+    /// stiffness, the first increment takes the touching ones as closed.
+    OpenCloseSummary solve(const EquilibriumProblem& problem, const BlockPattern& pattern, Eigen::VectorXd& q,
+                           bool unloaded = false);
 
     /// Time spent so far in residuals and tangents (s).
     [[nodiscard]] double assembly_seconds() const { return assembly_seconds_; }
@@ -47,9 +49,10 @@ public:
 private:
     void evaluate(EquilibriumEvaluator& evaluator, const Eigen::VectorXd& q, Residual& residual);
     [[nodiscard]] bool find_increment(const EquilibriumProblem& problem, EquilibriumEvaluator& evaluator,
-                                      const Eigen::VectorXd& q, bool held);
+                                      const Eigen::VectorXd& q, bool held, TangentKind kind);
     void limit_increment(const BlockSystem& system);
-    [[nodiscard]] double free_norm(const EquilibriumProblem& problem, const Residual& residual);
+    void keep_free_part(const EquilibriumProblem& problem, const Eigen::VectorXd& q, Eigen::VectorXd& forces) const;
+    void add_travel(const EquilibriumProblem& problem, double out_of_balance);
     [[nodiscard]] double step_along_root(const EquilibriumProblem& problem, EquilibriumEvaluator& evaluator,
                                          const Eigen::VectorXd& q, double slope_at_zero);
     [[nodiscard]] double step_by_halving(const EquilibriumProblem& problem, EquilibriumEvaluator& evaluator,
@@ -64,8 +67,10 @@ private:
     Residual residual_;
     Residual trial_;
     Eigen::VectorXd prescribed_, right_side_, increment_, position_, scratch_;
-    std::vector<int> limited_;         ///< blocks whose motion limited the last increment
-    Eigen::VectorXd full_step_forces_; ///< residual at the end of the last full increment
+    Eigen::VectorXd travel_;                                ///< motion for unit travel of a platen under a given force
+    Eigen::VectorXd travel_column_, travel_row_, response_; ///< its column and row of the stiffness
+    std::vector<int> limited_;                              ///< blocks whose motion limited the last increment
+    Eigen::VectorXd full_step_forces_;                      ///< residual at the end of the last full increment
 };
 
 } // namespace kluft

@@ -25,6 +25,13 @@ using Mat6 = Eigen::Matrix<double, 6, 6>;
     return {v[0] + v[2] * xi.x() + v[4] * xi.y(), v[1] + v[3] * xi.x() + v[5] * xi.y()};
 }
 
+/// direction . displacement_at as a row over the six unknowns of the block.
+[[nodiscard]] inline Vec6 displacement_row(const Vec2& direction, const Vec2& xi) {
+    Vec6 row;
+    row << direction, xi.x() * direction, xi.y() * direction;
+    return row;
+}
+
 /// H = D/h of block `b`.
 [[nodiscard]] inline Mat2 displacement_gradient(const Eigen::VectorXd& q, int b, double size) {
     const double* v = q.data() + n_block_unknowns * b;

@@ -1,6 +1,7 @@
 // What a stage does to the outline: pressures, and platens that prescribe displacements.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "kluft/equilibrium/boundary_terms.hpp"
@@ -25,6 +26,12 @@ struct BoundaryFrame {
 /// Mean displacement of a boundary, weighted by length (m).
 [[nodiscard]] Vec2 mean_displacement(const BlockSystem& system, const Eigen::VectorXd& q, int boundary);
 
+/// The two boundaries across `boundary`, on the side of its normal turned clockwise first; empty if there are not two.
+[[nodiscard]] std::vector<int> lateral_boundaries(const BlockSystem& system, int boundary);
+
+/// The mean width between the lateral boundaries, for a platen on `boundary`: its length where there are none.
+[[nodiscard]] PlatenForce width_across(const BlockSystem& system, int boundary);
+
 /// The loads of one stage as functions of the load factor.
 class StageLoads {
 public:
@@ -36,6 +43,8 @@ public:
     [[nodiscard]] const Constraints& constraints() const { return constraints_; }
     /// Sets the targets of a load factor.
     void set_targets(Constraints& constraints, double load_factor) const;
+    /// The force on a platen that is loaded by stress.
+    [[nodiscard]] std::optional<PlatenForce> platen_force(double load_factor) const;
     [[nodiscard]] bool is_held(int boundary) const { return held_[boundary] != 0; }
     /// Boundaries under pressure at any time of the stage.
     [[nodiscard]] const std::vector<PressureEdge>& edges() const { return edges_; }
@@ -46,6 +55,9 @@ private:
     std::vector<PressureEdge> edges_;
     Constraints constraints_;
     std::vector<double> start_targets_, target_rates_;
+    std::optional<PlatenForce> platen_force_;
+    double start_platen_stress_ = 0.0;
+    double end_platen_stress_ = 0.0;
 };
 
 } // namespace kluft
