@@ -275,7 +275,7 @@ TEST(ContactDetection, SurfacesThatWereNoNeighboursTakeTheLawWithTheSmallerFrict
 TEST(BroadPhase, FindsThePairsThatAllPairsOfRandomBoxesHave) {
     for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
         Uniform uniform(seed);
-        std::vector<Box> boxes;
+        std::vector<BlockBox> boxes;
         for (int i = 0; i < 120; ++i) {
             const Vec2 lower(uniform(-5, 5), uniform(-2, 2));
             const double largest = i % 10 == 0 ? 3.0 : 0.4; // a few that span many cells

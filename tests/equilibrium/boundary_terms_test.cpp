@@ -122,8 +122,8 @@ TEST(Constraints, ProjectionIsIdempotentSymmetricAndLeavesNoMotionOfTheRows) {
     EXPECT_LT((twice - once).norm(), 1e-14 * v.norm());
     EXPECT_NEAR(once.dot(w), v.dot(of_w), 1e-13 * v.squaredNorm());
     for (const auto& row : constraints.rows()) {
-        EXPECT_NEAR(constraint_row(row).dot(once.segment<6>(6 * row.block)), 0.0, 1e-14);
-        EXPECT_GT(std::abs(constraint_row(row).dot(v.segment<6>(6 * row.block))), 1e-2);
+        EXPECT_NEAR(displacement_row(row.direction, row.xi).dot(once.segment<6>(6 * row.block)), 0.0, 1e-14);
+        EXPECT_GT(std::abs(displacement_row(row.direction, row.xi).dot(v.segment<6>(6 * row.block))), 1e-2);
     }
     // One row, two rows and two independent ones of three take five unknowns away.
     EXPECT_LT((once - v).segment<6>(6).norm(), 1e-15);
@@ -156,7 +156,7 @@ TEST(Constraints, ContradictingRowsAreMetInLeastSquares) {
     Eigen::Matrix<double, 3, 6> matrix;
     for (int i = 0; i < 3; ++i) {
         rows.push_back({3, Vec2(0.5 * (i - 1), 0.4), Vec2::UnitY(), 2, targets[i]});
-        matrix.row(i) = constraint_row(rows.back()).transpose();
+        matrix.row(i) = displacement_row(rows.back().direction, rows.back().xi).transpose();
     }
     Eigen::VectorXd dq;
     Constraints(rows).correction(at_rest(system), dq);
