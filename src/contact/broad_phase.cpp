@@ -13,21 +13,21 @@ struct CellEntry {
     int box;
 };
 
-bool meet(const Box& a, const Box& b, double distance) {
+bool meet(const BlockBox& a, const BlockBox& b, double distance) {
     return ((a.lower - b.upper).array() <= distance).all() && ((b.lower - a.upper).array() <= distance).all();
 }
 
 /// Side of the grid's cells: the mean box, grown; a body of very unequal blocks only makes lists longer.
-double cell_size(const std::vector<Box>& boxes, double reach) {
+double cell_size(const std::vector<BlockBox>& boxes, double reach) {
     double sum = 0.0;
-    for (const Box& box : boxes) sum += (box.upper - box.lower).maxCoeff();
+    for (const BlockBox& box : boxes) sum += (box.upper - box.lower).maxCoeff();
     return std::max(sum / static_cast<double>(boxes.size()) + 2.0 * reach, 1e-300);
 }
 
-std::vector<CellEntry> entries_by_cell(const std::vector<Box>& boxes, double reach) {
+std::vector<CellEntry> entries_by_cell(const std::vector<BlockBox>& boxes, double reach) {
     Vec2 lower = boxes.front().lower;
     Vec2 upper = boxes.front().upper;
-    for (const Box& box : boxes) {
+    for (const BlockBox& box : boxes) {
         lower = lower.cwiseMin(box.lower);
         upper = upper.cwiseMax(box.upper);
     }
@@ -40,7 +40,7 @@ std::vector<CellEntry> entries_by_cell(const std::vector<Box>& boxes, double rea
     std::vector<CellEntry> entries;
     entries.reserve(4 * boxes.size());
     for (int i = 0; i < static_cast<int>(boxes.size()); ++i) {
-        const Box& box = boxes[i];
+        const BlockBox& box = boxes[i];
         for (auto r = row(box.lower.y() - reach); r <= row(box.upper.y() + reach); ++r) {
             for (auto c = column(box.lower.x() - reach); c <= column(box.upper.x() + reach); ++c) {
                 entries.push_back({r * n_columns + c, i});
@@ -55,7 +55,7 @@ std::vector<CellEntry> entries_by_cell(const std::vector<Box>& boxes, double rea
 
 } // namespace
 
-std::vector<std::pair<int, int>> meeting_boxes(const std::vector<Box>& boxes, double reach) {
+std::vector<std::pair<int, int>> meeting_boxes(const std::vector<BlockBox>& boxes, double reach) {
     std::vector<std::pair<int, int>> pairs;
     if (boxes.empty()) return pairs;
     const auto entries = entries_by_cell(boxes, reach);
@@ -64,8 +64,8 @@ std::vector<std::pair<int, int>> meeting_boxes(const std::vector<Box>& boxes, do
         while (last < entries.size() && entries[last].cell == entries[first].cell) ++last;
         for (std::size_t i = first; i < last; ++i) {
             for (std::size_t j = i + 1; j < last; ++j) {
-                const Box& a = boxes[entries[i].box];
-                const Box& b = boxes[entries[j].box];
+                const BlockBox& a = boxes[entries[i].box];
+                const BlockBox& b = boxes[entries[j].box];
                 if (meet(a, b, 2.0 * reach)) pairs.emplace_back(std::min(a.block, b.block), std::max(a.block, b.block));
             }
         }

@@ -62,8 +62,8 @@ Surface current_surface(const BlockSystem& system, const ContactSurfaces& surfac
     return surface;
 }
 
-Box bounding_box(const Surface& surface) {
-    Box box{surface.block, surface.edges.front().start, surface.edges.front().start};
+BlockBox bounding_box(const Surface& surface) {
+    BlockBox box{surface.block, surface.edges.front().start, surface.edges.front().start};
     for (const auto& edge : surface.edges) {
         box.lower = box.lower.cwiseMin(edge.start).cwiseMin(edge.end);
         box.upper = box.upper.cwiseMax(edge.start).cwiseMax(edge.end);
@@ -247,7 +247,7 @@ DetectedContacts detect_contacts(const BlockSystem& system, const ContactSurface
                                  double reach, const std::vector<ContactMemory>& memory) {
     std::vector<Surface> touching;
     std::vector<int> index(system.blocks.size(), -1);
-    std::vector<Box> boxes;
+    std::vector<BlockBox> boxes;
     for (int b = 0; b < system.n_blocks(); ++b) {
         Surface surface = current_surface(system, surfaces, q, b);
         if (surface.edges.empty()) continue;

@@ -96,7 +96,7 @@ struct Layout {
 
 Layout layout_of(const Box& box, int n_panels, double column_height, const Vec2& largest) {
     Layout layout;
-    const Vec2 extent = (box.high - box.low).cwiseMax(Vec2(1e-12, 1e-12));
+    const Vec2 extent = (box.upper - box.lower).cwiseMax(Vec2(1e-12, 1e-12));
     layout.n_panels = n_panels;
     layout.scale = std::min(largest.x() / extent.x(), largest.y() / extent.y());
     layout.panel_size = layout.scale * extent;

@@ -172,8 +172,8 @@ Box box_of(const DrawnBody& body) {
         for (std::size_t e = 0; e < body.system.blocks[i].edges.size(); ++e) {
             const Vec2 x =
                 edge_start(body.system, body.system.blocks[i].edges[e]) + body.displacement[body.first[i] + e];
-            box.low = box.low.cwiseMin(x).cwiseMax(lowest);
-            box.high = box.high.cwiseMax(x).cwiseMin(highest);
+            box.lower = box.lower.cwiseMin(x).cwiseMax(lowest);
+            box.upper = box.upper.cwiseMax(x).cwiseMin(highest);
         }
     return box;
 }

@@ -6,26 +6,21 @@
 #include <vector>
 
 #include "kluft/blocks/block_system.hpp"
+#include "kluft/geometry/polygon.hpp"
 #include "kluft/output/canvas.hpp"
 #include "kluft/simulation/step_record.hpp"
 
 namespace kluft {
 
-/// A box in the body's coordinates (m).
-struct Box {
-    Vec2 low = Vec2::Zero();
-    Vec2 high = Vec2::Zero();
-};
-
 /// A rectangle of the page that shows a box of the body, y up.
 struct Panel {
     Vec2 corner = Vec2::Zero(); ///< upper left, points
-    Box box;
-    double scale = 1.0; ///< points per metre
+    Box box;                    ///< of the body, local coordinates (m)
+    double scale = 1.0;         ///< points per metre
 
-    [[nodiscard]] Vec2 size() const { return scale * (box.high - box.low); }
+    [[nodiscard]] Vec2 size() const { return scale * (box.upper - box.lower); }
     [[nodiscard]] Vec2 place(const Vec2& x) const {
-        return {corner.x() + scale * (x.x() - box.low.x()), corner.y() + scale * (box.high.y() - x.y())};
+        return {corner.x() + scale * (x.x() - box.lower.x()), corner.y() + scale * (box.upper.y() - x.y())};
     }
 };
 

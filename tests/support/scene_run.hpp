@@ -17,6 +17,7 @@ struct SceneRun {
     State state;
     RunReport report;
     std::vector<StepRecord> history; ///< load steps, step 0 first
+    std::vector<FieldRecord> fields; ///< of the load steps
     std::vector<StepRecord> equilibria;
     std::vector<CrackRecord> cracks;
 };
@@ -26,8 +27,9 @@ public:
     explicit RecordingObserver(SceneRun& run) : run_(run) {}
     void equilibrium(const StepRecord& record) override { run_.equilibria.push_back(record); }
     void crack(const CrackRecord& crack) override { run_.cracks.push_back(crack); }
-    void step(const StepRecord& record, const State&, const std::function<FieldRecord()>&, bool) override {
+    void step(const StepRecord& record, const State&, const std::function<FieldRecord()>& fields, bool) override {
         run_.history.push_back(record);
+        run_.fields.push_back(fields());
     }
 
 private:

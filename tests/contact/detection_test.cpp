@@ -1,0 +1,369 @@
+#include "kluft/contact/detection.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <set>
+#include <tuple>
+
+#include <gtest/gtest.h>
+
+#include "kluft/contact/broad_phase.hpp"
+#include "support/lattice_body.hpp"
+
+namespace kluft {
+namespace {
+
+using cut_scenes::Uniform;
+
+constexpr double reach = 0.1;
+
+/// A rectangle cut by traces, whose type is their number; all of them are fractures with the friction of `friction`.
+struct CutRectangle {
+    CutRectangle(double width, double height, const std::vector<std::vector<Vec2>>& traces) {
+        GeometrySpec spec = cut_scenes::rectangle(width, height);
+        for (const auto& points : traces) cut_scenes::add_trace(spec, points, static_cast<int>(spec.fractures.size()));
+        system = cut_blocks(spec).system;
+        for (const Interface& interface : system.interfaces) surfaces.law.push_back(interface.interface_type);
+        surfaces.bonded.assign(system.interfaces.size(), 0);
+        surfaces.friction.assign(traces.size(), 0.5);
+        q = at_rest(system);
+    }
+    /// Turns block b by an angle about a point of it, then moves it by u.
+    void move(int b, const Vec2& u, double angle = 0.0, const Vec2& pivot = Vec2::Zero()) {
+        const Mat2 gradient = rotation_by(angle) - Mat2::Identity();
+        set_motion(system, b, u + gradient * (system.blocks[b].centroid - pivot), gradient, q);
+    }
+    [[nodiscard]] std::vector<ContactPoint> points(const std::vector<ContactMemory>& memory = {}) const {
+        return detect_contacts(system, surfaces, q, reach, memory).points;
+    }
+    [[nodiscard]] double gap(const ContactPoint& point) const { return point.normal.dot(relative_position(point, q)); }
+    [[nodiscard]] Vec2 place_on_a(const ContactPoint& point) const {
+        const Block& block = system.blocks[point.block_a];
+        return block.centroid + block.size * point.xi_a + displacement_at(q, point.block_a, point.xi_a);
+    }
+
+    BlockSystem system;
+    ContactSurfaces surfaces;
+    Eigen::VectorXd q;
+};
+
+/// Two blocks of 2 m x 1 m, 0 below 1.
+CutRectangle two_blocks() { return {2.0, 2.0, {{{-1, 1}, {3, 1}}}}; }
+
+void expect_points(const CutRectangle& body, const std::vector<Vec2>& places, const std::vector<double>& weights,
+                   const std::vector<double>& gaps, const Vec2& normal) {
+    const auto points = body.points();
+    ASSERT_EQ(points.size(), places.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        EXPECT_LT((body.place_on_a(points[i]) - places[i]).norm(), 1e-12) << i;
+        EXPECT_NEAR(points[i].weight, weights[i], 1e-12) << i;
+        EXPECT_NEAR(body.gap(points[i]), gaps[i], 1e-12) << i;
+        EXPECT_LT((points[i].normal - normal).norm(), 1e-12) << i;
+        EXPECT_LT((points[i].tangent - Vec2(-normal.y(), normal.x())).norm(), 1e-12) << i;
+    }
+}
+
+// Gauss-Lobatto (Simpson) on the whole edge of 2 m: weights 1/6, 4/6, 1/6 of it at its ends and its middle.
+TEST(ContactDetection, ClosedFractureHasThePointsOfSimpsonsRule) {
+    const auto body = two_blocks();
+    expect_points(body, {{2, 1}, {1, 1}, {0, 1}}, {2.0 / 6, 8.0 / 6, 2.0 / 6}, {0, 0, 0}, {0, 1});
+    for (const ContactPoint& point : body.points()) {
+        EXPECT_EQ(point.interface, 0);
+        EXPECT_EQ(point.offset, Vec2(0.0, 0.0));
+    }
+}
+
+// Shifted by 0.5 m along and 0.01 m into the lower block: an overlap of 1.5 m with a gap of -0.01 m.
+TEST(ContactDetection, ShiftedBlocksTouchOnTheirOverlap) {
+    auto body = two_blocks();
+    body.move(1, {0.5, -0.01});
+    expect_points(body, {{2, 1}, {1.25, 1}, {0.5, 1}}, {0.25, 1.0, 0.25}, {-0.01, -0.01, -0.01}, {0, 1});
+}
+
+// Blocks turned as a whole touch at the turned places; lengths and gaps are the same.
+TEST(ContactDetection, PointsTurnWithTheBody) {
+    auto body = two_blocks();
+    body.move(1, {0.5, -0.01});
+    const double angle = 2.0;
+    const Mat2 rotation = rotation_by(angle);
+    body.q = turned(body.system, body.q, rotation);
+    expect_points(body, {rotation * Vec2(2, 1), rotation * Vec2(1.25, 1), rotation * Vec2(0.5, 1)}, {0.25, 1.0, 0.25},
+                  {-0.01, -0.01, -0.01}, rotation * Vec2(0, 1));
+}
+
+// Tilted by theta about the left end of the joint: along the bisector the overlap is 2 cos(theta/2) long, and the far
+// ends are 2 * 2 sin(theta/2) apart across it.
+TEST(ContactDetection, TiltedBlocksTouchAlongTheBisectorOfTheirEdges) {
+    auto body = two_blocks();
+    const double theta = 0.1, half = 0.5 * theta;
+    body.move(1, {0, 0}, theta, {0, 1});
+    const double length = 2 * std::cos(half), far = 4 * std::sin(half);
+    expect_points(body, {{2, 1}, {1, 1}, {0, 1}}, {length / 6, 4 * length / 6, length / 6}, {far, far / 2, 0},
+                  {-std::sin(half), std::cos(half)});
+}
+
+TEST(ContactDetection, PointsAreKeptUpToTheReachAndNoFurther) {
+    auto body = two_blocks();
+    body.move(1, {0, 0.999 * reach});
+    EXPECT_EQ(body.points().size(), 3U);
+    body.move(1, {0, 1.001 * reach});
+    EXPECT_TRUE(body.points().empty());
+    body.move(1, {2.001, -0.01}); // past its end
+    EXPECT_TRUE(body.points().empty());
+}
+
+/// Block 0 below, a wedge (2) with its tip at (1.5, 1.2) and, between them, a block (1) that is taken away.
+CutRectangle wedge_above_floor(const Vec2& u) {
+    CutRectangle body(3.0, 2.0, {{{-1, 1}, {4, 1}}, {{0.9, 2.1}, {1.5, 1.2}, {2.1, 2.1}}});
+    body.move(1, {100.0, 0.0});
+    body.move(2, u);
+    return body;
+}
+
+// The tip at (1.7, 0.99) against the floor at y = 1, with the normal from the wedge into the floor. Its sides rise by 56
+// degrees, so they do not face the floor.
+TEST(ContactDetection, TipOfAWedgeTouchesTheFloorAsOneVertex) {
+    const auto body = wedge_above_floor({0.2, -0.21});
+    ASSERT_EQ(body.system.n_blocks(), 3);
+    const auto points = body.points();
+    ASSERT_EQ(points.size(), 1U);
+    const ContactPoint& tip = points.front();
+    EXPECT_EQ(tip.block_a, 2);
+    EXPECT_EQ(tip.block_b, 0);
+    EXPECT_EQ(tip.key.point, -1);
+    EXPECT_LT((body.place_on_a(tip) - Vec2(1.7, 0.99)).norm(), 1e-12);
+    EXPECT_NEAR(body.gap(tip), -0.01, 1e-12);
+    EXPECT_LT((tip.normal - Vec2(0, -1)).norm(), 1e-12);
+    EXPECT_LT((tip.tangent - Vec2(1, 0)).norm(), 1e-12);
+    EXPECT_NEAR(tip.weight, 0.2 * body.system.blocks[2].size, 1e-12); // theory, section 4; the floor's edge is longer
+    EXPECT_EQ(tip.interface, -1);
+}
+
+TEST(ContactDetection, TipOfAWedgeIsSeenWithinTheReachAndAboveTheFloorOnly) {
+    EXPECT_EQ(wedge_above_floor({0.2, -0.2 + 0.999 * reach}).points().size(), 1U);
+    EXPECT_TRUE(wedge_above_floor({0.2, -0.2 + 1.001 * reach}).points().empty());
+    EXPECT_TRUE(wedge_above_floor({1.6, -0.21}).points().empty()); // beside the floor, which ends at x = 3
+}
+
+// Two blocks on a floor with a joint between them slide along it: one comes to rest on the part of the floor that the
+// other has left. All of the overlap carries: 1 m of the left block, 0.7 m of the right one.
+TEST(ContactDetection, BlockThatSlidesPastAJointOfTheFloorRestsOnAllOfIt) {
+    CutRectangle body(2.0, 2.0, {{{-1, 1}, {3, 1}}, {{1, 1}, {1, 3}}});
+    ASSERT_EQ(body.system.n_blocks(), 3);
+    body.move(1, {0.3, -0.001});
+    body.move(2, {0.3, -0.001});
+    double left = 0.0, right = 0.0;
+    for (const ContactPoint& point : body.points()) {
+        if (point.block_a == 0 && point.block_b == 1) left += point.weight;
+        if (point.block_a == 0 && point.block_b == 2) right += point.weight;
+    }
+    EXPECT_NEAR(left, 1.0, 1e-9);
+    EXPECT_NEAR(right, 0.7, 1e-9);
+}
+
+// Where hexagons meet at rest, only the two sides of each interface touch: three points each, no corners.
+TEST(ContactDetection, NetAtRestHasThePointsOfItsInterfacesOnly) {
+    GeometrySpec spec = hexagon_spec(0.7, 0.6, 0.1, {0.03, 0.04});
+    cut_scenes::add_trace(spec, {{-0.1, 0.1}, {0.8, 0.45}});
+    const BlockSystem system = cut_blocks(spec).system;
+    const std::vector<InterfaceLaw> laws(1);
+    const auto points =
+        detect_contacts(system, surfaces_of(system, {0}, laws), at_rest(system), 0.1 * system.spacing, {}).points;
+    EXPECT_EQ(points.size(), 3 * system.interfaces.size());
+    for (const ContactPoint& point : points) {
+        EXPECT_GE(point.interface, 0);
+        EXPECT_EQ(point.offset, Vec2(0.0, 0.0));
+    }
+}
+
+// ---- bonds ---------------------------------------------------------------------------------------------------------
+
+TEST(ContactDetection, BondedPairsAreNotSearched) {
+    auto body = two_blocks();
+    body.surfaces.bonded = {1};
+    body.move(1, {0.5, -0.01});
+    const auto detected = detect_contacts(body.system, body.surfaces, body.q, reach, {});
+    EXPECT_TRUE(detected.points.empty());
+    EXPECT_TRUE(detected.near_pairs.empty());
+}
+
+// Of two interfaces between the same two blocks one has failed: it alone touches, with its own points.
+TEST(ContactDetection, BondedPairTouchesOnItsOwnBrokenInterfaceOnly) {
+    CutRectangle body(2.0, 2.0, {{{-1, 1}, {1, 1.1}, {3, 1}}});
+    ASSERT_EQ(body.system.n_interfaces(), 2);
+    body.move(1, {0.3, -0.02});
+    const auto n_free = body.points().size();
+    body.surfaces.bonded = {0, 1};
+    const auto points = body.points();
+    EXPECT_EQ(points.size(), 3U);
+    EXPECT_GT(n_free, 6U); // both interfaces and what has come over the corner
+    for (const ContactPoint& point : points) EXPECT_EQ(point.interface, 0);
+}
+
+// ---- histories -----------------------------------------------------------------------------------------------------
+
+TEST(ContactDetection, PointsThatPersistKeepTheirHistoryAndOthersStartAnew) {
+    auto body = two_blocks();
+    std::vector<ContactMemory> memory;
+    for (const ContactPoint& point : body.points()) {
+        memory.push_back({point.key, {1e5 * (1 + point.key.point), 1e-3 * point.key.point}});
+    }
+    memory.erase(memory.begin() + 1);
+    body.move(1, {0.4, -0.01}, 0.01, {0, 1});
+    const auto points = body.points(memory);
+    ASSERT_EQ(points.size(), 3U);
+    EXPECT_EQ(points[0].history.shear_trial, 1e5);
+    EXPECT_EQ(points[1].history.shear_trial, 0.0);
+    EXPECT_EQ(points[1].history.dilation, 0.0);
+    EXPECT_EQ(points[2].history.shear_trial, 3e5);
+    EXPECT_EQ(points[2].history.dilation, 2e-3);
+}
+
+// Slip counts from where the history was kept: it is zero at detection, however far the blocks have moved.
+TEST(ContactDetection, SlipStartsFromTheStateOfDetection) {
+    auto body = two_blocks();
+    body.move(1, {0.4, -0.01}, 0.02, {0, 1});
+    for (const ContactPoint& point : body.points()) {
+        EXPECT_EQ(point.tangent.dot(relative_position(point, body.q)) - point.slip_start, 0.0);
+    }
+}
+
+TEST(ContactDetection, PointsAndPairsAreSorted) {
+    GeometrySpec spec = hexagon_spec(0.7, 0.6, 0.1);
+    const BlockSystem system = cut_blocks(spec).system;
+    const std::vector<InterfaceLaw> laws(1);
+    Uniform uniform(8);
+    const auto q = random_motion(system, 0.01, uniform);
+    const auto detected = detect_contacts(system, surfaces_of(system, {0}, laws), q, 0.01, {});
+    EXPECT_TRUE(std::ranges::is_sorted(detected.points, {}, &ContactPoint::key));
+    EXPECT_EQ(std::ranges::adjacent_find(detected.points, {}, &ContactPoint::key), detected.points.end());
+    EXPECT_TRUE(std::ranges::is_sorted(detected.near_pairs));
+    for (const ContactPoint& point : detected.points) {
+        const std::pair pair(std::min(point.block_a, point.block_b), std::max(point.block_a, point.block_b));
+        EXPECT_TRUE(std::ranges::binary_search(detected.near_pairs, pair));
+    }
+}
+
+// ---- laws ----------------------------------------------------------------------------------------------------------
+
+// Left, middle and right block with a joint of type 0 and one of type 1; the middle is taken away and the right one put
+// in its place or on the other side.
+TEST(ContactDetection, SurfacesThatWereNoNeighboursTakeTheLawWithTheSmallerFriction) {
+    CutRectangle body(3.0, 1.0, {{{1, -1}, {1, 2}}, {{2, -1}, {2, 2}}});
+    body.surfaces.default_law = 7;
+    body.move(1, {0.0, 100.0});
+    body.move(2, {-1.0, 0.0});
+    const auto law = [&] {
+        const auto points = body.points();
+        EXPECT_EQ(points.size(), 3U);
+        EXPECT_EQ(points.front().interface, -1);
+        return points.front().law;
+    };
+    body.surfaces.friction = {0.3, 0.7};
+    EXPECT_EQ(law(), 0);
+    body.surfaces.friction = {0.7, 0.3};
+    EXPECT_EQ(law(), 1);
+    body.move(2, {-3.0, 0.0}); // the right outline against the left one
+    EXPECT_EQ(law(), 7);
+}
+
+// ---- brute force ---------------------------------------------------------------------------------------------------
+
+// All pairs, without a grid.
+TEST(BroadPhase, FindsThePairsThatAllPairsOfRandomBoxesHave) {
+    for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
+        Uniform uniform(seed);
+        std::vector<BlockBox> boxes;
+        for (int i = 0; i < 120; ++i) {
+            const Vec2 lower(uniform(-5, 5), uniform(-2, 2));
+            const double largest = i % 10 == 0 ? 3.0 : 0.4; // a few that span many cells
+            boxes.push_back({2 * i + 1, lower, lower + Vec2(uniform(0, largest), uniform(0, largest))});
+        }
+        const double grown = 0.05;
+        std::vector<std::pair<int, int>> expected;
+        for (std::size_t i = 0; i < boxes.size(); ++i) {
+            for (std::size_t j = i + 1; j < boxes.size(); ++j) {
+                bool apart = false;
+                for (int k = 0; k < 2; ++k) {
+                    apart = apart || boxes[i].lower[k] - grown > boxes[j].upper[k] + grown ||
+                            boxes[j].lower[k] - grown > boxes[i].upper[k] + grown;
+                }
+                if (!apart) expected.emplace_back(boxes[i].block, boxes[j].block);
+            }
+        }
+        EXPECT_GT(expected.size(), 100U);
+        EXPECT_EQ(meeting_boxes(boxes, grown), expected) << seed;
+    }
+}
+
+TEST(BroadPhase, OfNoBoxesHasNoPairs) { EXPECT_TRUE(meeting_boxes({}, 0.1).empty()); }
+
+using EdgePair = std::tuple<int, int, int, int>;
+
+/// Overlap of each pair of facing edges of different blocks, along the bisector; from positions, without a broad phase.
+std::map<EdgePair, double> overlaps_of_all_pairs(const BlockSystem& system, const Eigen::VectorXd& q,
+                                                 double largest_gap) {
+    std::map<EdgePair, double> overlaps;
+    for (int a = 0; a < system.n_blocks(); ++a) {
+        for (int b = a + 1; b < system.n_blocks(); ++b) {
+            for (std::size_t e = 0; e < system.blocks[a].edges.size(); ++e) {
+                for (std::size_t f = 0; f < system.blocks[b].edges.size(); ++f) {
+                    const Edge& edge_a = system.blocks[a].edges[e];
+                    const Edge& edge_b = system.blocks[b].edges[f];
+                    const Vec2 p = current_position(system, q, a, edge_a.start);
+                    const Vec2 r = current_position(system, q, a, edge_a.end);
+                    const Vec2 s = current_position(system, q, b, edge_b.end); // along a's direction
+                    const Vec2 t = current_position(system, q, b, edge_b.start);
+                    const Vec2 u = (r - p).normalized(), v = (t - s).normalized();
+                    if (std::atan2(std::abs(cross(u, v)), u.dot(v)) > std::numbers::pi / 4) continue;
+                    const bool wedge_between = edge_a.start == edge_b.end || edge_a.end == edge_b.start;
+                    if (wedge_between && edge_a.interface != edge_b.interface) continue;
+                    const Vec2 along = (u + v).normalized();
+                    const double low = std::max(along.dot(p), along.dot(s));
+                    const double high = std::min(along.dot(r), along.dot(t));
+                    if (high <= low) continue;
+                    const auto across = [&](double at, const Vec2& from, const Vec2& direction) {
+                        const Vec2 on = from + direction * (at - along.dot(from)) / along.dot(direction);
+                        return on.dot(right_normal(along));
+                    };
+                    const double gap =
+                        std::min(across(low, s, v) - across(low, p, u), across(high, s, v) - across(high, p, u));
+                    if (gap > largest_gap || gap < -0.25 * std::min(system.blocks[a].size, system.blocks[b].size))
+                        continue;
+                    overlaps[{a, static_cast<int>(e), b, static_cast<int>(f)}] = high - low;
+                }
+            }
+        }
+    }
+    return overlaps;
+}
+
+TEST(ContactDetection, FindsTheOverlapsThatAllPairsOfRandomlyMovedHexagonsHave) {
+    for (const std::uint64_t seed : {1U, 2U, 3U}) {
+        GeometrySpec spec = hexagon_spec(0.7, 0.6, 0.1, {0.03, 0.04});
+        spec.tessellation->hexagons.jitter = 0.1;
+        spec.tessellation->hexagons.seed = seed;
+        cut_scenes::add_trace(spec, {{-0.1, 0.1}, {0.8, 0.45}});
+        const BlockSystem system = cut_blocks(spec).system;
+        Uniform uniform(seed);
+        const auto q = random_motion(system, 0.02, uniform);
+        const std::vector<InterfaceLaw> laws(1);
+        std::map<EdgePair, double> found;
+        for (const ContactPoint& point : detect_contacts(system, surfaces_of(system, {0}, laws), q, 0.01, {}).points) {
+            const ContactKey& key = point.key;
+            if (key.point >= 0) found[{key.block_a, key.edge_a, key.block_b, key.edge_b}] += point.weight;
+        }
+        const auto expected = overlaps_of_all_pairs(system, q, 0.01);
+        EXPECT_GT(expected.size(), system.interfaces.size() / 2);
+        ASSERT_EQ(found.size(), expected.size());
+        for (const auto& [pair, length] : expected) {
+            ASSERT_TRUE(found.contains(pair));
+            EXPECT_NEAR(found[pair], length, 1e-12);
+        }
+    }
+}
+
+} // namespace
+} // namespace kluft
