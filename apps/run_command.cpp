@@ -117,8 +117,8 @@ std::string closing_line(const RunReport& report, const RunSummary& summary, con
                             summary.numbers.peak_reached ? "" : " (still rising)");
     }
     text += fmt::format(", {} tension and {} shear cracks, {} solves, {:.1f} s; results in {}",
-                        summary.numbers.cracks_tension, summary.numbers.cracks_shear, summary.numbers.open_close_iterations,
-                        summary.elapsed_s, directory.string());
+                        summary.numbers.cracks_tension, summary.numbers.cracks_shear,
+                        summary.numbers.open_close_iterations, summary.elapsed_s, directory.string());
     if (summary.numbers.unbalanced_steps > 0)
         text += fmt::format("; {} steps unbalanced", summary.numbers.unbalanced_steps);
     return text;

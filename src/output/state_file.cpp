@@ -167,9 +167,8 @@ struct Writer {
     void operator()(const char* name, const RunCosts& costs) {
         const std::array counts{costs.open_close_iterations, costs.factorizations, costs.analyses};
         const RunSeconds& s = costs.seconds;
-        const std::array seconds{costs.elapsed_s, s.detection,     s.set_up,   s.assembly,
-                                 s.analysis,      s.factorization, s.solution, s.crack_check,
-                                 s.observers};
+        const std::array seconds{costs.elapsed_s, s.detection, s.set_up,      s.assembly, s.analysis,
+                                 s.factorization, s.solution,  s.crack_check, s.observers};
         write_array(file, (std::string(name) + "_counts").c_str(), counts.data(), counts.size());
         write_array(file, (std::string(name) + "_seconds").c_str(), seconds.data(), seconds.size());
     }

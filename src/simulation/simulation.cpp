@@ -40,6 +40,7 @@ struct Interrupted {};
 struct NoEquilibrium {
     int worst_block;
     double residual_ratio;
+    bool nothing_holds = false; ///< the body: there is neither a support nor a platen
 };
 
 using Clock = std::chrono::steady_clock;
@@ -90,7 +91,8 @@ public:
         } catch (const NoEquilibrium& failure) {
             const auto& motion = model_.loads.stages[work_.stage].motion;
             const bool by_stress = !motion || motion->control == PlatenControl::stress;
-            report_.status = by_stress && accepted_.step > 0 ? RunStatus::collapsed : RunStatus::no_equilibrium;
+            const bool is_limit = by_stress && accepted_.step > 0 && !failure.nothing_holds;
+            report_.status = is_limit ? RunStatus::collapsed : RunStatus::no_equilibrium;
             report_.diagnosis = diagnose(failure);
         } catch (const ResourceError& error) {
             report_.status = RunStatus::out_of_resources;
@@ -243,6 +245,8 @@ private:
                 smooth = false;
                 if (trial.converged()) commit(trial, from);
                 trial = relax(target, trial.summary.restless);
+                if (!trial.balanced && problem_.constraints.rows().empty())
+                    throw NoEquilibrium{last_worst_block_, trial.viscous_share, true};
             }
             double reached = target;
             if (by_events && trial.balanced) reached = locate_event(from, target, trial);
@@ -638,6 +642,7 @@ private:
     [[nodiscard]] std::string diagnose(const NoEquilibrium& failure) const {
         std::string text = fmt::format("no equilibrium in stage {} at load step {}: residual {:.2g} of the forces",
                                        work_.stage, work_.step + 1, failure.residual_ratio);
+        if (failure.nothing_holds) text += "; nothing holds the body, which has neither a support nor a platen";
         if (failure.worst_block < 0) return text;
         const Block& block = model_.system.blocks[failure.worst_block];
         const Vec2 at = model_.system.origin + block.centroid;

@@ -38,9 +38,10 @@ struct State {
     std::vector<double> boundary_axial;    ///< platen stress at the start of the stage, one per boundary, Pa
     double unbalanced_ratio = 0.0;
     int unbalanced_in_succession = 0;
-    Eigen::VectorXd displacement_rate;           ///< per unit of load factor, of a smooth last step; empty without one
-    std::vector<std::pair<int, int>> near_pairs; ///< blocks that the matrix was ordered for, besides those at interfaces
-    RunCosts costs;                              ///< so far
+    Eigen::VectorXd displacement_rate; ///< per unit of load factor, of a smooth last step; empty without one
+    std::vector<std::pair<int, int>>
+        near_pairs; ///< blocks that the matrix was ordered for, besides those at interfaces
+    RunCosts costs; ///< so far
 };
 
 } // namespace kluft
