@@ -25,7 +25,7 @@ State state_of(int n_blocks) {
     state.displacement = Eigen::VectorXd::LinSpaced(6 * n_blocks, -1.0 / 3.0, std::numeric_limits<double>::min());
     state.stage_start_displacement = 0.5 * state.displacement;
     state.reference_displacement = 0.25 * state.displacement;
-    state.last_increment = 0.1 * state.displacement;
+    state.displacement_rate = 0.1 * state.displacement;
     state.reference_set = true;
     state.interfaces = {InterfaceStatus::potential_crack, InterfaceStatus::fracture, InterfaceStatus::tension_crack,
                         InterfaceStatus::shear_crack};
@@ -45,7 +45,7 @@ void expect_same(const State& a, const State& b) {
     EXPECT_EQ(a.displacement, b.displacement);
     EXPECT_EQ(a.stage_start_displacement, b.stage_start_displacement);
     EXPECT_EQ(a.reference_displacement, b.reference_displacement);
-    EXPECT_EQ(a.last_increment, b.last_increment);
+    EXPECT_EQ(a.displacement_rate, b.displacement_rate);
     EXPECT_EQ(a.reference_set, b.reference_set);
     EXPECT_EQ(a.interfaces, b.interfaces);
     EXPECT_EQ(a.bond_shear, b.bond_shear);
