@@ -101,11 +101,12 @@ private:
         });
     }
 
-    /// Edges of the same interface may touch; others that share a vertex are kept apart by the block between them.
+    /// Edges of the same interface may touch. Of others, those that leave a common vertex to the same side have a block
+    /// between them; to opposite sides of it, one block slides past the vertex onto the edge of the other.
     [[nodiscard]] bool may_touch(const Edge& a, const Edge& b) const {
         if (a.interface >= 0 && a.interface == b.interface) return true;
         if (bonded_pair_) return false;
-        return a.start != b.start && a.start != b.end && a.end != b.start && a.end != b.end;
+        return a.start != b.end && a.end != b.start;
     }
 
     [[nodiscard]] int law_between(const Edge& a, const Edge& b) const {

@@ -110,7 +110,7 @@ TEST(ContactDetection, PointsAreKeptUpToTheReachAndNoFurther) {
     EXPECT_EQ(body.points().size(), 3U);
     body.move(1, {0, 1.001 * reach});
     EXPECT_TRUE(body.points().empty());
-    body.move(1, {2.001, -0.01}); // past its end
+    body.move(1, {2.0 + 1.001 * reach, -0.01}); // past its end
     EXPECT_TRUE(body.points().empty());
 }
 
@@ -144,7 +144,7 @@ TEST(ContactDetection, TipOfAWedgeTouchesTheFloorAsOneVertex) {
 TEST(ContactDetection, TipOfAWedgeIsSeenWithinTheReachAndAboveTheFloorOnly) {
     EXPECT_EQ(wedge_above_floor({0.2, -0.2 + 0.999 * reach}).points().size(), 1U);
     EXPECT_TRUE(wedge_above_floor({0.2, -0.2 + 1.001 * reach}).points().empty());
-    EXPECT_TRUE(wedge_above_floor({1.6, -0.21}).points().empty()); // beside the floor, which ends at x = 3
+    EXPECT_TRUE(wedge_above_floor({1.8, -0.21}).points().empty()); // beside the floor, which ends at x = 3
 }
 
 // Two blocks on a floor with a joint between them slide along it: one comes to rest on the part of the floor that the
@@ -163,11 +163,27 @@ TEST(ContactDetection, BlockThatSlidesPastAJointOfTheFloorRestsOnAllOfIt) {
     EXPECT_NEAR(right, 0.7, 1e-9);
 }
 
+// A floor that rises by 10 degrees beyond its joint: the block that slides 0.1 m past it meets the rise. Along the
+// bisector the overlap there is 0.1 cos(5) long and, at the block's corner, 2 * 0.1 sin(5) deep.
+TEST(ContactDetection, BlockThatSlidesAgainstARisingFloorMeetsIt) {
+    const double rise = std::tan(10 * std::numbers::pi / 180);
+    CutRectangle body(2.0, 2.0, {{{-1, 1}, {1, 1}, {3, 1 + 2 * rise}}, {{1, 1}, {1, 3}}});
+    ASSERT_EQ(body.system.n_blocks(), 3);
+    body.move(2, {0.0, 100.0});
+    body.move(1, {0.1, 0.0});
+    double deepest = 0.0, length = 0.0;
+    for (const ContactPoint& point : body.points()) {
+        deepest = std::min(deepest, body.gap(point));
+        length += point.weight;
+    }
+    const double half = 5 * std::numbers::pi / 180;
+    EXPECT_NEAR(deepest, -0.2 * std::sin(half), 1e-12);
+    EXPECT_NEAR(length, 0.9 + 0.1 * std::cos(half), 1e-12);
+}
+
 // Where hexagons meet at rest, only the two sides of each interface touch: three points each, no corners.
 TEST(ContactDetection, NetAtRestHasThePointsOfItsInterfacesOnly) {
-    GeometrySpec spec = hexagon_spec(0.7, 0.6, 0.1, {0.03, 0.04});
-    cut_scenes::add_trace(spec, {{-0.1, 0.1}, {0.8, 0.45}});
-    const BlockSystem system = cut_blocks(spec).system;
+    const BlockSystem system = cut_blocks(hexagon_spec(0.7, 0.6, 0.1, {0.03, 0.04})).system;
     const std::vector<InterfaceLaw> laws(1);
     const auto points =
         detect_contacts(system, surfaces_of(system, {0}, laws), at_rest(system), 0.1 * system.spacing, {}).points;
