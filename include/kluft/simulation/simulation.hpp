@@ -42,7 +42,7 @@ struct RunReport {
 [[nodiscard]] State initial_state(const Model& model);
 
 /// Runs the stages from `state` on, which is always left at the last committed load step. `stop` is looked at between
-/// solves. Throws ResourceError out of memory.
+/// solves. A repeatable run leaves the BLAS of the process with one thread. Throws ResourceError out of memory.
 RunReport run_simulation(const Model& model, const CrackOptions& cracks, const SolverOptions& solver, State& state,
                          StepObserver& observer, const std::atomic<bool>& stop);
 
