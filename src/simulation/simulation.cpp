@@ -721,6 +721,7 @@ State initial_state(const Model& model) {
 
 RunReport run_simulation(const Model& model, const CrackOptions& cracks, const SolverOptions& solver, State& state,
                          StepObserver& observer, const std::atomic<bool>& stop) {
+    if (solver.repeatable) set_blas_threads(1);
     return Run(model, cracks, solver, state, observer, stop).run();
 }
 

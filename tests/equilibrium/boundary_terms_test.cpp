@@ -166,6 +166,50 @@ TEST(Constraints, ContradictingRowsAreMetInLeastSquares) {
     EXPECT_NEAR(dq.norm(), expected.norm(), 1e-16);
 }
 
+/// Three vertices of two blocks on a platen that travels downward, and a block on a fixed one.
+std::vector<PrescribedDisplacement> travelling_rows() {
+    return {{0, {-0.5, 0.5}, Vec2::UnitY(), 2, 1e-3, -1.0},
+            {0, {0.5, 0.5}, Vec2::UnitY(), 2, 2e-3, -1.0},
+            {1, {0.0, 0.5}, Vec2::UnitY(), 2, 3e-3, -1.0},
+            {4, {0.0, -0.5}, Vec2::UnitY(), 0, 0.0, 0.0}};
+}
+
+// A platen that travels by 5 mm: its rows hold at target - 5 mm, the others at their own.
+TEST(Constraints, RowsOfATravellingPlatenFollowItTogether) {
+    const BlockSystem system = hexagons();
+    const Constraints constraints(travelling_rows());
+    Eigen::VectorXd dq;
+    constraints.correction(at_rest(system), dq);
+    const Eigen::VectorXd q = dq + 5e-3 * constraints.travel_motion(dq.size());
+    const double travel = (1e-3 - displacement_at(q, 0, {-0.5, 0.5}).y());
+    for (const auto& row : constraints.rows()) {
+        EXPECT_NEAR(displacement_at(q, row.block, row.xi).y(), row.target + row.rate * travel, 1e-16);
+    }
+    constraints.correction(q, dq);
+    EXPECT_LT(dq.norm(), 1e-15); // holds wherever the platen is
+}
+
+// Least squares: the platen comes to where it misses its vertices least, the mean of what they lack.
+TEST(Constraints, CorrectionLeavesATravellingPlatenWhereItsVerticesAre) {
+    const BlockSystem system = hexagons();
+    const Constraints constraints(travelling_rows());
+    Eigen::VectorXd q = at_rest(system);
+    const double heights[] = {1e-3 - 4e-3, 2e-3 - 5e-3, 3e-3 - 9e-3}; // on the way down by 4, 5 and 9 mm: 6 mm
+    set_motion(system, 1, {0.0, heights[2]}, Mat2::Zero(), q);
+    const double slope = (heights[1] - heights[0]) / system.blocks[0].size;
+    Mat2 turn;
+    turn << 0, 0, slope, 0;
+    set_motion(system, 0, {0.0, 0.5 * (heights[0] + heights[1])}, turn, q);
+    Eigen::VectorXd dq;
+    constraints.correction(q, dq);
+    const double reached[] = {1e-3 - 6e-3, 2e-3 - 6e-3, 3e-3 - 6e-3};
+    for (int i = 0; i < 3; ++i) {
+        const auto& row = constraints.rows()[i];
+        EXPECT_NEAR(displacement_at(q, row.block, row.xi).y(), heights[i], 1e-16);
+        EXPECT_NEAR(displacement_at(q + dq, row.block, row.xi).y(), reached[i], 1e-16);
+    }
+}
+
 // K := P K P + scale (1 - P), from the dense projector made of the projected unit vectors.
 TEST(Constraints, ProjectionOfAMatrixIsThatOfItsRowsAndColumns) {
     const BlockSystem system = hexagons();

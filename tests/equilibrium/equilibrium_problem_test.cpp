@@ -159,6 +159,22 @@ TEST(EquilibriumProblem, SymmetricTangentIsSymmetricAndHasNoNegativeEigenvalue) 
     }
 }
 
+// Before any load every closed fracture is as stiff as if it were bonded with its own k_n and k_s; two points per edge
+// integrate the same cubics as three.
+TEST(EquilibriumProblem, TouchingTangentOfABodyAtRestIsThatOfBondsOfTheSameStiffness) {
+    Body body(1);
+    const auto rest = at_rest(body.system);
+    body.problem.contacts =
+        detect_contacts(body.system, surfaces_of(body.system, {1, 0}, body.laws), rest, 1e-3, {}).points;
+    ASSERT_FALSE(body.problem.contacts.empty());
+    const Eigen::MatrixXd touching = tangent_of(body.problem, rest, TangentKind::touching);
+    EXPECT_GT((touching - tangent_of(body.problem, rest, TangentKind::exact)).norm(), 0.01 * touching.norm());
+    body.problem.contacts.clear();
+    body.problem.bonds = bonds_at(body.system, {1, 1}, rest);
+    const Eigen::MatrixXd bonded = tangent_of(body.problem, rest, TangentKind::exact);
+    EXPECT_LT((touching - bonded).cwiseAbs().maxCoeff(), 1e-12 * bonded.cwiseAbs().maxCoeff());
+}
+
 /// Integral of f over a block: fan of triangles about the centroid, exact for quadratic f (edge midpoints).
 template <class Function> double integral(const BlockSystem& system, int b, Function f) {
     const Block& block = system.blocks[b];

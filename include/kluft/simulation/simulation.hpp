@@ -28,7 +28,8 @@ struct RunReport {
 [[nodiscard]] State initial_state(const Model& model);
 
 /// Runs the stages from `state` on, which is always left at the last committed load step. `stop` is looked at between
-/// solves. Out of memory, or where the observer throws ResourceError, the run ends with `out_of_resources`.
+/// solves. Out of memory, or where the observer throws ResourceError, the run ends with `out_of_resources`. A repeatable
+/// run leaves the BLAS of the process with one thread.
 RunReport run_simulation(const Model& model, const CrackOptions& cracks, const SolverOptions& solver, State& state,
                          StepObserver& observer, const std::atomic<bool>& stop);
 

@@ -1,0 +1,77 @@
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <tuple>
+
+#include <gtest/gtest.h>
+
+#include "kluft/assembly/linear_solver.hpp"
+#include "support/scene_run.hpp"
+
+namespace kluft {
+namespace {
+
+/// All of a record but the time it took.
+auto members_of(const StepRecord& r) {
+    return std::tuple(r.step, r.stage, r.load_factor, r.axial_strain, r.axial_stress, r.lateral_strain,
+                      r.lateral_stress, r.differential_stress, r.volumetric_strain, r.cracks_tension, r.cracks_shear,
+                      r.open, r.sliding, r.locked, r.open_close_iterations, r.crack_passes, r.unbalanced_ratio,
+                      r.balanced);
+}
+
+auto members_of(const CrackRecord& r) {
+    return std::tuple(r.step, r.pass, r.interface, r.x, r.y, r.mode, r.p1, r.p3, r.axial_strain);
+}
+
+template <class Record> void expect_same(const std::vector<Record>& a, const std::vector<Record>& b) {
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(members_of(a[i]), members_of(b[i])) << i;
+}
+
+void expect_same_runs(const SceneRun& a, const SceneRun& b) {
+    expect_same(a.history, b.history);
+    expect_same(a.equilibria, b.equilibria);
+    expect_same(a.cracks, b.cracks);
+    EXPECT_EQ(a.state.displacement, b.state.displacement);
+    EXPECT_EQ(a.state.bond_shear, b.state.bond_shear);
+    EXPECT_EQ(a.state.interfaces, b.state.interfaces);
+    ASSERT_EQ(a.state.contacts.size(), b.state.contacts.size());
+    for (std::size_t i = 0; i < a.state.contacts.size(); ++i) {
+        EXPECT_EQ(a.state.contacts[i].key, b.state.contacts[i].key);
+        EXPECT_EQ(a.state.contacts[i].history.shear_trial, b.state.contacts[i].history.shear_trial);
+    }
+}
+
+SceneRun quick_start(const std::vector<std::string>& overrides) {
+    std::ifstream file(KLUFT_SOURCE_DIR "/models/quickstart.yaml");
+    return run_scene({std::istreambuf_iterator<char>(file), {}}, overrides);
+}
+
+const std::vector<std::string> to_first_cracks = {"stages.1.steps=15", "stages.1.strain.value=0.01"};
+
+TEST(Repeatability, SameSceneTwiceGivesTheSameBitsOfEveryRecord) {
+    const auto first = quick_start(to_first_cracks);
+    EXPECT_GT(first.cracks.size(), 0U);
+    expect_same_runs(first, quick_start(to_first_cracks));
+}
+
+TEST(Repeatability, RunOfAnotherBodyInBetweenLeavesNothingBehind) {
+    const auto before = quick_start(to_first_cracks);
+    (void)quick_start({"stages.1.steps=4", "geometry.tessellation.hexagons.spacing=0.05"});
+    expect_same_runs(before, quick_start(to_first_cracks));
+}
+
+// The hexagons are so fine that two threads share the larger fronts of the factorization, which changes last digits.
+TEST(Repeatability, RepeatableRunHasTheSameBitsForAnyNumberOfThreads) {
+    const std::vector<std::string> fine = {"geometry.tessellation.hexagons.spacing=0.02", "stages.1.steps=2",
+                                           "stages.1.strain.value=0.002", "solver.repeatable=true"};
+    set_blas_threads(1);
+    const auto with_one = quick_start(fine);
+    set_blas_threads(2);
+    const auto with_two = quick_start(fine);
+    set_blas_threads(1);
+    expect_same_runs(with_one, with_two);
+}
+
+} // namespace
+} // namespace kluft

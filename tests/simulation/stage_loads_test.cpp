@@ -1,0 +1,293 @@
+#include "kluft/simulation/stage_loads.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "kluft/kinematics/affine.hpp"
+#include "support/scene_run.hpp"
+
+namespace kluft {
+namespace {
+
+constexpr int bottom = 0, right = 1, top = 2, left = 3; // of a rectangle
+
+/// A body of 1 m x 2 m, cut by two joints across the bottom and the top, with the boundaries and stages given.
+std::string scene_with(const std::string& boundaries, const std::string& stages) {
+    return fmt::format(R"(
+kluft: 1
+analysis: {{plane: stress}}
+materials: {{rock: {{youngs_modulus: 1 GPa, poissons_ratio: 0.2, cohesion: 1e12, friction_angle: 30, tensile_strength: 1e11}}}}
+interfaces:
+  joint: {{kind: fracture, normal_stiffness: 1e10, shear_stiffness: 1e10, friction_angle: 30}}
+  bond: {{kind: potential_crack, normal_stiffness: 1e10, shear_stiffness: 1e10, fails_to: joint}}
+geometry:
+  domain: {{rectangle: {{width: 1.0, height: 2.0}}}}
+  fractures: [{{trace: [[0.4, -1], [0.4, 3]], interface: bond}}, {{trace: [[-1, 1], [2, 1]], interface: bond}}]
+  reference_spacing: 1.0
+boundaries: {}
+stages: {}
+solver: {{tolerance: 1e-11, balance: 1e-9}}
+)",
+                       boundaries, stages);
+}
+
+Model model_of(const std::string& boundaries, const std::string& stages) {
+    return build_scene_model(read_scene_text(scene_with(boundaries, stages))).model;
+}
+
+StageLoads loads_of(const Model& model, const State& state, int stage = 0) {
+    return {model, state, model.loads.stages[stage]};
+}
+
+/// Rows on a boundary along x (0) or y (1), with the reference positions of their vertices.
+struct Row {
+    Vec2 at;
+    double target;
+    double rate;
+    bool operator<(const Row& other) const {
+        return at.x() != other.at.x() ? at.x() < other.at.x() : at.y() < other.at.y();
+    }
+};
+
+std::vector<Row> rows_on(const Model& model, const Constraints& constraints, int boundary, int axis) {
+    std::vector<Row> rows;
+    for (const PrescribedDisplacement& row : constraints.rows()) {
+        if (row.boundary != boundary || std::abs(row.direction[axis]) < 0.5) continue;
+        EXPECT_EQ(row.direction.cwiseAbs(), Vec2::Unit(axis));
+        const Block& block = model.system.blocks[row.block];
+        const double sign = row.direction[axis];
+        rows.push_back({block.centroid + block.size * row.xi, sign * row.target, sign * row.rate});
+    }
+    std::sort(rows.begin(), rows.end());
+    return rows;
+}
+
+std::size_t n_rows(const Constraints& constraints, int boundary) {
+    return static_cast<std::size_t>(
+        std::ranges::count(constraints.rows(), boundary, &PrescribedDisplacement::boundary));
+}
+
+constexpr const char* pressed = "[{pressure: {right: 1 MPa}}]";
+
+// The bottom has two blocks with vertices at x = 0, 0.4 and 0.4, 1: four rows across it.
+TEST(StageLoads, SmoothSupportHoldsEveryVertexAcrossTheBoundaryOnly) {
+    const Model model = model_of("{bottom: {support: smooth}}", pressed);
+    const StageLoads loads = loads_of(model, initial_state(model));
+    const auto across = rows_on(model, loads.constraints(), bottom, 1);
+    ASSERT_EQ(across.size(), 4U);
+    const double places[] = {0.0, 0.4, 0.4, 1.0};
+    for (int i = 0; i < 4; ++i) {
+        EXPECT_NEAR(across[i].at.x(), places[i], 1e-12);
+        EXPECT_NEAR(across[i].at.y(), 0.0, 1e-12);
+        EXPECT_EQ(across[i].target, 0.0);
+    }
+    EXPECT_EQ(loads.constraints().rows().size(), 4U);
+    EXPECT_TRUE(loads.is_held(bottom));
+    for (const int free : {right, top, left}) EXPECT_FALSE(loads.is_held(free));
+}
+
+// One vertex, the nearest to the middle at x = 0.5, is held along the boundary too.
+TEST(StageLoads, PinnedSupportHoldsOneVertexNearTheMiddleAlongTheBoundaryToo) {
+    const Model model = model_of("{bottom: {support: pinned}}", pressed);
+    const StageLoads loads = loads_of(model, initial_state(model));
+    EXPECT_EQ(rows_on(model, loads.constraints(), bottom, 1).size(), 4U);
+    const auto along = rows_on(model, loads.constraints(), bottom, 0);
+    ASSERT_EQ(along.size(), 1U);
+    EXPECT_NEAR(along.front().at.x(), 0.4, 1e-12);
+    EXPECT_EQ(loads.constraints().rows().size(), 5U);
+}
+
+TEST(StageLoads, FixedSupportHoldsEveryVertexInBothDirections) {
+    const Model model = model_of("{left: {support: fixed}}", pressed);
+    const StageLoads loads = loads_of(model, initial_state(model));
+    EXPECT_EQ(rows_on(model, loads.constraints(), left, 0).size(), 4U);
+    EXPECT_EQ(rows_on(model, loads.constraints(), left, 1).size(), 4U);
+    EXPECT_EQ(loads.constraints().rows().size(), 8U);
+}
+
+TEST(StageLoads, BodyWithoutSupportsHasNoRows) {
+    const Model model = model_of("{}", pressed);
+    EXPECT_TRUE(loads_of(model, initial_state(model)).constraints().rows().empty());
+}
+
+// ---- platens -------------------------------------------------------------------------------------------------------
+
+// A smooth platen leaves the tangential motion free; without more, the body could drift between two of them.
+TEST(StageLoads, SmoothPlatenRestsOnAPinnedOneOppositeToIt) {
+    const Model model = model_of("{}", "[{strain: {boundary: top, value: 1 %}}]");
+    const StageLoads loads = loads_of(model, initial_state(model));
+    EXPECT_EQ(rows_on(model, loads.constraints(), top, 1).size(), 4U);
+    EXPECT_EQ(rows_on(model, loads.constraints(), top, 0).size(), 0U);
+    EXPECT_EQ(rows_on(model, loads.constraints(), bottom, 1).size(), 4U);
+    EXPECT_EQ(rows_on(model, loads.constraints(), bottom, 0).size(), 1U);
+    EXPECT_EQ(loads.constraints().rows().size(), 9U);
+    EXPECT_FALSE(loads.is_held(left));
+    EXPECT_FALSE(loads.is_held(right));
+}
+
+TEST(StageLoads, SupportOppositeToASmoothPlatenStaysAsTheSceneSays) {
+    for (const auto& [support, expected] : {std::pair("smooth", 0U), std::pair("pinned", 1U), std::pair("fixed", 4U)}) {
+        const Model model =
+            model_of(fmt::format("{{bottom: {{support: {}}}}}", support), "[{strain: {boundary: top, value: 1 %}}]");
+        const StageLoads loads = loads_of(model, initial_state(model));
+        EXPECT_EQ(rows_on(model, loads.constraints(), bottom, 0).size(), expected) << support;
+    }
+}
+
+TEST(StageLoads, RoughPlatensHoldBothBoundariesInBothDirections) {
+    const Model model =
+        model_of("{bottom: {support: smooth}}", "[{displacement: {boundary: right, value: 1 mm}, platens: rough}]");
+    const StageLoads loads = loads_of(model, initial_state(model));
+    for (const int boundary : {left, right}) {
+        EXPECT_EQ(rows_on(model, loads.constraints(), boundary, 0).size(), 4U);
+        EXPECT_EQ(rows_on(model, loads.constraints(), boundary, 1).size(), 4U);
+    }
+    EXPECT_EQ(n_rows(loads.constraints(), bottom), 4U);
+}
+
+// Inward, from where the vertices are at the start of the stage: strain times the height of 2 m, or the displacement.
+TEST(StageLoads, PlatenMovesInwardInProportionToTheLoadFactor) {
+    for (const auto& [motion, boundary, axis, travel] :
+         {std::tuple("strain: {boundary: top, value: 1 %}", top, 1, -0.02),
+          std::tuple("strain: {boundary: left, value: -1 %}", left, 0, -0.01),
+          std::tuple("displacement: {boundary: right, value: 3 mm}", right, 0, -0.003)}) {
+        const Model model = model_of("{}", fmt::format("[{{{}}}]", motion));
+        State state = initial_state(model);
+        for (int b = 0; b < model.system.n_blocks(); ++b) state.displacement[6 * b + axis] = 0.005;
+        const StageLoads loads = loads_of(model, state);
+        Constraints constraints = loads.constraints();
+        for (const double factor : {0.0, 0.25, 1.0}) {
+            loads.set_targets(constraints, factor);
+            for (const Row& row : rows_on(model, constraints, boundary, axis)) {
+                EXPECT_NEAR(row.target, 0.005 + factor * travel, 1e-15) << motion;
+                EXPECT_EQ(row.rate, 0.0);
+            }
+        }
+        for (const Row& row : rows_on(model, constraints, opposite_boundary(model.system, boundary), axis)) {
+            EXPECT_NEAR(row.target, 0.005, 1e-15) << motion;
+        }
+    }
+}
+
+// Under a given stress the platen is rigid and its travel unknown: inward by one per unit of travel.
+TEST(StageLoads, PlatenUnderAStressTravelsAsARigidBody) {
+    const Model model = model_of("{}", "[{stress: {boundary: top, value: 3 MPa}}]");
+    const StageLoads loads = loads_of(model, initial_state(model));
+    for (const Row& row : rows_on(model, loads.constraints(), top, 1)) EXPECT_EQ(row.rate, -1.0);
+    for (const Row& row : rows_on(model, loads.constraints(), bottom, 1)) EXPECT_EQ(row.rate, 0.0);
+    for (const double factor : {0.0, 0.5, 1.0}) {
+        ASSERT_TRUE(loads.platen_force(factor).has_value());
+        EXPECT_DOUBLE_EQ(loads.platen_force(factor)->stress, factor * 3e6);
+        EXPECT_DOUBLE_EQ(loads.platen_force(factor)->at(initial_state(model).displacement), factor * 3e6 * 1.0);
+    }
+    EXPECT_FALSE(
+        loads_of(model_of("{}", "[{strain: {boundary: top, value: 1 %}}]"), initial_state(model)).platen_force(1));
+}
+
+// 1 m wide; both sides move outward by 1 cm and 2 cm: 1.03 m.
+TEST(StageLoads, PlatenForceActsOnTheCurrentWidth) {
+    const Model model = model_of("{}", pressed);
+    const PlatenForce force = width_across(model.system, top);
+    EXPECT_NEAR(force.width, 1.0, 1e-12);
+    Eigen::VectorXd q = initial_state(model).displacement;
+    for (int b = 0; b < model.system.n_blocks(); ++b) {
+        q[6 * b] = model.system.blocks[b].centroid.x() > 0.4 ? 0.02 : -0.01;
+        q[6 * b + 1] = 0.5;
+    }
+    EXPECT_NEAR(force.widening.dot(q), 0.03, 1e-15);
+}
+
+// ---- pressures -----------------------------------------------------------------------------------------------------
+
+TEST(StageLoads, PressureGrowsLinearlyFromTheStartOfTheStageAndOthersKeepTheirs) {
+    const Model model = model_of("{bottom: {support: smooth}}", "[{pressure: {left: 3 MPa, top: 0}}]");
+    State state = initial_state(model);
+    state.boundary_pressure = {7e6, 2e6, 4e6, 1e6}; // at the bottom what its support carried
+    const StageLoads loads = loads_of(model, state);
+    EXPECT_EQ(loads.pressures(0.0), (std::vector<double>{0.0, 2e6, 4e6, 1e6}));
+    EXPECT_EQ(loads.pressures(0.25), (std::vector<double>{0.0, 2e6, 3e6, 1.5e6}));
+    EXPECT_EQ(loads.pressures(1.0), (std::vector<double>{0.0, 2e6, 0.0, 3e6}));
+    double length[4] = {};
+    for (const PressureEdge& edge : loads.edges()) length[edge.boundary] += edge.extent.norm();
+    EXPECT_NEAR(length[bottom], 0.0, 1e-12);
+    EXPECT_NEAR(length[right], 2.0, 1e-12);
+    EXPECT_NEAR(length[top], 1.0, 1e-12);
+    EXPECT_NEAR(length[left], 2.0, 1e-12);
+}
+
+TEST(StageLoads, PlatenTakesThePressureOfItsBoundaryOver) {
+    const Model model = model_of("{bottom: {support: smooth}}", "[{strain: {boundary: top, value: 1 %}}]");
+    State state = initial_state(model);
+    state.boundary_pressure = {0.0, 2e6, 4e6, 2e6};
+    const StageLoads loads = loads_of(model, state);
+    for (const double factor : {0.0, 1.0}) {
+        EXPECT_EQ(loads.pressures(factor), (std::vector<double>{0.0, 2e6, 0.0, 2e6}));
+    }
+}
+
+TEST(BoundaryFrame, OfAnUprightRectangleHasNormalsAlongTheAxes) {
+    const Model model = model_of("{}", pressed);
+    const Vec2 normals[] = {{0, -1}, {1, 0}, {0, 1}, {-1, 0}};
+    const double lengths[] = {1.0, 2.0, 1.0, 2.0};
+    const Vec2 middles[] = {{0.5, 0}, {1, 1}, {0.5, 2}, {0, 1}};
+    for (int i = 0; i < 4; ++i) {
+        const BoundaryFrame frame = boundary_frame(model.system, i);
+        EXPECT_EQ(frame.normal, normals[i]);
+        EXPECT_NEAR(frame.length, lengths[i], 1e-12);
+        EXPECT_LT((mean_position(model.system, i) - middles[i]).norm(), 1e-12);
+        EXPECT_EQ(opposite_boundary(model.system, i), (i + 2) % 4);
+    }
+    EXPECT_EQ(lateral_boundaries(model.system, top), (std::vector<int>{right, left}));
+}
+
+// ---- what a run reaches --------------------------------------------------------------------------------------------
+
+/// Pressure all around, then a platen; every step balanced.
+SceneRun run_with(const std::string& motion, int steps) {
+    return run_scene(
+        scene_with("{bottom: {support: smooth}}",
+                   fmt::format("[{{pressure: {{left: 1 MPa, right: 1 MPa, top: 1 MPa}}, steps: 2}}, {{{}, steps: {}}}]",
+                               motion, steps)));
+}
+
+TEST(StageLoads, StrainReachesItsTargetAtTheLastStepCountedFromTheStartOfTheStage) {
+    const auto run = run_with("strain: {boundary: top, value: 0.4 %}", 4);
+    ASSERT_EQ(run.report.status, RunStatus::done) << run.report.diagnosis;
+    ASSERT_EQ(run.history.size(), 7U);
+    for (int i = 0; i < 4; ++i) EXPECT_NEAR(run.history[3 + i].axial_strain, 1e-3 * (i + 1), 1e-14);
+    // The platen starts from the stress of the pressure: 1 MPa, and it rises.
+    EXPECT_NEAR(run.history[2].axial_stress, 1e6, 1e-3);
+    for (int i = 3; i < 7; ++i) EXPECT_GT(run.history[i].axial_stress, run.history[i - 1].axial_stress + 0.5e6);
+}
+
+TEST(StageLoads, DisplacementReachesItsTargetAtTheLastStep) {
+    const auto run = run_with("displacement: {boundary: top, value: 5 mm}", 5);
+    ASSERT_EQ(run.report.status, RunStatus::done) << run.report.diagnosis;
+    for (int i = 0; i < 5; ++i) EXPECT_NEAR(run.history[3 + i].axial_strain, 1e-3 * (i + 1) / 2.0, 1e-14);
+}
+
+TEST(StageLoads, StressRisesLinearlyFromThePressureToItsTargetAtTheLastStep) {
+    const auto run = run_with("stress: {boundary: top, value: 5 MPa}", 4);
+    ASSERT_EQ(run.report.status, RunStatus::done) << run.report.diagnosis;
+    ASSERT_EQ(run.report.unbalanced_steps, 0);
+    for (int i = 0; i < 4; ++i) {
+        EXPECT_NEAR(run.history[3 + i].axial_stress, 2e6 + 1e6 * i, 1.0);
+        EXPECT_NEAR(run.history[3 + i].lateral_stress, 1e6, 1e-6);
+    }
+}
+
+// The platen under a stress and the one at the strain that it reaches are the same problem.
+TEST(StageLoads, StressAndStrainOfAPlatenLeadToTheSameState) {
+    const auto by_stress = run_with("stress: {boundary: top, value: 5 MPa}", 4);
+    const double strain = by_stress.history.back().axial_strain;
+    const auto by_strain = run_with(fmt::format("strain: {{boundary: top, value: {:.17g}}}", strain), 4);
+    ASSERT_EQ(by_strain.report.status, RunStatus::done) << by_strain.report.diagnosis;
+    EXPECT_NEAR(by_strain.history.back().axial_stress, 5e6, 10.0);
+    EXPECT_NEAR(by_strain.history.back().lateral_strain, by_stress.history.back().lateral_strain, 1e-6 * strain);
+}
+
+} // namespace
+} // namespace kluft
