@@ -20,6 +20,8 @@ namespace {
 
 using kluft::ExitCode;
 
+constexpr int most_threads = 4096;
+
 using Command = std::function<ExitCode()>; ///< what the command line asks for
 
 int exit_with(ExitCode code) { return static_cast<int>(code); }
@@ -93,7 +95,7 @@ void add_run_command(CLI::App& app, Command& command) {
         ->take_all()
         ->allow_extra_args(false);
     sub->add_option("--threads", arguments->threads, "Threads of the factorization (bodies of 20 000 unknowns or more)")
-        ->check(CLI::PositiveNumber);
+        ->check(CLI::Range(1, most_threads));
     sub->add_flag("--quiet", arguments->quiet, "No progress and no closing line");
     sub->add_flag("--resume", arguments->resume, "Go on from the state saved in the directory");
     sub->footer("Exit codes: 0 done, 2 bad input, 3 no equilibrium, 4 out of disk or memory, 130 interrupted.\n"

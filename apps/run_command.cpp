@@ -154,6 +154,8 @@ ExitCode run(const RunArguments& arguments) {
     const Scene scene = read_scene(arguments.scene, arguments.overrides);
     const fs::path directory =
         arguments.directory.empty() ? fs::path("results") / scene.name : fs::path(arguments.directory);
+    if (fs::exists(directory) && !fs::is_directory(directory))
+        throw InputError(directory.string() + ": expected a directory for the results, found a file");
     const SceneModel built = build_scene_model(scene);
     const Model& model = built.model;
     const int unknowns = n_block_unknowns * model.system.n_blocks();

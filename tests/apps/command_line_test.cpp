@@ -1,404 +1,641 @@
+// The program as a user sees it: what it prints, the files it leaves, its exit codes.
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
-#include <filesystem>
+#include <csignal>
+#include <cstdlib>
 #include <fstream>
+#include <iterator>
 #include <regex>
+#include <set>
 #include <sstream>
-#include <string>
 #include <thread>
-#include <vector>
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
-#include "apps/child_process.hpp"
 #include "output/temporary_directory.hpp"
 
 namespace kluft {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::ChildProcess;
-using ::testing::Each;
+using ::testing::AllOf;
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-using testing::Limits;
 using ::testing::Not;
-using testing::Outcome;
-using testing::run_kluft;
 using ::testing::StartsWith;
 using testing::TemporaryDirectory;
-using testing::text_of;
+using Words = std::vector<std::string>;
 
-/// A small specimen with a fracture and potential cracks; its two stages take half a second.
-const std::string specimen = R"(kluft: 1
-title: A small specimen
-materials:
-  rock: {density: 2300, youngs_modulus: 1500 MPa, poissons_ratio: 0.25, cohesion: 0.15 MPa, friction_angle: 39.6, tensile_strength: 0.05 MPa}
-interfaces:
-  joint: {kind: fracture, normal_stiffness_times_spacing: 200 MPa, shear_stiffness_times_spacing: 100 MPa, friction_angle: 20, contact_rounding: 0.004 MPa}
-  bond: {kind: potential_crack, normal_stiffness_times_spacing: 200 MPa, shear_stiffness_times_spacing: 100 MPa, fails_to: joint}
-geometry:
-  domain: {rectangle: {width: 20 cm, height: 40 cm}}
-  fractures:
-    - {name: inclined, trace: [[-0.01, 0.10], [0.15, 0.26]], interface: joint}
-  tessellation: {hexagons: {spacing: 5 cm}, interface: bond}
-boundaries: {bottom: {support: pinned}}
-stages:
-  - {name: pressure, pressure: {left: 0.2 MPa, right: 0.2 MPa, top: 0.2 MPa}, steps: 2}
-  - {name: platen, strain: {boundary: top, value: 1 %}, platens: smooth, steps: 20}
-)";
+std::string content_of(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    EXPECT_TRUE(file) << path;
+    return {std::istreambuf_iterator<char>(file), {}};
+}
 
-const std::vector<std::string> columns{"step",
-                                       "stage",
-                                       "load_factor",
-                                       "axial_strain",
-                                       "axial_stress",
-                                       "lateral_strain",
-                                       "lateral_stress",
-                                       "differential_stress",
-                                       "volumetric_strain",
-                                       "cracks_tension",
-                                       "cracks_shear",
-                                       "open",
-                                       "sliding",
-                                       "locked",
-                                       "open_close_iterations",
-                                       "crack_passes",
-                                       "unbalanced_ratio",
-                                       "balanced",
-                                       "elapsed_s"};
+std::vector<std::string> lines_of(const std::string& text) {
+    std::vector<std::string> lines;
+    std::istringstream stream(text);
+    for (std::string line; std::getline(stream, line);) lines.push_back(line);
+    return lines;
+}
+
+/// What a child process may use; 0 is no limit.
+struct Limits {
+    rlim_t file_bytes = 0;
+    rlim_t memory_bytes = 0;
+};
+
+void limit(int resource, rlim_t most) {
+    const rlimit both{most, most};
+    if (most != 0) setrlimit(static_cast<__rlimit_resource>(resource), &both);
+}
+
+void send_to_file(int descriptor, const fs::path& path) {
+    const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    if (file < 0 || dup2(file, descriptor) < 0) _exit(126);
+}
+
+/// The program in a child process, in a working directory of its own.
+class Child {
+public:
+    Child(const fs::path& directory, const Words& words, Limits limits = {})
+        : out_(directory / ".stdout"), err_(directory / ".stderr") {
+        Words all{KLUFT_PROGRAM};
+        all.insert(all.end(), words.begin(), words.end());
+        std::vector<char*> arguments;
+        for (auto& word : all) arguments.push_back(word.data());
+        arguments.push_back(nullptr);
+        pid_ = fork();
+        if (pid_ != 0) return;
+        if (chdir(directory.c_str()) != 0) _exit(126);
+        send_to_file(STDOUT_FILENO, out_);
+        send_to_file(STDERR_FILENO, err_);
+        std::signal(SIGXFSZ, SIG_IGN);
+        limit(RLIMIT_FSIZE, limits.file_bytes);
+        limit(RLIMIT_AS, limits.memory_bytes);
+        setenv("OPENBLAS_NUM_THREADS", "1", 1);
+        execv(KLUFT_PROGRAM, arguments.data());
+        _exit(126);
+    }
+    Child(const Child&) = delete;
+    Child& operator=(const Child&) = delete;
+    ~Child() {
+        if (pid_ > 0) {
+            kill(pid_, SIGKILL);
+            waitpid(pid_, nullptr, 0);
+        }
+    }
+
+    void interrupt() const { kill(pid_, SIGINT); }
+
+    /// The exit code; 128 and the signal's number when it died of one.
+    int wait() {
+        int status = 0;
+        while (waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
+        }
+        pid_ = 0;
+        return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    }
+
+    [[nodiscard]] std::string out() const { return content_of(out_); }
+    [[nodiscard]] std::string err() const { return content_of(err_); }
+
+private:
+    fs::path out_, err_;
+    pid_t pid_ = 0;
+};
+
+struct Result {
+    int code = 0;
+    std::string out, err;
+};
 
 class CommandLine : public ::testing::Test {
 protected:
-    fs::path write(const std::string& name, const std::string& text) const {
-        std::ofstream(directory_ / name) << text;
-        return directory_ / name;
+    Result kluft(const Words& words, Limits limits = {}) const {
+        Child child(directory_.path(), words, limits);
+        const int code = child.wait();
+        return {code, child.out(), child.err()};
     }
-    Outcome kluft(const std::vector<std::string>& arguments, const Limits& limits = {}) const {
-        return run_kluft(directory_.path(), arguments, limits);
+
+    /// One message, exit code 2, nothing on standard output.
+    void expect_refused(const Words& words, const ::testing::Matcher<const std::string&>& message) const {
+        const Result result = kluft(words);
+        EXPECT_EQ(result.code, 2) << result.err;
+        EXPECT_THAT(result.err, message);
+        EXPECT_THAT(result.out, IsEmpty());
     }
-    /// Runs the specimen into `name`.
-    Outcome run_specimen(const std::string& name, std::vector<std::string> more = {}) const {
-        write("specimen.yaml", specimen);
-        std::vector<std::string> arguments{"run", "specimen.yaml", "-o", name};
-        arguments.insert(arguments.end(), more.begin(), more.end());
-        return kluft(arguments);
+
+    fs::path path(const std::string& name) const { return directory_ / name; }
+    void write(const std::string& name, const std::string& text) const { std::ofstream(path(name)) << text; }
+    nlohmann::json summary(const std::string& run) const {
+        return nlohmann::json::parse(content_of(path(run) / "summary.json"));
     }
-    [[nodiscard]] std::vector<std::vector<std::string>> table(const fs::path& file) const {
-        std::vector<std::vector<std::string>> rows;
-        std::istringstream lines(text_of(directory_.path() / file));
-        for (std::string line; std::getline(lines, line);) {
-            std::istringstream cells(line);
-            rows.emplace_back();
-            for (std::string cell; std::getline(cells, cell, ',');) rows.back().push_back(cell);
-        }
-        return rows;
+
+    /// A table without its column of times, the last one.
+    std::string table(const std::string& file) const {
+        std::string text;
+        for (const auto& line : lines_of(content_of(path(file)))) text += line.substr(0, line.rfind(',')) + '\n';
+        return text;
     }
-    /// history.csv without the times, its last column.
-    [[nodiscard]] std::vector<std::vector<std::string>> history_but_times(const std::string& name) const {
-        auto rows = table(fs::path(name) / "history.csv");
-        for (auto& row : rows) row.pop_back();
-        return rows;
-    }
-    [[nodiscard]] nlohmann::json summary(const std::string& name) const {
-        return nlohmann::json::parse(text_of(directory_ / (name + "/summary.json")));
-    }
-    [[nodiscard]] bool exists(const std::string& name) const { return fs::exists(directory_ / name); }
 
     TemporaryDirectory directory_;
 };
+using SlowCommandLine = CommandLine;
 
-TEST_F(CommandLine, HelpNamesEveryCommandAndShowsExamples) {
-    const Outcome general = kluft({"--help"});
-    EXPECT_EQ(general.exit_code, 0);
-    for (const char* command : {"run", "check", "draw", "envelope"}) {
-        EXPECT_THAT(general.output, HasSubstr(command));
-        const Outcome help = kluft({command, "--help"});
-        EXPECT_EQ(help.exit_code, 0);
-        EXPECT_THAT(help.output, HasSubstr("Example")) << command;
-    }
-    EXPECT_THAT(general.output, HasSubstr("Examples:"));
-    EXPECT_EQ(kluft({"--version"}).exit_code, 0);
+std::string model(const std::string& name) { return std::string(KLUFT_MODELS_DIR) + "/" + name; }
+
+// Six blocks, two stages, cracks: runs in a tenth of a second.
+const char* const tiny_scene = R"(kluft: 1
+title: Tiny
+materials:
+  rock: {density: 2300, youngs_modulus: 1500 MPa, poissons_ratio: 0.25, cohesion: 0.05 MPa, friction_angle: 40, tensile_strength: 0.05 MPa}
+interfaces:
+  joint: {kind: fracture, normal_stiffness_times_spacing: 200 MPa, shear_stiffness_times_spacing: 100 MPa, friction_angle: 20, cohesion: 0.02 MPa}
+  bond: {kind: potential_crack, normal_stiffness_times_spacing: 200 MPa, shear_stiffness_times_spacing: 100 MPa, fails_to: joint}
+geometry:
+  domain: {rectangle: {width: 0.2, height: 0.4}}
+  tessellation: {hexagons: {spacing: 0.1}, interface: bond}
+boundaries: {bottom: {support: smooth}}
+stages:
+  - {name: pressure, pressure: {left: 0.1 MPa, right: 0.1 MPa, top: 0.1 MPa}, steps: 2}
+  - {name: platen, strain: {boundary: top, value: 1 %}, steps: 8}
+)";
+
+// A block pushed sideways over a smooth plane under a platen: nothing stops it.
+const char* const sliding_scene = R"(kluft: 1
+analysis: {plane: stress}
+materials: {rock: {youngs_modulus: 1 GPa, poissons_ratio: 0.2}}
+interfaces: {joint: {kind: fracture, normal_stiffness: 1e9, shear_stiffness: 1e9, friction_angle: 0}}
+geometry:
+  domain: {rectangle: {width: 4.0, height: 1.5}}
+  fractures: [{trace: [[-1, 0.5], [5, 0.5]], interface: joint}]
+  reference_spacing: 1.0
+boundaries: {bottom: {support: fixed}}
+stages:
+  - {name: squeeze, strain: {boundary: top, value: 1e-5}, steps: 2}
+  - {name: push, strain: {boundary: top, value: 1e-5}, pressure: {left: 1 MPa}, steps: 12}
+)";
+
+// The same without platen and support.
+const char* const loose_scene = R"(kluft: 1
+analysis: {plane: stress}
+materials: {rock: {youngs_modulus: 1 GPa, poissons_ratio: 0.2}}
+interfaces: {joint: {kind: fracture, normal_stiffness: 1e9, shear_stiffness: 1e9, friction_angle: 30}}
+geometry:
+  domain: {rectangle: {width: 4.0, height: 1.5}}
+  fractures: [{trace: [[-1, 0.5], [5, 0.5]], interface: joint}]
+  reference_spacing: 1.0
+stages: [{name: push, pressure: {left: 1 MPa}, steps: 2}]
+)";
+
+const Words commands{"run", "check", "draw", "envelope"};
+
+// ---- help, version, mistakes ---------------------------------------------------------------------------------------
+
+TEST_F(CommandLine, HelpOfTheProgramNamesEverySubcommandAndGivesExamples) {
+    const Result result = kluft({"--help"});
+    EXPECT_EQ(result.code, 0);
+    EXPECT_THAT(result.err, IsEmpty());
+    EXPECT_THAT(result.out, HasSubstr("Examples:"));
+    for (const auto& command : commands) EXPECT_THAT(result.out, HasSubstr("\n  " + command + " ")) << command;
 }
 
-TEST_F(CommandLine, CompletionKnowsEveryCommandAndOption) {
-    const std::string completion = text_of(fs::path(KLUFT_SOURCE_DIR) / "scripts/completions/kluft.bash");
-    for (const char* command : {"run", "check", "draw", "envelope"}) {
-        EXPECT_THAT(completion, HasSubstr(fmt::format("    {}) options", command)));
-        const std::string help = kluft({command, "--help"}).output;
-        const std::regex option("--[a-z]+");
-        for (std::sregex_iterator it(help.begin(), help.end(), option), end; it != end; ++it) {
-            EXPECT_THAT(completion, HasSubstr(it->str())) << command;
+TEST_F(CommandLine, HelpOfEverySubcommandGivesAnExample) {
+    for (const auto& command : commands) {
+        const Result result = kluft({command, "--help"});
+        EXPECT_EQ(result.code, 0) << command;
+        EXPECT_THAT(result.out, ContainsRegex("Examples?:.*\n?.*kluft " + command)) << command;
+    }
+}
+
+TEST_F(CommandLine, VersionIsThreeNumbers) {
+    const Result result = kluft({"--version"});
+    EXPECT_EQ(result.code, 0);
+    EXPECT_TRUE(std::regex_match(result.out, std::regex("[0-9]+\\.[0-9]+\\.[0-9]+\n"))) << result.out;
+}
+
+TEST_F(CommandLine, MistypedSubcommandIsAnsweredWithTheNearestOne) {
+    expect_refused({"chekc", "x.yaml"}, AllOf(HasSubstr("'chekc'"), HasSubstr("did you mean 'check'?")));
+    expect_refused({}, HasSubstr("kluft --help"));
+}
+
+TEST_F(CommandLine, MistypedOptionIsAnsweredWithTheNearestOne) {
+    expect_refused({"run", "x.yaml", "--resum"},
+                   AllOf(StartsWith("kluft run: unknown option '--resum'"), HasSubstr("did you mean '--resume'?")));
+    expect_refused({"run", "--thread", "2", "x.yaml"}, HasSubstr("did you mean '--threads'?"));
+    expect_refused({"draw", "x", "--tilte=a"}, HasSubstr("did you mean '--title'?"));
+    expect_refused({"--hepl"}, HasSubstr("did you mean '--help'?"));
+}
+
+TEST_F(CommandLine, WordsThatAreMissingOrTooManyAreNamed) {
+    expect_refused({"run"}, AllOf(HasSubstr("scene"), HasSubstr("kluft run --help")));
+    expect_refused({"check", "a.yaml", "b.yaml"}, HasSubstr("b.yaml"));
+    expect_refused({"run", "a.yaml", "--threads", "0"}, HasSubstr("range 1 to "));
+}
+
+TEST_F(CommandLine, FileThatIsMissingIsNamed) {
+    expect_refused({"run", "absent.yaml"}, HasSubstr("absent.yaml: expected a scene, found no such file"));
+    expect_refused({"check", "absent.yaml"}, HasSubstr("absent.yaml"));
+    expect_refused({"run", "."}, HasSubstr("found no regular file"));
+    EXPECT_FALSE(fs::exists(path("results")));
+}
+
+TEST_F(CommandLine, CompletionKnowsEverySubcommandAndEveryOption) {
+    const std::string script = content_of(KLUFT_SOURCE_DIR "/scripts/completions/kluft.bash");
+    const std::regex option("--[a-z][a-z-]*");
+    for (const auto& command : commands) {
+        // The line of the command in the table of options.
+        std::smatch line;
+        ASSERT_TRUE(std::regex_search(script, line, std::regex("\n    " + command + "\\)( options[^\n]*)"))) << command;
+        const std::string help = kluft({command, "--help"}).out;
+        const std::string options = help.substr(help.find("Options:"), help.find("Example") - help.find("Options:"));
+        for (const auto& each : lines_of(options)) {
+            std::smatch name;
+            if (!each.starts_with("  -") || !std::regex_search(each, name, option)) continue;
+            if (name.str() == "--help") continue; // of every command
+            EXPECT_THAT(line.str(1), HasSubstr(name.str())) << command;
         }
+        EXPECT_TRUE(std::regex_search(script, std::regex("commands=\"[^\"]*\\b" + command + "\\b"))) << command;
     }
 }
 
-TEST_F(CommandLine, MistypedCommandIsAnsweredWithTheNearestOne) {
-    const Outcome outcome = kluft({"rnu", "scene.yaml"});
-    EXPECT_EQ(outcome.exit_code, 2);
-    EXPECT_THAT(outcome.errors, HasSubstr("'rnu'"));
-    EXPECT_THAT(outcome.errors, HasSubstr("did you mean 'run'?"));
-    EXPECT_EQ(kluft({}).exit_code, 2);
-    EXPECT_EQ(kluft({"run"}).exit_code, 2);
-    EXPECT_EQ(kluft({"run", "x.yaml", "--stes"}).exit_code, 2);
+// ---- kluft check ---------------------------------------------------------------------------------------------------
+
+TEST_F(CommandLine, CheckSaysWhatTheQuickStartAmountsTo) {
+    const Result result = kluft({"check", model("quickstart.yaml")});
+    EXPECT_EQ(result.code, 0) << result.err;
+    EXPECT_THAT(result.out, HasSubstr("0.2 m x 0.4 m, plane strain"));
+    EXPECT_THAT(result.out, ContainsRegex("blocks +[0-9]+\n"));
+    EXPECT_THAT(result.out, ContainsRegex("unknowns +[0-9]+\n"));
+    EXPECT_THAT(result.out, ContainsRegex("joint +[0-9]+  fracture"));
+    EXPECT_THAT(result.out, ContainsRegex("rock_bond +[0-9]+  potential crack"));
+    EXPECT_THAT(result.out, ContainsRegex("smallest +area [^ ]+ m2, edge [^ ]+ m, angle [^ ]+ deg"));
+    EXPECT_THAT(result.out, HasSubstr("k_n d/E 0.1333")); // 200/1500
+    // The lattice formula of docs/theory.md for E 1500 MPa, nu 0.25, k_n d 200 MPa, k_s d 100 MPa.
+    EXPECT_THAT(result.out, HasSubstr("E 1.519e+08 Pa, nu 0.1389"));
+    EXPECT_THAT(result.out, ContainsRegex("memory +about [0-9.]+ MB"));
+    EXPECT_THAT(result.out, ContainsRegex("warning: .*plane strain; a cylinder"));
+    EXPECT_FALSE(fs::exists(path("results")));
 }
 
-TEST_F(CommandLine, MissingSceneFileIsBadInput) {
-    const Outcome outcome = kluft({"run", "nowhere.yaml"});
-    EXPECT_EQ(outcome.exit_code, 2);
-    EXPECT_THAT(outcome.errors, HasSubstr("nowhere.yaml"));
-    EXPECT_FALSE(exists("results"));
+TEST_F(CommandLine, CheckAcceptsEveryTriaxialCase) {
+    int n_cases = 0;
+    for (const auto& entry : fs::directory_iterator(model("triaxial"))) {
+        const std::string name = entry.path().filename();
+        if (!name.starts_with("case-")) continue;
+        ++n_cases;
+        const Result result = kluft({"check", entry.path()});
+        EXPECT_EQ(result.code, 0) << name << result.err;
+        EXPECT_THAT(result.out, AllOf(HasSubstr("0.38 m x 1 m"), HasSubstr("a cylinder"))) << name;
+    }
+    EXPECT_GE(n_cases, 6);
 }
 
-struct BadScene {
-    std::string what, found, instead;
-    std::vector<std::string> expected; ///< in the message
+// Six unknowns a block.
+TEST_F(CommandLine, CheckCountsSixUnknownsPerBlock) {
+    const std::string out = kluft({"check", model("triaxial/case-1.yaml")}).out;
+    EXPECT_THAT(out, ContainsRegex("blocks +4\n")); // three fractures that meet cut the rectangle into four
+    EXPECT_THAT(out, ContainsRegex("unknowns +24\n"));
+}
+
+// ---- errors in scenes ----------------------------------------------------------------------------------------------
+
+struct WrongScene {
+    const char* what;
+    const char* text;     ///< in the tiny scene
+    const char* replaced; ///< by this
+    const char* message;  ///< a part of the answer
 };
 
-TEST_F(CommandLine, BadSceneNamesFileLineKeyAndWhatWasExpected) {
-    const std::vector<BadScene> scenes{
-        {"unknown key",
-         "poissons_ratio:",
-         "poisons_ratio:",
-         {"specimen.yaml:4:", "'poisons_ratio'", "did you mean 'poissons_ratio'"}},
-        {"wrong type", "steps: 20", "steps: many", {"specimen.yaml:16:", "stages.1.steps", "integer", "many"}},
-        {"unit of another dimension", "1500 MPa", "1500 m", {"specimen.yaml:4:", "youngs_modulus", "Pa"}},
-        {"out of range", "poissons_ratio: 0.25", "poissons_ratio: 0.7", {"specimen.yaml:4:", "poissons_ratio", "0.7"}},
-        {"not a number", "0.25", ".nan", {"specimen.yaml:4:", "poissons_ratio"}},
-        {"unknown interface", "interface: bond", "interface: bnd", {"specimen.yaml:12:", "bnd", "did you mean 'bond'"}},
-        {"empty geometry", "width: 20 cm", "width: 0", {"specimen.yaml:9:", "width"}},
-        {"extends itself", "title: A small specimen", "extends: specimen.yaml", {"specimen.yaml", "extends"}},
-    };
-    for (const BadScene& scene : scenes) {
-        std::string text = specimen;
-        text.replace(text.find(scene.found), scene.found.size(), scene.instead);
-        write("specimen.yaml", text);
-        const Outcome outcome = kluft({"run", "specimen.yaml", "-o", "out"});
-        EXPECT_EQ(outcome.exit_code, 2) << scene.what;
-        for (const auto& part : scene.expected) EXPECT_THAT(outcome.errors, HasSubstr(part)) << scene.what;
-        EXPECT_THAT(outcome.output, IsEmpty()) << scene.what;
-        EXPECT_FALSE(exists("out")) << scene.what;
-    }
+void PrintTo(const WrongScene& scene, std::ostream* stream) { *stream << scene.what; }
+
+class WrongScenes : public CommandLine, public ::testing::WithParamInterface<WrongScene> {};
+
+TEST_P(WrongScenes, AreRefusedByLineAndLeaveNothing) {
+    std::string text = tiny_scene;
+    const std::size_t at = text.find(GetParam().text);
+    ASSERT_NE(at, std::string::npos);
+    text.replace(at, std::string(GetParam().text).size(), GetParam().replaced);
+    write("wrong.yaml", text);
+    const auto line = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n') + 1;
+    expect_refused({"run", "wrong.yaml"},
+                   AllOf(StartsWith(fmt::format("wrong.yaml:{}:", line)), HasSubstr(GetParam().message)));
+    EXPECT_EQ(lines_of(content_of(path(".stderr"))).size(), 2U); // the message and the line of the scene
+    EXPECT_FALSE(fs::exists(path("results")));
 }
 
-TEST_F(CommandLine, BadOverrideNamesItself) {
-    const Outcome outcome = run_specimen("out", {"--set", "stages.1.stps=3"});
-    EXPECT_EQ(outcome.exit_code, 2);
-    EXPECT_THAT(outcome.errors, HasSubstr("--set stages.1.stps=3"));
-    EXPECT_THAT(outcome.errors, HasSubstr("did you mean 'steps'?"));
-    EXPECT_FALSE(exists("out"));
+INSTANTIATE_TEST_SUITE_P(
+    All, WrongScenes,
+    ::testing::Values(
+        WrongScene{"UnknownKey", "density", "densty", "did you mean 'density'?"},
+        WrongScene{"WrongType", "steps: 8", "steps: many", "stages.1.steps: expected an integer >= 1, found 'many'"},
+        WrongScene{"WrongDimension", "1500 MPa", "1500 m", "which is in m"},
+        WrongScene{"OutOfRange", "poissons_ratio: 0.25", "poissons_ratio: 0.7", "expected a number >= 0 and < 0.5"},
+        WrongScene{"NotANumber", "1500 MPa", ".nan", "not finite"},
+        WrongScene{"UndefinedInterface", "interface: bond", "interface: bnd", "did you mean 'bond'?"},
+        WrongScene{"EmptyGeometry", "{rectangle: {width: 0.2, height: 0.4}}", "{}", "geometry.domain"},
+        WrongScene{"UnknownSupport", "support: smooth", "support: smoth", "did you mean 'smooth'?"}),
+    [](const auto& each) { return std::string(each.param.what); });
+
+TEST_F(CommandLine, SceneThatExtendsItselfIsRefused) {
+    write("a.yaml", "extends: b.yaml\n");
+    write("b.yaml", "extends: a.yaml\n");
+    expect_refused({"run", "a.yaml"}, HasSubstr("leads back to itself"));
+    EXPECT_FALSE(fs::exists(path("results")));
 }
 
-TEST_F(CommandLine, CheckSaysWhatASceneAmountsTo) {
-    const fs::path models = fs::path(KLUFT_SOURCE_DIR) / "models";
-    const Outcome outcome = kluft({"check", (models / "triaxial/case-3-all.yaml").string()});
-    EXPECT_EQ(outcome.exit_code, 0);
-    for (const char* part : {"blocks", "interfaces", "potential crack", "fracture", "unknowns", "smallest     area",
-                             "edge", "angle", "k_n d/E 0.1333", "E 1.519e+08 Pa, nu 0.1389", "memory"}) {
-        EXPECT_THAT(outcome.output, HasSubstr(part));
-    }
-    EXPECT_THAT(outcome.output + outcome.errors, HasSubstr("plane strain; a cylinder"));
+TEST_F(CommandLine, EmptySceneIsRefused) {
+    write("empty.yaml", "");
+    expect_refused({"run", "empty.yaml"}, HasSubstr("found an empty file"));
 }
 
-TEST_F(CommandLine, EveryModelIsAValidScene) {
-    int n_models = 0;
-    for (const auto& entry : fs::recursive_directory_iterator(fs::path(KLUFT_SOURCE_DIR) / "models")) {
-        const std::string name = entry.path().filename();
-        if (entry.path().extension() != ".yaml") continue;
-        EXPECT_EQ(kluft({"check", entry.path().string()}).exit_code, 0) << name;
-        ++n_models;
-    }
-    EXPECT_GE(n_models, 12);
+TEST_F(CommandLine, OverrideOfAnUnknownKeyIsRefusedWithTheNearestKey) {
+    write("tiny.yaml", tiny_scene);
+    expect_refused({"run", "tiny.yaml", "--set", "stges.1.steps=2"},
+                   AllOf(StartsWith("--set stges.1.steps=2"), HasSubstr("did you mean 'stages'?")));
+    expect_refused({"run", "tiny.yaml", "--set", "stages.7.steps=2"}, HasSubstr("index from 0 to 2"));
+    expect_refused({"run", "tiny.yaml", "--set", "steps"}, HasSubstr("key.path=value"));
+    EXPECT_FALSE(fs::exists(path("results")));
 }
 
-TEST_F(CommandLine, RunWritesEveryResult) {
-    const Outcome outcome = run_specimen("out");
-    ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
-    EXPECT_THAT(outcome.output, StartsWith("done: peak "));
-    for (const char* name : {"history.csv", "equilibria.csv", "cracks.csv", "summary.json", "curve.png", "curve.svg",
-                             "blocks.png", "blocks.svg", "fields.pvd", "state.h5", "run.log"}) {
-        EXPECT_TRUE(exists(std::string("out/") + name)) << name;
-        EXPECT_GT(fs::file_size(directory_ / (std::string("out/") + name)), 0u) << name;
-    }
-    const auto rows = table("out/history.csv");
-    EXPECT_EQ(rows.at(0), columns);
-    EXPECT_EQ(rows.size(), 1u + 1u + 22u); // head, initial state, load steps
-    EXPECT_EQ(rows.back().at(0), "22");
-    EXPECT_EQ(table("out/equilibria.csv").at(0), columns);
-    EXPECT_EQ(table("out/cracks.csv").at(0),
-              (std::vector<std::string>{"step", "pass", "interface", "x", "y", "mode", "p1", "p3", "axial_strain"}));
-    const auto numbers = summary("out");
-    EXPECT_EQ(numbers.at("status"), "done");
+// ---- kluft run -----------------------------------------------------------------------------------------------------
+
+const Words all_files{"history.csv", "equilibria.csv", "cracks.csv", "summary.json", "fields.pvd", "curve.png",
+                      "curve.svg",   "blocks.png",     "blocks.svg", "run.log",      "state.h5"};
+
+void expect_all_files(const fs::path& run) {
+    for (const auto& name : all_files) EXPECT_GT(fs::file_size(run / name), 0U) << name;
+    for (const auto& entry : fs::recursive_directory_iterator(run)) EXPECT_NE(entry.path().extension(), ".part");
+    for (const char* name : {"curve.png", "blocks.png"}) EXPECT_THAT(content_of(run / name), StartsWith("\x89PNG"));
+    for (const char* name : {"curve.svg", "blocks.svg"}) EXPECT_THAT(content_of(run / name), HasSubstr("</svg>"));
+    const std::string pvd = content_of(run / "fields.pvd");
+    const std::regex reference("file=\"([^\"]+)\"");
+    std::set<std::string> files;
+    for (std::sregex_iterator found(pvd.begin(), pvd.end(), reference), end; found != end; ++found)
+        files.insert((*found)[1]);
+    EXPECT_GE(files.size(), 2U);
+    for (const auto& file : files) EXPECT_THAT(content_of(run / file), HasSubstr("</VTKFile>")) << file;
+}
+
+TEST_F(CommandLine, RunLeavesEverythingOfTheContract) {
+    write("tiny.yaml", tiny_scene);
+    const Result result = kluft({"run", "tiny.yaml"});
+    ASSERT_EQ(result.code, 0) << result.err;
+    EXPECT_THAT(result.out, AllOf(StartsWith("done: peak"), HasSubstr("results in results/tiny")));
+    expect_all_files(path("results/tiny"));
+    const auto history = lines_of(content_of(path("results/tiny/history.csv")));
+    const std::string columns =
+        "step,stage,load_factor,axial_strain,axial_stress,lateral_strain,lateral_stress,differential_stress,"
+        "volumetric_strain,cracks_tension,cracks_shear,open,sliding,locked,open_close_iterations,crack_passes,"
+        "unbalanced_ratio,balanced,elapsed_s";
+    EXPECT_EQ(history.front(), columns);
+    EXPECT_EQ(history.size(), 1U + 1U + 2U + 8U); // columns, initial state, steps of the two stages
+    EXPECT_EQ(lines_of(content_of(path("results/tiny/equilibria.csv"))).front(), columns);
+    EXPECT_EQ(lines_of(content_of(path("results/tiny/cracks.csv"))).front(),
+              "step,pass,interface,x,y,mode,p1,p3,axial_strain");
+    const auto json = summary("results/tiny");
+    EXPECT_EQ(json["status"], "done");
+    EXPECT_EQ(json["steps"], 10);
     for (const char* key :
          {"peak_stress", "peak_strain", "peak_reached", "residual_stress", "youngs_modulus", "poissons_ratio",
-          "cracks_tension", "cracks_shear", "blocks", "interfaces", "unknowns", "steps", "unbalanced_steps",
-          "open_close_iterations", "factorizations", "analyses", "elapsed_s", "peak_memory_bytes", "version"}) {
-        EXPECT_TRUE(numbers.contains(key)) << key;
-    }
-    const std::string series = text_of(directory_ / "out/fields.pvd");
-    const std::regex reference("file=\"([^\"]+)\"");
-    int n_fields = 0;
-    for (std::sregex_iterator it(series.begin(), series.end(), reference), end; it != end; ++it, ++n_fields) {
-        EXPECT_TRUE(exists("out/" + (*it)[1].str())) << (*it)[1];
-    }
-    EXPECT_GT(n_fields, 1);
-}
-
-TEST_F(CommandLine, NoOutputHoldsANumberThatIsNone) {
-    ASSERT_EQ(run_specimen("out").exit_code, 0);
-    for (const auto& entry : fs::recursive_directory_iterator(directory_ / "out")) {
-        const auto extension = entry.path().extension();
-        if (extension != ".csv" && extension != ".json" && extension != ".vtu") continue;
-        const std::string text = text_of(entry.path());
-        EXPECT_FALSE(std::regex_search(text, std::regex("\\b(nan|inf)\\b", std::regex::icase))) << entry.path();
-    }
-}
-
-TEST_F(CommandLine, OverrideTakesEffect) {
-    ASSERT_EQ(run_specimen("out", {"--set", "stages.1.steps=3", "--set", "output.pictures=false"}).exit_code, 0);
-    EXPECT_EQ(summary("out").at("steps"), 5);
-    EXPECT_FALSE(exists("out/curve.png"));
+          "cracks_tension", "cracks_shear", "blocks", "interfaces", "unknowns", "unbalanced_steps",
+          "open_close_iterations", "factorizations", "analyses", "elapsed_s", "peak_memory_bytes", "version"})
+        EXPECT_TRUE(json.contains(key)) << key;
 }
 
 TEST_F(CommandLine, QuietRunSaysNothing) {
-    const Outcome outcome = run_specimen("out", {"--quiet", "--set", "stages.1.steps=2"});
-    EXPECT_EQ(outcome.exit_code, 0);
-    EXPECT_THAT(outcome.output, IsEmpty());
-    EXPECT_THAT(outcome.errors, IsEmpty());
+    write("tiny.yaml", tiny_scene);
+    const Result result = kluft({"run", "tiny.yaml", "--quiet", "-o", "r"});
+    EXPECT_EQ(result.code, 0);
+    EXPECT_THAT(result.out + result.err, IsEmpty());
 }
 
-TEST_F(CommandLine, SameSceneGivesTheSameHistoryWithOneAndTwoThreads) {
-    ASSERT_EQ(run_specimen("first").exit_code, 0);
-    ASSERT_EQ(run_specimen("again").exit_code, 0);
-    ASSERT_EQ(run_specimen("one", {"--threads", "1"}).exit_code, 0);
-    ASSERT_EQ(run_specimen("two", {"--threads", "2"}).exit_code, 0);
-    const auto history = history_but_times("first");
-    EXPECT_EQ(history_but_times("again"), history);
-    EXPECT_EQ(history_but_times("one"), history);
-    EXPECT_EQ(history_but_times("two"), history);
+TEST_F(CommandLine, OverrideTakesEffectAndIsLogged) {
+    write("tiny.yaml", tiny_scene);
+    ASSERT_EQ(kluft({"run", "tiny.yaml", "-o", "r", "--set", "stages.1.steps=3", "--set", "title=Other"}).code, 0);
+    EXPECT_EQ(summary("r")["steps"], 5);
+    EXPECT_EQ(summary("r")["title"], "Other");
+    EXPECT_THAT(content_of(path("r/run.log")), HasSubstr("--set stages.1.steps=3"));
 }
 
-TEST_F(CommandLine, InterruptedRunLeavesReadableFilesAndResumesToTheSameEnd) {
-    const std::vector<std::string> many_steps{"--set", "stages.1.steps=60", "--set", "output.pictures=false"};
-    ASSERT_EQ(run_specimen("whole", many_steps).exit_code, 0);
+TEST_F(CommandLine, NewRunReplacesTheResultsOfAnOldOneAndKeepsForeignFiles) {
+    write("tiny.yaml", tiny_scene);
+    ASSERT_EQ(kluft({"run", "tiny.yaml", "-o", "r"}).code, 0);
+    write("r/notes.txt", "mine");
+    ASSERT_EQ(
+        kluft({"run", "tiny.yaml", "-o", "r", "--set", "stages.1.steps=3", "--set", "output.pictures=false"}).code, 0);
+    EXPECT_EQ(content_of(path("r/notes.txt")), "mine");
+    EXPECT_FALSE(fs::exists(path("r/curve.png")));
+    EXPECT_EQ(lines_of(content_of(path("r/history.csv"))).size(), 7U);
+}
 
-    std::vector<std::string> arguments{"run", "specimen.yaml", "-o", "cut"};
-    arguments.insert(arguments.end(), many_steps.begin(), many_steps.end());
-    ChildProcess child(directory_.path(), arguments);
-    for (int i = 0; i < 10000 && table("cut/history.csv").size() < 10; ++i) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
+TEST_F(CommandLine, RunIsRefusedWhereItsDirectoryIsAFile) {
+    write("tiny.yaml", tiny_scene);
+    expect_refused({"run", "tiny.yaml", "-o", "tiny.yaml"}, HasSubstr("expected a directory for the results"));
+    EXPECT_EQ(content_of(path("tiny.yaml")), tiny_scene);
+}
+
+TEST_F(CommandLine, BodyThatSlidesAwayEndsWithExitCode3AndIsNamed) {
+    write("slide.yaml", sliding_scene);
+    const Result result = kluft({"run", "slide.yaml", "-o", "r"});
+    EXPECT_EQ(result.code, 3);
+    EXPECT_THAT(result.err, ContainsRegex("no equilibrium in stage 1 .*worst is block 1 at \\(2, 1\\).*interfaces 0"));
+    EXPECT_EQ(summary("r")["status"], "no_equilibrium");
+    EXPECT_GE(summary("r")["unbalanced_steps"], 10);
+    EXPECT_EQ(kluft({"draw", "r", "-o", "again.png"}).code, 0);
+    EXPECT_GT(fs::file_size(path("again.png")), 0U);
+}
+
+TEST_F(CommandLine, BodyThatNothingHoldsEndsWithExitCode3) {
+    write("loose.yaml", loose_scene);
+    const Result result = kluft({"run", "loose.yaml", "-o", "r"});
+    EXPECT_EQ(result.code, 3);
+    EXPECT_THAT(result.err, HasSubstr("nothing holds the body"));
+    EXPECT_EQ(summary("r")["status"], "no_equilibrium");
+    EXPECT_EQ(lines_of(content_of(path("r/history.csv"))).size(), 2U); // no step was committed
+    EXPECT_EQ(kluft({"draw", "r", "-o", "again.png"}).code, 0);
+}
+
+// ---- interruption and resumption -----------------------------------------------------------------------------------
+
+const Words long_run{"run", model("quickstart.yaml"), "--quiet", "--set", "stages.1.steps=120"};
+
+Words with(Words words, const Words& more) {
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+}
+
+TEST_F(SlowCommandLine, InterruptedRunIsCompleteAndGoesOnAsIfItHadNotBeenInterrupted) {
+    ASSERT_EQ(kluft(with(long_run, {"-o", "whole"})).code, 0);
+    Child child(directory_.path(), with(long_run, {"-o", "broken"}));
+    const auto n_rows = [&] {
+        return fs::exists(path("broken/history.csv")) ? lines_of(content_of(path("broken/history.csv"))).size() : 0U;
+    };
+    for (int i = 0; i < 3000 && n_rows() < 20; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(2));
     child.interrupt();
-    ASSERT_EQ(child.wait(), 130) << child.errors();
-    EXPECT_EQ(summary("cut").at("status"), "interrupted");
-    const auto part = history_but_times("cut");
-    const auto whole = history_but_times("whole");
-    ASSERT_LT(part.size(), whole.size());
-    EXPECT_TRUE(std::equal(part.begin(), part.end(), whole.begin()));
-    EXPECT_EQ(kluft({"draw", "cut"}).exit_code, 0);
-
-    arguments.push_back("--resume");
-    ASSERT_EQ(kluft(arguments).exit_code, 0);
-    EXPECT_EQ(history_but_times("cut"), whole);
-    EXPECT_EQ(table("cut/cracks.csv"), table("whole/cracks.csv"));
+    ASSERT_EQ(child.wait(), 130);
+    expect_all_files(path("broken"));
+    EXPECT_EQ(summary("broken")["status"], "interrupted");
+    const std::size_t rows_so_far = n_rows();
+    EXPECT_GE(rows_so_far, 20U);
+    ASSERT_LT(rows_so_far, 124U);
+    const Result resumed = kluft(with(long_run, {"-o", "broken", "--resume"}));
+    ASSERT_EQ(resumed.code, 0) << resumed.err;
+    for (const char* name : {"history.csv", "equilibria.csv"})
+        EXPECT_TRUE(table(std::string("broken/") + name) == table(std::string("whole/") + name)) << name;
+    EXPECT_TRUE(content_of(path("broken/cracks.csv")) == content_of(path("whole/cracks.csv")));
+    // Costs are those of both parts.
+    EXPECT_EQ(summary("broken")["open_close_iterations"], summary("whole")["open_close_iterations"]);
+    EXPECT_EQ(summary("broken")["factorizations"], summary("whole")["factorizations"]);
+    EXPECT_GT(summary("broken")["seconds"]["factorization"], 0.0);
+    expect_all_files(path("broken"));
 }
 
-TEST_F(CommandLine, BodyThatNothingHoldsEndsWithADiagnosisAndItsLastState) {
-    // Loose blocks without friction under a lateral pressure on one side only: they can only fly off.
-    std::string text = specimen;
-    text.replace(text.find("interface: bond"), 15, "interface: joint");
-    text.replace(text.find("friction_angle: 20"), 18, "friction_angle: 0");
-    text.replace(text.find("bottom: {support: pinned}"), 25, "bottom: {support: smooth}");
-    text.replace(text.find("left: 0.2 MPa, right: 0.2 MPa"), 29, "left: 0.2 MPa, right: 0 MPa");
-    write("loose.yaml", text);
-    const Outcome outcome = kluft({"run", "loose.yaml", "-o", "out", "--set", "solver.max_unbalanced_steps=1"});
-    EXPECT_EQ(outcome.exit_code, 3);
-    EXPECT_TRUE(std::regex_search(outcome.errors, std::regex("no equilibrium in stage 0 at load step [12]: .* worst is "
-                                                             "block [0-9]+ at \\(.*interfaces( [0-9]+)+")))
-        << outcome.errors;
-    EXPECT_EQ(summary("out").at("status"), "no_equilibrium");
-    EXPECT_EQ(kluft({"draw", "out"}).exit_code, 0);
-    EXPECT_EQ(table("out/history.csv").at(0), columns);
+TEST_F(CommandLine, FinishedRunIsResumedWithoutChange) {
+    write("tiny.yaml", tiny_scene);
+    ASSERT_EQ(kluft({"run", "tiny.yaml", "-o", "r"}).code, 0);
+    const std::string before = content_of(path("r/history.csv"));
+    const auto factorizations = summary("r")["factorizations"];
+    ASSERT_EQ(kluft({"run", "tiny.yaml", "-o", "r", "--resume"}).code, 0);
+    EXPECT_EQ(content_of(path("r/history.csv")), before);
+    EXPECT_EQ(summary("r")["factorizations"], factorizations);
 }
 
-TEST_F(CommandLine, FullDiskEndsTheRunWithTheTablesSoFar) {
-    const Outcome outcome = [&] {
-        write("specimen.yaml", specimen);
-        return kluft({"run", "specimen.yaml", "-o", "out", "--quiet"}, {.largest_file = 3000});
-    }();
-    EXPECT_EQ(outcome.exit_code, 4);
-    EXPECT_THAT(outcome.errors, HasSubstr("File too large"));
-    const auto rows = table("out/history.csv");
-    ASSERT_GE(rows.size(), 2u);
-    for (const auto& row : rows) EXPECT_EQ(row.size(), columns.size());
-    for (const auto& entry : fs::recursive_directory_iterator(directory_ / "out")) {
-        EXPECT_THAT(entry.path().filename().string(), Not(HasSubstr("tmp"))); // nothing half written
-    }
+TEST_F(CommandLine, ResumingIsRefusedWithoutASavedStateOrWithAnotherScene) {
+    write("tiny.yaml", tiny_scene);
+    expect_refused({"run", "tiny.yaml", "-o", "absent", "--resume"}, HasSubstr("absent/state.h5"));
+    EXPECT_FALSE(fs::exists(path("absent")));
+    ASSERT_EQ(kluft({"run", "tiny.yaml", "-o", "r"}).code, 0);
+    const std::string before = content_of(path("r/history.csv"));
+    expect_refused({"run", "tiny.yaml", "-o", "r", "--resume", "--set", "stages.0.steps=3"},
+                   HasSubstr("belongs to another scene"));
+    EXPECT_EQ(content_of(path("r/history.csv")), before);
 }
 
-TEST_F(CommandLine, LackOfMemoryEndsTheRunWithAMessage) {
-#if defined(__SANITIZE_ADDRESS__)
-    GTEST_SKIP() << "the address sanitizer reserves more addresses than any limit allows";
-#else
-    write("specimen.yaml", specimen);
-    const Outcome outcome =
-        kluft({"run", "specimen.yaml", "-o", "out", "--quiet", "--set", "geometry.tessellation.hexagons.spacing=0.003"},
-              {.address_space = 220u << 20});
-    EXPECT_EQ(outcome.exit_code, 4) << outcome.errors;
-    EXPECT_THAT(outcome.errors, HasSubstr("memory"));
+// ---- out of disk and memory ----------------------------------------------------------------------------------------
+
+// Files cannot grow beyond 6 kB, so that the history stops in the middle of the first stage.
+TEST_F(CommandLine, FullDiskEndsWithExitCode4AndLeavesWholeRows) {
+    const Words words = with(long_run, {"--set", "output.fields=false", "--set", "stages.0.steps=60"});
+    const Result full = kluft(with(words, {"-o", "full"}), {.file_bytes = 6000});
+    EXPECT_EQ(full.code, 4);
+    EXPECT_THAT(full.err, HasSubstr("equilibria.csv: cannot write: File too large"));
+    EXPECT_THAT(content_of(path("full/run.log")), HasSubstr("cannot write: File too large"));
+    EXPECT_EQ(summary("full")["status"], "out_of_resources");
+    EXPECT_GT(summary("full")["factorizations"], 0);
+    EXPECT_GT(summary("full")["steps"], 10);
+    const auto rows = lines_of(content_of(path("full/history.csv")));
+    EXPECT_EQ(rows.size(), 2U + summary("full")["steps"].get<std::size_t>());
+    for (const auto& row : rows) EXPECT_EQ(std::ranges::count(row, ','), 18) << row;
+}
+
+// The saved state grows with the cracks. Files cannot grow to its last size, so that saving it fails in the middle of the
+// run; with room again the run goes on from the state before, to the same end.
+TEST_F(SlowCommandLine, RunGoesOnAfterAFullDiskAndNothingIsLost) {
+    const Words words = with(long_run, {"--set", "output.fields=false", "--set", "output.pictures=false", "--set",
+                                        "output.checkpoint_every=5"});
+    ASSERT_EQ(kluft(with(words, {"-o", "whole"})).code, 0);
+    const rlim_t most = fs::file_size(path("whole/state.h5")) - 1;
+    const Result full = kluft(with(words, {"-o", "full"}), {.file_bytes = most});
+    EXPECT_EQ(full.code, 4);
+    EXPECT_THAT(full.err, HasSubstr("state.h5.part: cannot write: File too large"));
+    EXPECT_EQ(lines_of(full.err).size(), 1U) << full.err;
+    EXPECT_FALSE(fs::exists(path("full/state.h5.part")));
+    EXPECT_THAT(table("whole/history.csv"), StartsWith(table("full/history.csv")));
+    const Result resumed = kluft(with(words, {"-o", "full", "--resume"}));
+    ASSERT_EQ(resumed.code, 0) << resumed.err;
+    for (const char* name : {"history.csv", "equilibria.csv"})
+        EXPECT_TRUE(table(std::string("full/") + name) == table(std::string("whole/") + name)) << name;
+    EXPECT_TRUE(content_of(path("full/cracks.csv")) == content_of(path("whole/cracks.csv")));
+}
+
+TEST_F(SlowCommandLine, OutOfMemoryEndsWithExitCode4) {
+#ifdef KLUFT_SANITIZED
+    GTEST_SKIP() << "the address sanitizer reserves more address space than any limit";
 #endif
+    constexpr rlim_t megabyte = 1000000;
+    rlim_t enough = 64 * megabyte; // to load the program
+    while (enough < 4000 * megabyte && kluft({"--version"}, {.memory_bytes = enough}).code != 0)
+        enough += 16 * megabyte;
+    const Result result = kluft({"run", model("quickstart.yaml"), "-o", "r", "--set", "output.pictures=false", "--set",
+                                 "geometry.tessellation.hexagons.spacing=0.004"},
+                                {.memory_bytes = enough + 16 * megabyte});
+    EXPECT_EQ(result.code, 4);
+    EXPECT_THAT(result.err, HasSubstr("out of memory"));
 }
 
-TEST_F(CommandLine, ResumeRefusesAnotherScene) {
-    ASSERT_EQ(run_specimen("out", {"--set", "stages.1.steps=2"}).exit_code, 0);
-    const Outcome outcome = run_specimen("out", {"--resume", "--set", "geometry.tessellation.hexagons.spacing=0.04"});
-    EXPECT_EQ(outcome.exit_code, 2);
-    EXPECT_THAT(outcome.errors, HasSubstr("state.h5"));
+// ---- determinism ---------------------------------------------------------------------------------------------------
+
+TEST_F(SlowCommandLine, SameSceneGivesTheSameTablesWithAnyNumberOfThreads) {
+    ASSERT_EQ(kluft(with(long_run, {"-o", "first"})).code, 0);
+    ASSERT_EQ(kluft(with(long_run, {"-o", "again"})).code, 0);
+    ASSERT_EQ(kluft(with(long_run, {"-o", "two", "--threads", "2"})).code, 0);
+    for (const char* name : {"history.csv", "equilibria.csv"}) {
+        EXPECT_TRUE(table(std::string("again/") + name) == table(std::string("first/") + name)) << name;
+        EXPECT_TRUE(table(std::string("two/") + name) == table(std::string("first/") + name)) << name;
+    }
+    EXPECT_TRUE(content_of(path("two/cracks.csv")) == content_of(path("first/cracks.csv")));
+    EXPECT_GT(lines_of(content_of(path("first/cracks.csv"))).size(), 1U);
 }
+
+// ---- kluft draw, kluft envelope ------------------------------------------------------------------------------------
 
 TEST_F(CommandLine, DrawMakesPicturesOfScenesAndRuns) {
-    ASSERT_EQ(run_specimen("out", {"--set", "stages.1.steps=4", "--set", "output.pictures=false"}).exit_code, 0);
-    EXPECT_EQ(kluft({"draw", "specimen.yaml", "-o", "scene.svg"}).exit_code, 0);
-    EXPECT_TRUE(exists("scene.svg"));
-    EXPECT_EQ(kluft({"draw", "out"}).exit_code, 0);
-    EXPECT_TRUE(exists("out/curve.png"));
-    EXPECT_TRUE(exists("out/blocks.svg"));
-    const Outcome missing = kluft({"draw", "nowhere"});
-    EXPECT_EQ(missing.exit_code, 2);
-    EXPECT_THAT(missing.errors, HasSubstr("nowhere"));
-    const Outcome format = kluft({"draw", "out", "-o", "picture.gif"});
-    EXPECT_EQ(format.exit_code, 2);
-    EXPECT_THAT(format.errors, HasSubstr(".png"));
+    write("tiny.yaml", tiny_scene);
+    EXPECT_EQ(kluft({"draw", "tiny.yaml"}).code, 0);
+    EXPECT_THAT(content_of(path("tiny.png")), StartsWith("\x89PNG"));
+    EXPECT_EQ(kluft({"draw", "tiny.yaml", "-o", "tiny.svg"}).code, 0);
+    EXPECT_THAT(content_of(path("tiny.svg")), HasSubstr("</svg>"));
+    ASSERT_EQ(kluft({"run", "tiny.yaml", "-o", "r", "--set", "output.pictures=false"}).code, 0);
+    EXPECT_EQ(kluft({"draw", "r"}).code, 0);
+    for (const char* name : {"r/curve.png", "r/curve.svg", "r/blocks.png", "r/blocks.svg"})
+        EXPECT_GT(fs::file_size(path(name)), 0U) << name;
+    EXPECT_EQ(kluft({"draw", "r", "r", "-o", "both.svg", "--mark", "published=0.3 MPa"}).code, 0);
+    EXPECT_THAT(content_of(path("both.svg")), HasSubstr("</svg>"));
 }
 
-// sigma_1 = 2 c sqrt(N) + N sigma_3, N = (1 + sin phi)/(1 - sin phi), through two points.
-TEST_F(CommandLine, EnvelopeIsTheLineThroughThePeaks) {
-    std::vector<double> peaks;
-    for (const char* pressure : {"0.1", "0.4"}) {
-        const std::string sides =
-            fmt::format("stages.0.pressure={{left: {0} MPa, right: {0} MPa, top: {0} MPa}}", pressure);
-        ASSERT_EQ(run_specimen(pressure, {"--set", sides, "--set", "stages.1.strain.value=2.5 %", "--set",
-                                          "output.pictures=false"})
-                      .exit_code,
-                  0);
-        peaks.push_back(summary(pressure).at("peak_stress"));
-    }
-    const Outcome outcome = kluft({"envelope", "0.1", "0.4", "-o", "fit.png"});
-    ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
-    EXPECT_TRUE(exists("fit.png"));
-    const double slope = (peaks[1] - peaks[0]) / 0.3e6;
-    const double cohesion = (peaks[0] - slope * 0.1e6) / (2 * std::sqrt(slope)) / 1e6;
-    const double angle = std::asin((slope - 1) / (slope + 1)) * 180 / M_PI;
-    std::smatch found;
-    ASSERT_TRUE(
-        std::regex_search(outcome.output, found, std::regex("cohesion ([0-9.]+) MPa, friction angle ([0-9.]+) deg")))
-        << outcome.output;
-    EXPECT_NEAR(std::stod(found[1]), cohesion, 1e-3);
-    EXPECT_NEAR(std::stod(found[2]), angle, 0.1);
-    EXPECT_EQ(kluft({"envelope", "0.1", "nowhere"}).exit_code, 2);
+TEST_F(CommandLine, DrawRefusesWhatItCannotDraw) {
+    write("tiny.yaml", tiny_scene);
+    fs::create_directory(path("empty"));
+    expect_refused({"draw", "absent"}, HasSubstr("absent: expected a scene file or a directory of results"));
+    expect_refused({"draw", "empty"}, HasSubstr("empty: expected a directory of results, found no history.csv"));
+    expect_refused({"draw", "tiny.yaml", "-o", "tiny.gif"}, HasSubstr(".png"));
+    expect_refused({"draw", "tiny.yaml", "empty"}, HasSubstr("tiny.yaml: expected a directory of results"));
+    EXPECT_FALSE(fs::exists(path("tiny.gif")));
+}
+
+TEST_F(CommandLine, EnvelopeFitsThePeaksOfRuns) {
+    write("tiny.yaml", tiny_scene);
+    ASSERT_EQ(kluft({"run", "tiny.yaml", "-o", "low", "--quiet"}).code, 0);
+    ASSERT_EQ(kluft({"run", "tiny.yaml", "-o", "high", "--quiet", "--set",
+                     "stages.0.pressure={left: 0.3 MPa, right: 0.3 MPa, top: 0.3 MPa}"})
+                  .code,
+              0);
+    const Result result = kluft({"envelope", "low", "high"});
+    EXPECT_EQ(result.code, 0) << result.err;
+    EXPECT_THAT(result.out, AllOf(HasSubstr("MPa"), HasSubstr("deg"), HasSubstr("envelope.png")));
+    EXPECT_THAT(content_of(path("envelope.png")), StartsWith("\x89PNG"));
+    EXPECT_GT(lines_of(content_of(path("envelope.csv"))).size(), 2U);
+}
+
+TEST_F(CommandLine, EnvelopeRefusesWhatIsNoRun) {
+    write("file", "");
+    fs::create_directory(path("empty"));
+    expect_refused({"envelope", "absent"}, HasSubstr("absent: expected a directory of results, found nothing"));
+    expect_refused({"envelope", "file"}, HasSubstr("file: expected a directory of results, found a file"));
+    expect_refused({"envelope", "empty"}, HasSubstr("found no history.csv"));
+    expect_refused({"envelope", "empty", "--compare", "x"}, HasSubstr("--compare"));
+    EXPECT_FALSE(fs::exists(path("envelope.png")));
 }
 
 } // namespace

@@ -241,5 +241,25 @@ TEST(RunWriter, SavesWhatItCanWhenTheDiskIsFull) {
     EXPECT_EQ(read_state(directory / "state.h5", "scene").step, 14);
 }
 
+// A row that does not fit is written as soon as there is room; a state that the history does not reach is not saved.
+TEST(RunWriter, WritesTheRowsThatWaitedForRoomOnTheDisk) {
+    const TemporaryDirectory directory;
+    SmallRun run(directory.path(), {});
+    run.go_to(5);
+    rlimit before{};
+    getrlimit(RLIMIT_FSIZE, &before);
+    const rlimit limit{fs::file_size(directory / "history.csv") + 20, before.rlim_max};
+    const auto signal = std::signal(SIGXFSZ, SIG_IGN);
+    setrlimit(RLIMIT_FSIZE, &limit);
+    EXPECT_THROW(run.try_step(6), ResourceError);
+    setrlimit(RLIMIT_FSIZE, &before);
+    std::signal(SIGXFSZ, signal);
+    EXPECT_EQ(steps_in(directory / "equilibria.csv").back(), 5);
+    run.finish(RunStatus::out_of_resources);
+    EXPECT_EQ(steps_in(directory / "equilibria.csv").back(), 6);
+    EXPECT_EQ(steps_in(directory / "history.csv").back(), 5);
+    EXPECT_EQ(read_state(directory / "state.h5", "scene").step, 5);
+}
+
 } // namespace
 } // namespace kluft

@@ -34,6 +34,9 @@ State state_of(int n_blocks) {
     state.boundary_pressure = {2e5, 0.0, 1.0 / 7.0};
     state.unbalanced_ratio = 3e-4;
     state.unbalanced_in_succession = 2;
+    state.displacement_rate = 3.0 * state.displacement;
+    state.near_pairs = {{0, 3}, {2, 1}};
+    state.costs = {179, 180, 2, 12.5, {1, 2, 3, 4, 5, 6, 7, 8}};
     return state;
 }
 
@@ -58,6 +61,14 @@ void expect_same(const State& a, const State& b) {
     EXPECT_EQ(a.boundary_pressure, b.boundary_pressure);
     EXPECT_EQ(a.unbalanced_ratio, b.unbalanced_ratio);
     EXPECT_EQ(a.unbalanced_in_succession, b.unbalanced_in_succession);
+    EXPECT_EQ(a.displacement_rate, b.displacement_rate);
+    EXPECT_EQ(a.near_pairs, b.near_pairs);
+    EXPECT_EQ(a.costs.open_close_iterations, b.costs.open_close_iterations);
+    EXPECT_EQ(a.costs.factorizations, b.costs.factorizations);
+    EXPECT_EQ(a.costs.analyses, b.costs.analyses);
+    EXPECT_EQ(a.costs.elapsed_s, b.costs.elapsed_s);
+    EXPECT_EQ(a.costs.seconds.detection, b.costs.seconds.detection);
+    EXPECT_EQ(a.costs.seconds.observers, b.costs.seconds.observers);
 }
 
 TEST(StateFile, IsReadBackBitForBit) {
