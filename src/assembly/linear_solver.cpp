@@ -7,11 +7,14 @@
 
 #include <cholmod.h>
 #include <metis.h>
+#include <sys/mman.h>
 #include <umfpack.h>
 
 #include "kluft/core/diagnostics.hpp"
 
 extern "C" void openblas_set_num_threads(int n_threads);
+extern "C" void dtrsv_(const char* uplo, const char* trans, const char* diag, const int* n, const double* a,
+                       const int* lda, double* x, const int* incx);
 
 namespace kluft {
 
@@ -222,7 +225,28 @@ struct LinearSolver::Backend {
 LinearSolver::LinearSolver() : backend_(std::make_unique<Backend>()) {}
 LinearSolver::~LinearSolver() = default;
 
+namespace {
+
+/// OpenBLAS maps its work space of 128 MB at its first use and tries for ever where the system refuses it.
+/// Throws ResourceError instead.
+void take_blas_work_space() {
+    constexpr std::size_t work_space_bytes = 136U << 20U;
+    static bool taken = false;
+    if (taken) return;
+    void* const space = mmap(nullptr, work_space_bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (space == MAP_FAILED) throw ResourceError("out of memory: no address space for the work space of the BLAS");
+    munmap(space, work_space_bytes);
+    const int one = 1;
+    const double a = 1.0;
+    double x = 1.0;
+    dtrsv_("L", "N", "N", &one, &a, &one, &x, &one);
+    taken = true;
+}
+
+} // namespace
+
 void LinearSolver::analyze(const BlockPattern& pattern) {
+    take_blas_work_space();
     const auto start = std::chrono::steady_clock::now();
     backend_->forget();
     backend_->layout.build(pattern);
