@@ -245,7 +245,7 @@ private:
                 smooth = false;
                 if (trial.converged()) commit(trial, from);
                 trial = relax(target, trial.summary.restless);
-                if (!trial.balanced && problem_.constraints.rows().empty())
+                if (!trial.balanced && nothing_holds())
                     throw NoEquilibrium{last_worst_block_, trial.viscous_share, true};
             }
             double reached = target;
@@ -262,6 +262,8 @@ private:
         const auto& motion = model_.loads.stages[work_.stage].motion;
         return !motion || motion->control == PlatenControl::stress;
     }
+
+    [[nodiscard]] bool nothing_holds() const { return problem_.constraints.rows().empty(); }
 
     /// Under a given stress or weight a body that lost its balance may fall for ever.
     [[nodiscard]] bool is_falling() const {
@@ -417,7 +419,7 @@ private:
             trial.balanced = trial.viscous_share <= options_.balance;
             if (trial.balanced) return trial;
             commit(trial, work_.load_factor);
-            if (is_falling()) throw NoEquilibrium{trial.summary.worst_block, trial.viscous_share};
+            if (is_falling()) throw NoEquilibrium{trial.summary.worst_block, trial.viscous_share, nothing_holds()};
             if (trial.summary.iterations <= easy_iterations) {
                 for (double& f : factor) f = std::max(1.0, f / relaxation_decay);
             }
