@@ -1,5 +1,7 @@
 // The command line of Kluft.
+#include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <functional>
 #include <memory>
@@ -22,20 +24,63 @@ using Command = std::function<ExitCode()>; ///< what the command line asks for
 
 int exit_with(ExitCode code) { return static_cast<int>(code); }
 
+/// Without the exit handlers of libraries: OpenBLAS waits there for a thread that waits for memory.
+[[noreturn]] void leave_out_of_resources() {
+    std::fflush(nullptr);
+    std::_Exit(exit_with(ExitCode::out_of_resources));
+}
+
 int bad_input(const std::string& message) {
     std::fprintf(stderr, "%s\n", message.c_str());
     return exit_with(ExitCode::bad_input);
 }
 
-/// "run, check, ..." suggestion for a mistyped subcommand.
-std::string unknown_command(int argc, char** argv) {
-    const std::vector<std::string> commands{"run", "check", "draw", "envelope"};
-    if (argc < 2 || argv[1][0] == '-') return {};
-    for (const auto& command : commands) {
-        if (command == argv[1]) return {};
+/// What is wrong with the name of the subcommand, the first word; "" if nothing is.
+std::string unknown_command(const CLI::App& app, const std::vector<std::string>& words) {
+    if (words.empty() || words.front().starts_with('-')) return {};
+    std::vector<std::string> commands;
+    for (const CLI::App* sub : app.get_subcommands({})) commands.push_back(sub->get_name());
+    if (std::ranges::find(commands, words.front()) != commands.end()) return {};
+    return "kluft: unknown command '" + words.front() + "'; expected one of " + kluft::listed(commands) +
+           kluft::suggestion(words.front(), commands);
+}
+
+/// The first option in `words` that `app` does not know, with the nearest one that it knows; "" if there is none.
+std::string unknown_option(const CLI::App& app, const std::string& title, const std::vector<std::string>& words) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : app.get_options()) {
+        for (const auto& name : option->get_lnames()) names.push_back("--" + name);
     }
-    return std::string("kluft: unknown command '") + argv[1] + "'; expected one of " + kluft::listed(commands) +
-           kluft::suggestion(argv[1], commands);
+    bool is_value = false; // of the option before
+    for (const auto& word : words) {
+        if (word == "--") return {};
+        const bool is_option = !is_value && word.size() > 1 && word.starts_with('-');
+        is_value = false;
+        if (!is_option) continue;
+        const auto equals = word.find('=');
+        const std::string name = word.starts_with("--") ? word.substr(0, equals) : word.substr(0, 2); // -oDIR is -o DIR
+        const CLI::Option* option = app.get_option_no_throw(name);
+        if (option == nullptr) {
+            return title + ": unknown option '" + name + "'; expected one of " + kluft::listed(names) +
+                   kluft::suggestion(name, names);
+        }
+        is_value = option->get_items_expected_max() > 0 && name == word;
+    }
+    return {};
+}
+
+/// The one message for a command line that cannot be understood.
+std::string misunderstanding(const CLI::App& app, const std::vector<std::string>& words, const CLI::ParseError& error) {
+    const auto chosen = app.get_subcommands();
+    std::string title = "kluft";
+    std::string unknown;
+    if (chosen.empty()) {
+        unknown = unknown_option(app, title, words);
+    } else {
+        title += " " + chosen.front()->get_name();
+        unknown = unknown_option(*chosen.front(), title, {words.begin() + 1, words.end()});
+    }
+    return unknown.empty() ? title + ": " + error.what() + "; see " + title + " --help" : unknown;
 }
 
 void add_run_command(CLI::App& app, Command& command) {
@@ -123,15 +168,17 @@ int main(int argc, char** argv) {
     add_check_command(app, command);
     add_draw_command(app, command);
     add_envelope_command(app, command);
-    if (const std::string message = unknown_command(argc, argv); !message.empty()) return bad_input(message);
+    const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+    if (const std::string message = unknown_command(app, words); !message.empty()) return bad_input(message);
     try {
         app.parse(argc, argv);
-        return exit_with(command());
+        const ExitCode code = command();
+        if (code == ExitCode::out_of_resources) leave_out_of_resources();
+        return exit_with(code);
     } catch (const CLI::Success& help) {
         return app.exit(help);
     } catch (const CLI::ParseError& error) {
-        app.exit(error);
-        return exit_with(ExitCode::bad_input);
+        return bad_input(misunderstanding(app, words, error));
     } catch (const kluft::InputError& error) {
         return bad_input(error.what());
     } catch (const kluft::NoEquilibriumError& error) {
@@ -139,9 +186,9 @@ int main(int argc, char** argv) {
         return exit_with(ExitCode::no_equilibrium);
     } catch (const kluft::ResourceError& error) {
         std::fprintf(stderr, "%s\n", error.what());
-        return exit_with(ExitCode::out_of_resources);
+        leave_out_of_resources();
     } catch (const std::bad_alloc&) {
         std::fprintf(stderr, "out of memory\n");
-        return exit_with(ExitCode::out_of_resources);
+        leave_out_of_resources();
     }
 }

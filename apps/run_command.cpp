@@ -1,10 +1,8 @@
 // kluft run SCENE
 #include <atomic>
-#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <memory>
-#include <new>
 #include <string>
 #include <vector>
 
@@ -78,19 +76,21 @@ RunWriterOptions writer_options(const Scene& scene, const Model& model) {
     return options;
 }
 
-RunOutcome outcome_of(const RunReport& report, const Model& model, double elapsed_s) {
+RunOutcome outcome_of(const RunReport& report, const Model& model) {
+    const RunSeconds& seconds = report.costs.seconds;
     RunOutcome outcome;
     outcome.status = report.status;
     outcome.message = report.diagnosis;
-    outcome.factorizations = report.linear.factorizations;
-    outcome.analyses = report.linear.analyses;
+    outcome.open_close_iterations = report.costs.open_close_iterations;
+    outcome.factorizations = report.costs.factorizations;
+    outcome.analyses = report.costs.analyses;
     outcome.unknowns = n_block_unknowns * model.system.n_blocks();
-    outcome.elapsed_s = elapsed_s;
+    outcome.elapsed_s = report.costs.elapsed_s;
     outcome.version = std::string(version());
-    outcome.seconds = {{"detection", report.seconds.detection},         {"set_up", report.seconds.set_up},
-                       {"assembly", report.seconds.assembly},           {"analysis", report.seconds.analysis},
-                       {"factorization", report.seconds.factorization}, {"solution", report.seconds.solution},
-                       {"crack_check", report.seconds.crack_check},     {"output", report.seconds.observers}};
+    outcome.seconds = {{"detection", seconds.detection},         {"set_up", seconds.set_up},
+                       {"assembly", seconds.assembly},           {"analysis", seconds.analysis},
+                       {"factorization", seconds.factorization}, {"solution", seconds.solution},
+                       {"crack_check", seconds.crack_check},     {"output", seconds.observers}};
     return outcome;
 }
 
@@ -117,41 +117,33 @@ std::string closing_line(const RunReport& report, const RunSummary& summary, con
                             summary.numbers.peak_reached ? "" : " (still rising)");
     }
     text += fmt::format(", {} tension and {} shear cracks, {} solves, {:.1f} s; results in {}",
-                        summary.numbers.cracks_tension, summary.numbers.cracks_shear, report.open_close_iterations,
-                        summary.elapsed_s, directory.string());
-    if (report.unbalanced_steps > 0) text += fmt::format("; {} steps unbalanced", report.unbalanced_steps);
+                        summary.numbers.cracks_tension, summary.numbers.cracks_shear,
+                        summary.numbers.open_close_iterations, summary.elapsed_s, directory.string());
+    if (summary.numbers.unbalanced_steps > 0)
+        text += fmt::format("; {} steps unbalanced", summary.numbers.unbalanced_steps);
     return text;
 }
 
 /// The run itself; whatever happens, the last committed state and the tables reach the disk if the disk allows it.
 ExitCode simulate(const Model& model, const Scene& scene, State& state, RunWriter& writer, RunLog& log,
                   const fs::path& directory, bool quiet) {
-    const auto start = std::chrono::steady_clock::now();
     RunObserver observer(writer, quiet);
-    RunReport report;
-    std::string resource_message;
-    try {
-        report = run_simulation(model, scene.cracks, scene.solver, state, observer, stop_requested);
-    } catch (const ResourceError& error) {
-        resource_message = error.what();
-    } catch (const std::bad_alloc&) {
-        resource_message = "out of memory";
-    }
+    const RunReport report = run_simulation(model, scene.cracks, scene.solver, state, observer, stop_requested);
     observer.clear();
-    if (!resource_message.empty()) {
-        report.status = RunStatus::out_of_resources;
-        report.diagnosis = resource_message;
-        log.error(resource_message);
-    }
-    const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    const auto summary =
-        writer.finish(outcome_of(report, model, elapsed), state, [&] { return fields_of_state(model, state); });
-    const std::string closing = closing_line(report, summary, directory);
-    log.info(closing);
     if (!report.diagnosis.empty()) {
         log.error(report.diagnosis);
         fmt::print(stderr, "{}\n", report.diagnosis);
     }
+    RunSummary summary;
+    try {
+        summary = writer.finish(outcome_of(report, model), state, [&] { return fields_of_state(model, state); });
+    } catch (const ResourceError& error) {
+        log.error(error.what());
+        if (report.diagnosis == error.what()) return ExitCode::out_of_resources; // said already
+        throw;
+    }
+    const std::string closing = closing_line(report, summary, directory);
+    log.info(closing);
     if (!quiet) fmt::print("{}\n", closing);
     return exit_code(report.status);
 }

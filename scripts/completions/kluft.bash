@@ -2,7 +2,7 @@
 
 _kluft() {
     local word=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
-    local commands="run check draw compare envelope study validate calibrate"
+    local commands="run check draw envelope"
     COMPREPLY=()
 
     local command="" index
@@ -19,11 +19,7 @@ _kluft() {
     fi
 
     case "$previous" in
-    --emit)
-        mapfile -t COMPREPLY < <(compgen -W "slurm make" -- "$word")
-        return
-        ;;
-    --set | --threads | --jobs | --tolerance | --mark | --limit | --title | --compare) return ;;
+    --set | --threads | --mark | --limit | --title | --compare) return ;;
     -o | --output)
         mapfile -t COMPREPLY < <(compgen -f -- "$word")
         return
@@ -36,8 +32,6 @@ _kluft() {
     check) options+=" --set" ;;
     draw) options+=" -o --output --curve --blocks --mark --limit --title --set" ;;
     envelope) options+=" -o --output --compare --title" ;;
-    compare) options+=" --tolerance" ;;
-    study) options+=" -o --jobs --emit --collect" ;;
     esac
     if [[ $word == -* ]]; then
         mapfile -t COMPREPLY < <(compgen -W "$options" -- "$word")
@@ -45,12 +39,8 @@ _kluft() {
     fi
 
     case "$command" in
-    run | check | draw | calibrate) _kluft_scenes "$word" ;;
-    study)
-        _kluft_scenes "$word"
-        [[ $previous != study ]] || mapfile -t -O "${#COMPREPLY[@]}" COMPREPLY < <(compgen -W "step-size trade" -- "$word")
-        ;;
-    compare | envelope) mapfile -t COMPREPLY < <(compgen -d -- "$word") ;;
+    run | check | draw) _kluft_scenes "$word" ;;
+    envelope) mapfile -t COMPREPLY < <(compgen -d -- "$word") ;;
     esac
 }
 

@@ -1,5 +1,6 @@
 #include "kluft/output/run_writer.hpp"
 
+#include <deque>
 #include <exception>
 #include <utility>
 
@@ -18,10 +19,39 @@ namespace kluft {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+/// A table whose rows wait while the disk is full, so that none is missing once there is room again.
+class PatientTable {
+public:
+    explicit PatientTable(AppendTable table) : table_(std::move(table)) {}
+    void append(std::string row) {
+        waiting_.push_back(std::move(row));
+        write_waiting();
+    }
+    void sync() {
+        write_waiting();
+        table_.sync();
+    }
+
+private:
+    void write_waiting() {
+        while (!waiting_.empty()) {
+            table_.append(waiting_.front());
+            waiting_.pop_front();
+        }
+    }
+
+    AppendTable table_;
+    std::deque<std::string> waiting_;
+};
+
+} // namespace
+
 struct RunWriter::Tables {
-    AppendTable history;
-    AppendTable equilibria;
-    AppendTable cracks;
+    PatientTable history;
+    PatientTable equilibria;
+    PatientTable cracks;
     std::optional<FieldSeries> fields;
 };
 
@@ -69,9 +99,9 @@ RunWriter::RunWriter(fs::path directory, const BlockSystem& system, RunWriterOpt
     if (options_.resumed_step) {
         const int last = *options_.resumed_step;
         remove_results_but_tables_and_state(directory_);
-        tables_ = std::make_unique<Tables>(Tables{AppendTable::resume(history, history_header(), last),
-                                                  AppendTable::resume(equilibria, history_header(), last),
-                                                  AppendTable::resume(cracks, cracks_header(), last),
+        tables_ = std::make_unique<Tables>(Tables{PatientTable(AppendTable::resume(history, history_header(), last)),
+                                                  PatientTable(AppendTable::resume(equilibria, history_header(), last)),
+                                                  PatientTable(AppendTable::resume(cracks, cracks_header(), last)),
                                                   {}});
         history_ = read_history(history);
         equilibria_ = read_history(equilibria);
@@ -80,9 +110,9 @@ RunWriter::RunWriter(fs::path directory, const BlockSystem& system, RunWriterOpt
         if (options_.fields) tables_->fields = FieldSeries::resume(directory_, last);
     } else {
         remove_results(directory_);
-        tables_ = std::make_unique<Tables>(Tables{AppendTable::create(history, history_header()),
-                                                  AppendTable::create(equilibria, history_header()),
-                                                  AppendTable::create(cracks, cracks_header()),
+        tables_ = std::make_unique<Tables>(Tables{PatientTable(AppendTable::create(history, history_header())),
+                                                  PatientTable(AppendTable::create(equilibria, history_header())),
+                                                  PatientTable(AppendTable::create(cracks, cracks_header())),
                                                   {}});
         if (options_.fields) tables_->fields = FieldSeries::create(directory_);
     }
@@ -160,7 +190,8 @@ RunSummary RunWriter::finish(const RunOutcome& outcome, const State& state,
                              const std::function<FieldRecord()>& fields) {
     RunSummary summary = summary_of(outcome);
     FirstError errors;
-    errors.attempt([&] { checkpoint(state); });
+    // Out of memory in the middle of a report the rows may end before the state; then the last saved state stays.
+    if (!history_.empty() && history_.back().step == state.step) errors.attempt([&] { checkpoint(state); });
     errors.attempt([&] { write_summary(directory_ / "summary.json", summary); });
     errors.attempt([&] {
         const bool fields_missing =

@@ -1,6 +1,7 @@
 #include "kluft/output/state_file.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <string_view>
 #include <utility>
@@ -15,7 +16,7 @@ namespace kluft {
 
 namespace {
 
-constexpr int format_version = 1;
+constexpr int format_version = 2;
 constexpr std::string_view format_name = "kluft state";
 
 /// What went wrong inside HDF5; the callers add the file's name.
@@ -158,6 +159,19 @@ struct Writer {
         write_array(file, (std::string(name) + "_keys").c_str(), keys.data(), keys.size());
         write_array(file, (std::string(name) + "_histories").c_str(), histories.data(), histories.size());
     }
+    void operator()(const char* name, const std::vector<std::pair<int, int>>& v) {
+        std::vector<int> numbers;
+        for (const auto& [a, b] : v) numbers.insert(numbers.end(), {a, b});
+        write_array(file, name, numbers.data(), numbers.size());
+    }
+    void operator()(const char* name, const RunCosts& costs) {
+        const std::array counts{costs.open_close_iterations, costs.factorizations, costs.analyses};
+        const RunSeconds& s = costs.seconds;
+        const std::array seconds{costs.elapsed_s, s.detection, s.set_up,      s.assembly, s.analysis,
+                                 s.factorization, s.solution,  s.crack_check, s.observers};
+        write_array(file, (std::string(name) + "_counts").c_str(), counts.data(), counts.size());
+        write_array(file, (std::string(name) + "_seconds").c_str(), seconds.data(), seconds.size());
+    }
 };
 
 /// Fetches the members of a state one by one.
@@ -190,6 +204,23 @@ struct Reader {
             v[i].history = {histories[2 * i], histories[2 * i + 1]};
         }
     }
+    void operator()(const char* name, std::vector<std::pair<int, int>>& v) {
+        const auto numbers = read_array<int>(file, name);
+        if (numbers.size() % 2 != 0) throw Hdf5Failure{name};
+        v.clear();
+        for (std::size_t i = 0; i < numbers.size(); i += 2) v.emplace_back(numbers[i], numbers[i + 1]);
+    }
+    void operator()(const char* name, RunCosts& costs) {
+        const auto counts = read_array<int>(file, (std::string(name) + "_counts").c_str());
+        const auto seconds = read_array<double>(file, (std::string(name) + "_seconds").c_str());
+        if (counts.size() != 3 || seconds.size() != 9) throw Hdf5Failure{name};
+        costs.open_close_iterations = counts[0];
+        costs.factorizations = counts[1];
+        costs.analyses = counts[2];
+        costs.elapsed_s = seconds[0];
+        costs.seconds = {seconds[1], seconds[2], seconds[3], seconds[4],
+                         seconds[5], seconds[6], seconds[7], seconds[8]};
+    }
 };
 
 /// Calls visit(name, member) for every member of a state. Members: State, const or not.
@@ -206,9 +237,11 @@ template <class Members, class Visit> void visit_members(Members& state, Visit&&
     visit("bond_shear", state.bond_shear);
     visit("contacts", state.contacts);
     visit("boundary_pressure", state.boundary_pressure);
-    visit("boundary_axial", state.boundary_axial);
     visit("unbalanced_ratio", state.unbalanced_ratio);
     visit("unbalanced_in_succession", state.unbalanced_in_succession);
+    visit("displacement_rate", state.displacement_rate);
+    visit("near_pairs", state.near_pairs);
+    visit("costs", state.costs);
 }
 
 std::string file_image(const State& state, const std::string& fingerprint, const std::string& scene) {

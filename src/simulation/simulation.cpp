@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <new>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include <Eigen/Eigenvalues>
 #include <fmt/format.h>
@@ -39,6 +41,7 @@ struct Interrupted {};
 struct NoEquilibrium {
     int worst_block;
     double residual_ratio;
+    bool nothing_holds = false; ///< the body: there is neither a support nor a platen
 };
 
 using Clock = std::chrono::steady_clock;
@@ -79,6 +82,7 @@ public:
         : model_(model), cracks_(cracks), options_(solver), accepted_(state), observer_(observer), stop_(stop),
           work_(state), gauges_(make_gauges(model)), open_close_(linear_, open_close_options(solver)) {
         for (const Stage& stage : model.loads.stages) n_steps_ += stage.steps;
+        report_.costs = state.costs;
     }
 
     RunReport run() {
@@ -87,15 +91,17 @@ public:
         } catch (const Interrupted&) {
             report_.status = RunStatus::interrupted;
         } catch (const NoEquilibrium& failure) {
-            report_.status =
-                is_loaded_by_stress() && accepted_.step > 0 ? RunStatus::collapsed : RunStatus::no_equilibrium;
+            const bool is_limit = is_loaded_by_stress() && accepted_.step > 0 && !failure.nothing_holds;
+            report_.status = is_limit ? RunStatus::collapsed : RunStatus::no_equilibrium;
             report_.diagnosis = diagnose(failure);
+        } catch (const ResourceError& error) {
+            report_.status = RunStatus::out_of_resources;
+            report_.diagnosis = error.what();
+        } catch (const std::bad_alloc&) {
+            report_.status = RunStatus::out_of_resources;
+            report_.diagnosis = "out of memory";
         }
-        report_.linear = linear_.statistics();
-        report_.seconds.analysis = report_.linear.analyze_seconds;
-        report_.seconds.factorization = report_.linear.factorize_seconds;
-        report_.seconds.solution = report_.linear.solve_seconds;
-        report_.seconds.assembly = open_close_.assembly_seconds();
+        report_.costs = costs();
         return report_;
     }
 
@@ -114,6 +120,31 @@ private:
         options.max_iterations = solver.max_iterations;
         options.tangent = solver.tangent == Tangent::unsymmetric ? TangentKind::exact : TangentKind::symmetric;
         return options;
+    }
+
+    /// Everything spent so far, also before the state that the run started from.
+    [[nodiscard]] RunCosts costs() const {
+        RunCosts costs = report_.costs;
+        const LinearSolverStatistics& linear = linear_.statistics();
+        costs.factorizations += linear.factorizations;
+        costs.analyses += linear.analyses;
+        costs.elapsed_s = elapsed();
+        costs.seconds.analysis += linear.analyze_seconds;
+        costs.seconds.factorization += linear.factorize_seconds;
+        costs.seconds.solution += linear.solve_seconds;
+        costs.seconds.assembly += open_close_.assembly_seconds();
+        return costs;
+    }
+
+    [[nodiscard]] double elapsed() const {
+        return report_.costs.elapsed_s + std::chrono::duration<double>(Clock::now() - started_).count();
+    }
+
+    /// All or nothing, also out of memory.
+    void accept() {
+        work_.costs = costs();
+        State next = work_;
+        accepted_ = std::move(next);
     }
 
     // ---- stages and load steps -------------------------------------------------------------------------------
@@ -140,12 +171,12 @@ private:
                 work_.reference_displacement = work_.displacement;
                 work_.reference_set = true;
             }
+            work_.displacement_rate.resize(0);
         }
         State start;
         start.displacement = work_.stage_start_displacement;
         start.boundary_pressure = work_.boundary_pressure;
         loads_.emplace(model_, start, stage);
-        last_increment_.resize(0);
     }
 
     void next_stage() {
@@ -156,7 +187,7 @@ private:
         ++work_.stage;
         work_.step_in_stage = 0;
         work_.load_factor = 0.0;
-        if (work_.stage < static_cast<int>(model_.loads.stages.size())) accepted_ = work_;
+        if (work_.stage < static_cast<int>(model_.loads.stages.size())) accept();
     }
 
     void report_initial_state() {
@@ -168,7 +199,7 @@ private:
     }
 
     void load_step(double target, bool last_of_stage) {
-        iterations_at_start_ = report_.open_close_iterations;
+        iterations_at_start_ = report_.costs.open_close_iterations;
         passes_ = 0;
         step_balanced_ = true;
         worst_share_ = 0.0;
@@ -184,18 +215,18 @@ private:
         work_.unbalanced_in_succession = step_balanced_ ? 0 : work_.unbalanced_in_succession + 1;
         if (!step_balanced_) ++report_.unbalanced_steps;
         if (smooth) {
-            last_increment_ = (work_.displacement - before) / (target - factor_before);
+            work_.displacement_rate = (work_.displacement - before) / (target - factor_before);
         } else {
-            last_increment_.resize(0);
+            work_.displacement_rate.resize(0);
         }
         StepRecord record = last_record_;
         record.step = work_.step;
         record.load_factor = target;
-        record.open_close_iterations = report_.open_close_iterations - iterations_at_start_;
+        record.open_close_iterations = report_.costs.open_close_iterations - iterations_at_start_;
         record.crack_passes = passes_;
         record.balanced = step_balanced_;
         record.unbalanced_ratio = worst_share_;
-        accepted_ = work_;
+        accept();
         notify_step(record, last_of_stage);
         if (work_.unbalanced_in_succession >= options_.max_unbalanced_steps) {
             throw NoEquilibrium{last_worst_block_, record.unbalanced_ratio};
@@ -214,6 +245,8 @@ private:
                 smooth = false;
                 if (trial.converged()) commit(trial, from);
                 trial = relax(target, trial.summary.restless);
+                if (!trial.balanced && problem_.constraints.rows().empty())
+                    throw NoEquilibrium{last_worst_block_, trial.viscous_share, true};
             }
             double reached = target;
             if (by_events && trial.balanced) reached = locate_event(from, target, trial);
@@ -251,12 +284,12 @@ private:
         bonded_ = bonded_interfaces(work_);
         const bool separated = std::ranges::find(bonded_, 0) != bonded_.end();
         {
-            const Stopwatch watch(report_.seconds.set_up);
+            const Stopwatch watch(report_.costs.seconds.set_up);
             problem_.bonds = bond_points(model_, work_);
         }
         std::vector<std::pair<int, int>> near_pairs;
         if (separated) {
-            const Stopwatch watch(report_.seconds.detection);
+            const Stopwatch watch(report_.costs.seconds.detection);
             auto detected = state_contacts(model_, work_);
             problem_.contacts = std::move(detected.points);
             near_pairs = std::move(detected.near_pairs);
@@ -286,12 +319,20 @@ private:
 
     /// The pattern must hold every pair that touches; a new one costs an analysis.
     void require_pattern(const std::vector<std::pair<int, int>>& near_pairs) {
+        const bool first = pattern_.n_blocks() != model_.system.n_blocks();
+        if (first && !work_.near_pairs.empty()) analyze_pattern();
         const bool complete = pattern_.n_blocks() == model_.system.n_blocks() &&
                               std::ranges::all_of(problem_.contacts, [&](const ContactPoint& point) {
                                   return pattern_.find(point.block_a, point.block_b) >= 0;
                               });
         if (complete) return;
-        std::vector<std::pair<int, int>> pairs = near_pairs;
+        work_.near_pairs = near_pairs;
+        analyze_pattern();
+    }
+
+    /// Orders the matrix for the pairs of the work state: a resumed run has the ordering of the saved one.
+    void analyze_pattern() {
+        std::vector<std::pair<int, int>> pairs = work_.near_pairs;
         for (const Interface& interface : model_.system.interfaces) {
             pairs.emplace_back(interface.block_a, interface.block_b);
         }
@@ -307,8 +348,8 @@ private:
     }
 
     [[nodiscard]] Eigen::VectorXd predicted(double load_factor) const {
-        if (last_increment_.size() == 0) return work_.displacement;
-        return work_.displacement + (load_factor - work_.load_factor) * last_increment_;
+        if (work_.displacement_rate.size() == 0) return work_.displacement;
+        return work_.displacement + (load_factor - work_.load_factor) * work_.displacement_rate;
     }
 
     Trial solve(double load_factor, Eigen::VectorXd guess) {
@@ -318,7 +359,7 @@ private:
         Trial trial;
         trial.q = std::move(guess);
         trial.summary = open_close_.solve(problem_, pattern_, trial.q, work_.contacts.empty());
-        report_.open_close_iterations += trial.summary.iterations;
+        report_.costs.open_close_iterations += trial.summary.iterations;
         last_worst_block_ = trial.summary.worst_block;
         if (trial.converged()) balance(trial);
         notify_progress(load_factor);
@@ -337,7 +378,7 @@ private:
             problem_.start = trial.q;
             Trial next = trial;
             next.summary = open_close_.solve(problem_, pattern_, next.q);
-            report_.open_close_iterations += next.summary.iterations;
+            report_.costs.open_close_iterations += next.summary.iterations;
             if (!next.converged()) break;
             next.viscous_share = viscous_share(next);
             const bool stalls = next.viscous_share > least_balance_progress * trial.viscous_share;
@@ -363,7 +404,7 @@ private:
             Trial trial;
             trial.q = work_.displacement;
             trial.summary = open_close_.solve(problem_, pattern_, trial.q, work_.contacts.empty());
-            report_.open_close_iterations += trial.summary.iterations;
+            report_.costs.open_close_iterations += trial.summary.iterations;
             last_worst_block_ = trial.summary.worst_block;
             notify_progress(load_factor);
             if (!trial.converged()) {
@@ -422,7 +463,7 @@ private:
     // ---- cracks ----------------------------------------------------------------------------------------------
 
     std::vector<CrackCandidate> check_cracks(const Eigen::VectorXd& q) {
-        const Stopwatch watch(report_.seconds.crack_check);
+        const Stopwatch watch(report_.costs.seconds.crack_check);
         ++report_.crack_checks;
         const auto stresses = block_stresses(model_.system, model_.moduli, q);
         if (cracks_.criterion == CrackCriterion::principal_stress) {
@@ -582,10 +623,10 @@ private:
         record.open = counts.open;
         record.sliding = counts.sliding;
         record.locked = counts.locked;
-        record.open_close_iterations = report_.open_close_iterations - iterations_at_start_;
+        record.open_close_iterations = report_.costs.open_close_iterations - iterations_at_start_;
         record.crack_passes = passes_;
         record.unbalanced_ratio = share;
-        record.elapsed_s = std::chrono::duration<double>(Clock::now() - started_).count();
+        record.elapsed_s = elapsed();
         return record;
     }
 
@@ -594,13 +635,13 @@ private:
         last_record_.balanced = trial.balanced;
         step_balanced_ = step_balanced_ && trial.balanced;
         worst_share_ = std::max(worst_share_, trial.viscous_share);
-        const Stopwatch watch(report_.seconds.observers);
+        const Stopwatch watch(report_.costs.seconds.observers);
         observer_.equilibrium(last_record_);
     }
 
     void notify_step(const StepRecord& record, bool last_of_stage) {
         last_record_ = record;
-        const Stopwatch watch(report_.seconds.observers);
+        const Stopwatch watch(report_.costs.seconds.observers);
         observer_.step(
             record, work_, [&] { return field_record(model_, work_, problem_); }, last_of_stage);
     }
@@ -615,13 +656,14 @@ private:
         progress.axial_strain = last_record_.axial_strain;
         progress.axial_stress = last_record_.axial_stress;
         progress.cracks = last_record_.cracks_tension + last_record_.cracks_shear;
-        progress.open_close_iterations = report_.open_close_iterations;
+        progress.open_close_iterations = report_.costs.open_close_iterations;
         observer_.progress(progress);
     }
 
     [[nodiscard]] std::string diagnose(const NoEquilibrium& failure) const {
         std::string text = fmt::format("no equilibrium in stage {} at load step {}: residual {:.2g} of the forces",
                                        work_.stage, work_.step + 1, failure.residual_ratio);
+        if (failure.nothing_holds) text += "; nothing holds the body, which has neither a support nor a platen";
         if (failure.worst_block < 0) return text;
         const Block& block = model_.system.blocks[failure.worst_block];
         const Vec2 at = model_.system.origin + block.centroid;
@@ -648,7 +690,6 @@ private:
     BlockPattern pattern_;
     EquilibriumProblem problem_;
     std::optional<StageLoads> loads_;
-    Eigen::VectorXd last_increment_; ///< per unit of load factor, of the last step if it was smooth; else empty
     Residual last_residual_;
     StepRecord last_record_;
     RunReport report_;

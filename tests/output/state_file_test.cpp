@@ -25,13 +25,13 @@ State state_of(int n_blocks) {
     state.displacement = Eigen::VectorXd::LinSpaced(6 * n_blocks, -1.0 / 3.0, std::numeric_limits<double>::min());
     state.stage_start_displacement = 0.5 * state.displacement;
     state.reference_displacement = 0.25 * state.displacement;
+    state.displacement_rate = 0.1 * state.displacement;
     state.reference_set = true;
     state.interfaces = {InterfaceStatus::potential_crack, InterfaceStatus::fracture, InterfaceStatus::tension_crack,
                         InterfaceStatus::shear_crack};
     state.bond_shear = {1.0, -2.0, 3.0, 0.1};
     state.contacts = {{{0, 1, 2, 3, -1}, {1.25e5, 1e-7}}, {{4, 5, 6, 7, 2}, {-0.1, 0.0}}};
     state.boundary_pressure = {2e5, 0.0, 1.0 / 7.0};
-    state.boundary_axial = {1.4e6};
     state.unbalanced_ratio = 3e-4;
     state.unbalanced_in_succession = 2;
     return state;
@@ -45,6 +45,7 @@ void expect_same(const State& a, const State& b) {
     EXPECT_EQ(a.displacement, b.displacement);
     EXPECT_EQ(a.stage_start_displacement, b.stage_start_displacement);
     EXPECT_EQ(a.reference_displacement, b.reference_displacement);
+    EXPECT_EQ(a.displacement_rate, b.displacement_rate);
     EXPECT_EQ(a.reference_set, b.reference_set);
     EXPECT_EQ(a.interfaces, b.interfaces);
     EXPECT_EQ(a.bond_shear, b.bond_shear);
@@ -55,7 +56,6 @@ void expect_same(const State& a, const State& b) {
         EXPECT_EQ(a.contacts[i].history.dilation, b.contacts[i].history.dilation);
     }
     EXPECT_EQ(a.boundary_pressure, b.boundary_pressure);
-    EXPECT_EQ(a.boundary_axial, b.boundary_axial);
     EXPECT_EQ(a.unbalanced_ratio, b.unbalanced_ratio);
     EXPECT_EQ(a.unbalanced_in_succession, b.unbalanced_in_succession);
 }

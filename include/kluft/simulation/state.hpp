@@ -3,11 +3,13 @@
 
 #include <compare>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "kluft/contact/contact.hpp"
+#include "kluft/simulation/run_costs.hpp"
 
 namespace kluft {
 
@@ -33,9 +35,12 @@ struct State {
     std::vector<double> bond_shear; ///< shear traction at the two Gauss points of each bond, size 2 n_interfaces, Pa
     std::vector<ContactMemory> contacts;   ///< of touching contact points, sorted by key
     std::vector<double> boundary_pressure; ///< at the start of the stage, one per boundary, Pa
-    std::vector<double> boundary_axial;    ///< platen stress at the start of the stage, one per boundary, Pa
     double unbalanced_ratio = 0.0;
     int unbalanced_in_succession = 0;
+    Eigen::VectorXd displacement_rate; ///< per unit of load factor, of a smooth last step; empty without one
+    std::vector<std::pair<int, int>>
+        near_pairs; ///< blocks that the matrix was ordered for, besides those at interfaces
+    RunCosts costs; ///< so far
 };
 
 } // namespace kluft

@@ -1,0 +1,28 @@
+// What a run has cost.
+#pragma once
+
+namespace kluft {
+
+/// Where the time of a run went (s).
+struct RunSeconds {
+    double detection = 0.0;
+    double set_up = 0.0;   ///< bonds, pattern look-ups, constant tangent
+    double assembly = 0.0; ///< residuals and tangents
+    double analysis = 0.0;
+    double factorization = 0.0;
+    double solution = 0.0;
+    double crack_check = 0.0;
+    double observers = 0.0;
+};
+
+/// Of the whole run: what was spent before a resumed state was saved is counted, what was lost with a load step that
+/// was not committed is not.
+struct RunCosts {
+    int open_close_iterations = 0; ///< all linear solves
+    int factorizations = 0;
+    int analyses = 0;
+    double elapsed_s = 0.0; ///< wall-clock time
+    RunSeconds seconds;
+};
+
+} // namespace kluft
