@@ -205,17 +205,20 @@ TEST(ContactDetection, BondedPairsAreNotSearched) {
     EXPECT_TRUE(detected.near_pairs.empty());
 }
 
-// Of two interfaces between the same two blocks one has failed: it alone touches, with its own points.
-TEST(ContactDetection, BondedPairTouchesOnItsOwnBrokenInterfaceOnly) {
-    CutRectangle body(2.0, 2.0, {{{-1, 1}, {1, 1.1}, {3, 1}}});
-    ASSERT_EQ(body.system.n_interfaces(), 2);
+// Of three interfaces between the same two blocks one is still bonded: the others touch each with its own other side, not
+// with that of its neighbour, over whose corner it has come.
+TEST(ContactDetection, BondedPairTouchesOnItsOwnBrokenInterfacesOnly) {
+    CutRectangle body(3.0, 2.0, {{{-1, 1}, {1, 1.1}, {2, 1.1}, {4, 0.9}}});
+    ASSERT_EQ(body.system.n_interfaces(), 3);
     body.move(1, {0.3, -0.02});
-    const auto n_free = body.points().size();
-    body.surfaces.bonded = {0, 1};
-    const auto points = body.points();
-    EXPECT_EQ(points.size(), 3U);
-    EXPECT_GT(n_free, 6U); // both interfaces and what has come over the corner
-    for (const ContactPoint& point : points) EXPECT_EQ(point.interface, 0);
+    const auto others = [&] {
+        const auto points = body.points();
+        return std::ranges::count(points, -1, &ContactPoint::interface);
+    };
+    EXPECT_GT(others(), 0);
+    body.surfaces.bonded = {0, 0, 1};
+    EXPECT_EQ(others(), 0);
+    EXPECT_EQ(body.points().size(), 6U);
 }
 
 // ---- histories -----------------------------------------------------------------------------------------------------

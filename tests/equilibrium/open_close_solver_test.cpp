@@ -181,6 +181,23 @@ TEST(OpenCloseSolver, BondedColumnIsSolvedAtOnce) {
     EXPECT_LE(summary.iterations, 2); // a second one for the little rotations of the blocks
 }
 
+// Newton with an exact tangent, that of the platen's force by the width included: each iteration squares the error.
+TEST(OpenCloseSolver, BondedBodyUnderATravellingPlatenConvergesQuadratically) {
+    PressedBody body(true, {1, 1});
+    body.problem.platen_force->stress = 5e7; // 0.5 % of E: an error of the tangent shows
+    const auto ratio_after = [&](int iterations) {
+        OpenCloseOptions options;
+        options.motion_limit = 1.0;
+        options.tolerance = 1e-15;
+        options.max_iterations = iterations;
+        Eigen::VectorXd q = at_rest(body.system);
+        return body.solve(q, options).residual_ratio;
+    };
+    const double second = ratio_after(2), third = ratio_after(3);
+    EXPECT_GT(second, 1e-7);
+    EXPECT_LT(third, 20.0 * second * second);
+}
+
 TEST(OpenCloseSolver, NoBlockMovesByMoreThanTheLimitInOneIteration) {
     PressedBody body(false, {1, 1});
     body.problem.pressures[1] = 2e9;

@@ -468,6 +468,21 @@ TEST(ClosedForms, SlenderBlockOnASlopeTopplesWhereItsWeightPassesItsCorner) {
     EXPECT_FALSE(stands(run_scene(block_on_slope(0.5, 1.5, 18.47))));
 }
 
+// A pressure p on its side of height H pushes a block of width b at H/2: it turns over at p H = W b/H, where that is less
+// than what friction holds, W tan(phi), and slides there otherwise.
+TEST(ClosedForms, BlockPushedAtItsSideTurnsOverOrSlidesWhicheverNeedsLess) {
+    for (const auto& [width, height] : {std::pair(0.5, 1.5), std::pair(1.5, 0.5)}) {
+        const double weight = 2500.0 * 10.0 * width * height;
+        const double turning = weight * width / height, sliding = weight * std::tan(30 * degree);
+        const double limit = std::min(turning, sliding) / height;
+        for (const double share : {0.99, 1.01}) {
+            const auto run = run_scene(block_on_slope(width, height, 0.0),
+                                       {fmt::format("stages.0.pressure={{left: {:.17g}}}", share * limit)});
+            EXPECT_EQ(stands(run), share < 1.0) << width;
+        }
+    }
+}
+
 // Statics without friction: N = W/(2 cos(alpha)) on each face of a symmetric groove.
 TEST(ClosedForms, WedgeInASmoothGroovePressesOnItsFacesWithHalfItsWeightOverTheCosine) {
     const double alpha = 40 * degree;
