@@ -529,13 +529,16 @@ TEST_F(CommandLine, FullDiskEndsWithExitCode4AndLeavesWholeRows) {
     const Words words = with(long_run, {"--set", "output.fields=false", "--set", "stages.0.steps=60"});
     const Result full = kluft(with(words, {"-o", "full"}), {.file_bytes = 6000});
     EXPECT_EQ(full.code, 4);
-    EXPECT_THAT(full.err, HasSubstr("history.csv: cannot write: File too large"));
+    EXPECT_THAT(full.err,
+                HasSubstr(".csv: cannot write: File too large")); // which table depends on the digits of times
     EXPECT_THAT(content_of(path("full/run.log")), HasSubstr("cannot write: File too large"));
     EXPECT_EQ(summary("full")["status"], "out_of_resources");
     EXPECT_GT(summary("full")["factorizations"], 0);
     EXPECT_GT(summary("full")["steps"], 10);
     const auto rows = lines_of(content_of(path("full/history.csv")));
-    EXPECT_EQ(rows.size(), 1U + summary("full")["steps"].get<std::size_t>()); // the row of the last step does not fit
+    const auto steps = summary("full")["steps"].get<std::size_t>();
+    EXPECT_GE(rows.size(), 1U + steps); // head and initial state; the row of the last step may not fit
+    EXPECT_LE(rows.size(), 2U + steps);
     for (const auto& row : rows) EXPECT_EQ(std::ranges::count(row, ','), 18) << row;
 }
 
