@@ -31,6 +31,7 @@ constexpr double relaxation_growth = 16.0;     ///< of eta on the blocks that st
 constexpr double relaxation_decay = 4.0;       ///< after a solve in a few iterations
 constexpr int easy_iterations = 6;
 constexpr double largest_relaxation = 4.0e6;
+constexpr double relaxed_tolerance = 0.1; ///< of `balance`: a residual on the way that does not matter
 constexpr int max_relaxation_attempts = 250;
 constexpr double collapse_motion = 0.5; ///< of a block in one load step, in lattice spacings
 constexpr int max_event_trials = 12;
@@ -409,13 +410,16 @@ private:
             report_.costs.open_close_iterations += trial.summary.iterations;
             last_worst_block_ = trial.summary.worst_block;
             notify_progress(load_factor);
-            if (!trial.converged()) {
+            const bool close =
+                trial.converged() || trial.summary.residual_ratio <= relaxed_tolerance * options_.balance;
+            if (!close) {
                 if (!grow_eta(trial.summary.restless, factor)) {
                     throw NoEquilibrium{trial.summary.worst_block, trial.summary.residual_ratio};
                 }
                 continue;
             }
             trial.viscous_share = viscous_share(trial);
+            if (!trial.converged()) trial.viscous_share += trial.summary.residual_ratio;
             trial.balanced = trial.viscous_share <= options_.balance;
             if (trial.balanced) return trial;
             commit(trial, work_.load_factor);
@@ -425,7 +429,7 @@ private:
             }
             last = std::move(trial);
         }
-        if (!last.converged()) throw NoEquilibrium{last_worst_block_, last.summary.residual_ratio};
+        if (last.q.size() == 0) throw NoEquilibrium{last_worst_block_, last.summary.residual_ratio};
         const auto& motion = model_.loads.stages[work_.stage].motion;
         if (motion && motion->control == PlatenControl::stress) { // the platen keeps moving: past the strength
             throw NoEquilibrium{last.summary.worst_block, last.viscous_share};
