@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 #include "commands.hpp"
 #include "kluft/core/diagnostics.hpp"
@@ -63,8 +64,8 @@ std::string unknown_option(const CLI::App& app, const std::string& title, const 
         const std::string name = word.starts_with("--") ? word.substr(0, equals) : word.substr(0, 2); // -oDIR is -o DIR
         const CLI::Option* option = app.get_option_no_throw(name);
         if (option == nullptr) {
-            return title + ": unknown option '" + name + "'; expected one of " + kluft::listed(names) +
-                   kluft::suggestion(name, names);
+            return fmt::format("{}: unknown option '{}'; expected one of {}{}", title, name, kluft::listed(names),
+                               kluft::suggestion(name, names));
         }
         is_value = option->get_items_expected_max() > 0 && name == word;
     }

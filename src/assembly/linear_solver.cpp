@@ -13,6 +13,7 @@
 #include "kluft/core/diagnostics.hpp"
 
 extern "C" void openblas_set_num_threads(int n_threads);
+// NOLINTNEXTLINE(readability-identifier-naming): of the BLAS
 extern "C" void dtrsv_(const char* uplo, const char* trans, const char* diag, const int* n, const double* a,
                        const int* lda, double* x, const int* incx);
 

@@ -44,8 +44,7 @@ void append_restless(const Eigen::VectorXd& forces, const std::vector<int>& limi
         if (forces.segment<n_block_unknowns>(n_block_unknowns * b).norm() >= least) restless.push_back(b);
     }
     std::ranges::sort(restless);
-    const auto repeated = std::ranges::unique(restless);
-    restless.erase(repeated.begin(), repeated.end());
+    restless.erase(std::unique(restless.begin(), restless.end()), restless.end());
 }
 
 } // namespace
