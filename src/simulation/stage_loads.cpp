@@ -115,8 +115,8 @@ PlatenForce width_across(const BlockSystem& system, int boundary) {
     const Vec2 normal = boundary_frame(system, boundary).normal;
     const Vec2 lateral(normal.y(), -normal.x());
     force.width = std::abs(lateral.dot(mean_position(system, sides[0]) - mean_position(system, sides[1])));
-    for (const double side : {1.0, -1.0}) {
-        const int i = sides[side > 0.0 ? 0 : 1];
+    for (const int i : sides) {
+        const double side = i == sides.front() ? 1.0 : -1.0;
         const double length = boundary_frame(system, i).length;
         for_each_edge(system, i, [&](int b, const Vec2& start, const Vec2& end) {
             const Vec2 xi = block_coordinates(system.blocks[b], 0.5 * (start + end));
@@ -138,7 +138,6 @@ StageLoads::StageLoads(const Model& model, const State& stage_start, const Stage
     std::vector<Support> supports = model.loads.supports;
     Vec2 velocity = Vec2::Zero(); // of the moved platen per unit of load factor
     int moved = -1;
-    bool by_stress = false;
     if (stage.motion) {
         moved = stage.motion->boundary;
         const int fixed = opposite_boundary(system, moved);
@@ -153,8 +152,7 @@ StageLoads::StageLoads(const Model& model, const State& stage_start, const Stage
             distance *= std::abs(inward.dot(base - mean_position(system, moved)));
         }
         velocity = distance * inward;
-        by_stress = stage.motion->control == PlatenControl::stress;
-        if (by_stress) {
+        if (stage.motion->control == PlatenControl::stress) {
             velocity = inward; // per unit of its unknown travel
             start_platen_stress_ = start_pressure_[moved];
             end_platen_stress_ = stage.motion->value;
@@ -180,9 +178,9 @@ StageLoads::StageLoads(const Model& model, const State& stage_start, const Stage
                 const Vec2 start = displacement_at(stage_start.displacement, b, xi);
                 const auto prescribe = [&, b = b](const Vec2& direction) {
                     const double rate = direction.dot(motion);
-                    rows.push_back({b, xi, direction, boundary, direction.dot(start), by_stress ? rate : 0.0});
+                    rows.push_back({b, xi, direction, boundary, direction.dot(start), platen_force_ ? rate : 0.0});
                     start_targets_.push_back(direction.dot(start));
-                    target_rates_.push_back(by_stress ? 0.0 : rate);
+                    target_rates_.push_back(platen_force_ ? 0.0 : rate);
                 };
                 prescribe(normal);
                 if (supports[boundary] == Support::fixed || pin == std::pair(b, vertex)) prescribe(along);

@@ -1,4 +1,5 @@
 #include "kluft/assembly/linear_solver.hpp"
+#include "support/dense_matrix.hpp"
 
 #include <random>
 
@@ -32,17 +33,6 @@ BlockMatrix random_matrix(const BlockPattern& pattern, bool symmetric, std::mt19
         }
     }
     return matrix;
-}
-
-Eigen::MatrixXd dense(const BlockMatrix& matrix) {
-    const BlockPattern& pattern = *matrix.pattern;
-    Eigen::MatrixXd result = Eigen::MatrixXd::Zero(6 * pattern.n_blocks(), 6 * pattern.n_blocks());
-    for (int row = 0; row < pattern.n_blocks(); ++row) {
-        for (int entry = pattern.row_start(row); entry < pattern.row_start(row + 1); ++entry) {
-            result.block<6, 6>(6 * row, 6 * pattern.column(entry)) = matrix.values[entry];
-        }
-    }
-    return result;
 }
 
 BlockPattern grid_pattern(int side) {

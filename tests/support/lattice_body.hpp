@@ -12,6 +12,7 @@
 #include "kluft/contact/detection.hpp"
 #include "kluft/equilibrium/equilibrium_problem.hpp"
 #include "kluft/kinematics/affine.hpp"
+#include "support/dense_matrix.hpp"
 
 namespace kluft {
 
@@ -99,17 +100,6 @@ inline BlockPattern pattern_of(const EquilibriumProblem& problem) {
     for (const auto& point : problem.bonds) pairs.emplace_back(point.block_a, point.block_b);
     for (const auto& point : problem.contacts) pairs.emplace_back(point.block_a, point.block_b);
     return {problem.system->n_blocks(), pairs};
-}
-
-inline Eigen::MatrixXd dense(const BlockMatrix& matrix) {
-    const BlockPattern& pattern = *matrix.pattern;
-    Eigen::MatrixXd result = Eigen::MatrixXd::Zero(6 * pattern.n_blocks(), 6 * pattern.n_blocks());
-    for (int row = 0; row < pattern.n_blocks(); ++row) {
-        for (int entry = pattern.row_start(row); entry < pattern.row_start(row + 1); ++entry) {
-            result.block<6, 6>(6 * row, 6 * pattern.column(entry)) = matrix.values[entry];
-        }
-    }
-    return result;
 }
 
 } // namespace kluft
