@@ -11,6 +11,7 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <gmp.h>
 
 #include "commands.hpp"
 #include "kluft/core/diagnostics.hpp"
@@ -32,6 +33,17 @@ int exit_with(ExitCode code) { return static_cast<int>(code); }
     std::fflush(nullptr);
     std::_Exit(exit_with(ExitCode::out_of_resources));
 }
+
+/// Memory for GMP, which otherwise aborts the program where there is none. It is used before the first load step only.
+void* gmp_reallocate(void* old, std::size_t, std::size_t size) {
+    void* const memory = std::realloc(old, size);
+    if (memory == nullptr) {
+        std::fputs("out of memory\n", stderr);
+        leave_out_of_resources();
+    }
+    return memory;
+}
+void* gmp_allocate(std::size_t size) { return gmp_reallocate(nullptr, 0, size); }
 
 int bad_input(const std::string& message) {
     std::fprintf(stderr, "%s\n", message.c_str());
@@ -157,6 +169,7 @@ void add_envelope_command(CLI::App& app, Command& command) {
 } // namespace
 
 int main(int argc, char** argv) {
+    mp_set_memory_functions(gmp_allocate, gmp_reallocate, nullptr);
     CLI::App app{"Kluft: strength of fractured rock by the implicit expanded distinct element method"};
     app.set_version_flag("--version", std::string(kluft::version()));
     app.require_subcommand(1);
