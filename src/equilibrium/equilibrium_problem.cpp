@@ -14,14 +14,29 @@ namespace {
 constexpr double touching_gap = 1e-6; ///< of the lattice spacing
 
 /// (1, xi): the weights of u, D's first and D's second column in the displacement of a point.
-std::array<double, 3> shape(const Vec2& xi) { return {1.0, xi.x(), xi.y()}; }
+using Shape = std::array<double, 3>;
+Shape shape(const Vec2& xi) { return {1.0, xi.x(), xi.y()}; }
 
-void add_outer(const std::array<double, 3>& row, const std::array<double, 3>& column, const Mat2& stiffness,
-               Mat6& block) {
-    for (int j = 0; j < 3; ++j) {
-        for (int i = 0; i < 3; ++i) block.block<2, 2>(2 * i, 2 * j) += (row[i] * column[j]) * stiffness;
+/// Sets the rows of a matrix to zero shortly before they are used: what is then added finds them in the cache.
+class RowClearing {
+public:
+    RowClearing(BlockMatrix& matrix, const BlockPattern& pattern) : matrix_(matrix), pattern_(pattern) {
+        matrix.pattern = &pattern;
+        matrix.values.resize(static_cast<std::size_t>(pattern.n_entries()));
     }
-}
+    /// All rows below `row_end`, as far as they are not zero yet.
+    void advance(int row_end) {
+        if (row_end <= n_cleared_) return;
+        std::fill(matrix_.values.begin() + pattern_.row_start(n_cleared_),
+                  matrix_.values.begin() + pattern_.row_start(row_end), Mat6::Zero());
+        n_cleared_ = row_end;
+    }
+
+private:
+    BlockMatrix& matrix_;
+    const BlockPattern& pattern_;
+    int n_cleared_ = 0;
+};
 
 /// The four blocks of the matrix that a pair of blocks has.
 struct PairBlocks {
@@ -38,13 +53,47 @@ Mat2 point_stiffness(const Vec2& normal, double weight, const Mat2& tangent) {
     return weight * frame * tangent * frame.transpose();
 }
 
-void add_point_tangent(const Vec2& xi_a, const Vec2& xi_b, const Mat2& stiffness, const PairBlocks& blocks) {
-    const auto a = shape(xi_a);
-    const auto b = shape(xi_b);
-    add_outer(a, a, stiffness, blocks.aa);
-    add_outer(a, b, -stiffness, blocks.ab);
-    add_outer(b, a, -stiffness, blocks.ba);
-    add_outer(b, b, stiffness, blocks.bb);
+/// Sums of s s^T over points of a pair with the same stiffness, s the shape on either side. Not Eigen's matrices: they
+/// would stop in memory between single and paired numbers.
+struct PairMoments {
+    using Moments = std::array<Shape, 3>;
+    Moments aa{};
+    Moments ab{};
+    Moments bb{};
+
+    void add(const Vec2& xi_a, const Vec2& xi_b) {
+        const Shape a = shape(xi_a);
+        const Shape b = shape(xi_b);
+        for (std::size_t i = 0; i < 3; ++i) {
+            for (std::size_t j = 0; j < 3; ++j) {
+                aa[i][j] += a[i] * a[j];
+                ab[i][j] += a[i] * b[j];
+                bb[i][j] += b[i] * b[j];
+            }
+        }
+    }
+};
+
+/// Adds the Kronecker product of moments (transposed or not) and a stiffness.
+template <bool transposed>
+void add_product(const PairMoments::Moments& moments, const Vec2& first_column, const Vec2& second_column,
+                 Mat6& block) {
+    for (int j = 0; j < 3; ++j) {
+        for (int i = 0; i < 3; ++i) {
+            const double moment = transposed ? moments[j][i] : moments[i][j];
+            block.col(2 * j).segment<2>(2 * i) += moment * first_column;
+            block.col(2 * j + 1).segment<2>(2 * i) += moment * second_column;
+        }
+    }
+}
+
+void add_pair_tangent(const PairMoments& moments, const Mat2& stiffness, const PairBlocks& blocks) {
+    const Vec2 first = stiffness.col(0);
+    const Vec2 second = stiffness.col(1);
+    add_product<false>(moments.aa, first, second, blocks.aa);
+    add_product<false>(moments.ab, -first, -second, blocks.ab);
+    add_product<true>(moments.ab, -first, -second, blocks.ba);
+    add_product<false>(moments.bb, first, second, blocks.bb);
 }
 
 Mat2 full_stiffness(const InterfaceLaw& law) {
@@ -197,8 +246,7 @@ void EquilibriumEvaluator::add_mass_forces(const Eigen::VectorXd& q, Eigen::Vect
 // ---- its derivative ----------------------------------------------------------------------------------------------------
 
 void EquilibriumEvaluator::tangent(const Eigen::VectorXd& q, TangentKind kind, BlockMatrix& matrix) const {
-    matrix.reset(pattern_);
-    add_bond_tangents(matrix);
+    set_bond_tangents(matrix);
     add_block_tangents(q, kind, matrix);
     add_contact_tangents(q, kind, matrix);
     if (kind != TangentKind::exact) return;
@@ -220,20 +268,27 @@ void EquilibriumEvaluator::add_block_tangents(const Eigen::VectorXd& q, TangentK
     }
 }
 
-void EquilibriumEvaluator::add_bond_tangents(BlockMatrix& matrix) const {
+/// The bonds are in the order of their lower block, so that only a band of rows is in use at a time.
+void EquilibriumEvaluator::set_bond_tangents(BlockMatrix& matrix) const {
+    RowClearing clearing(matrix, pattern_);
     for (const Bond& bond : problem_.bonds) {
+        clearing.advance(std::max(bond.block_a, bond.block_b) + 1);
         const Mat2 stiffness = point_stiffness(bond.normal(), bond.weight, full_stiffness((*problem_.laws)[bond.law]));
-        const PairBlocks blocks(matrix, bond.block_a, bond.block_b);
-        for (int k = 0; k < n_bond_points; ++k) add_point_tangent(bond.xi_a[k], bond.xi_b[k], stiffness, blocks);
+        PairMoments moments;
+        for (int k = 0; k < n_bond_points; ++k) moments.add(bond.xi_a[k], bond.xi_b[k]);
+        add_pair_tangent(moments, stiffness, PairBlocks(matrix, bond.block_a, bond.block_b));
     }
+    clearing.advance(pattern_.n_blocks());
 }
 
 void EquilibriumEvaluator::add_contact_tangents(const Eigen::VectorXd& q, TangentKind kind, BlockMatrix& matrix) const {
     for (const ContactPoint& point : problem_.contacts) {
         const Mat2 tangent = point_tangent(problem_, point, q, kind);
         if (tangent.isZero(0.0)) continue;
-        add_point_tangent(point.xi_a, point.xi_b, point_stiffness(point.normal, point.weight, tangent),
-                          PairBlocks(matrix, point.block_a, point.block_b));
+        PairMoments moments;
+        moments.add(point.xi_a, point.xi_b);
+        add_pair_tangent(moments, point_stiffness(point.normal, point.weight, tangent),
+                         PairBlocks(matrix, point.block_a, point.block_b));
     }
 }
 

@@ -66,7 +66,7 @@ private:
     void add_contact_forces(const Eigen::VectorXd& q, Sums& sums) const;
     void add_pressures(const Eigen::VectorXd& q, Sums& sums) const;
     void add_mass_forces(const Eigen::VectorXd& q, Eigen::VectorXd& forces) const;
-    void add_bond_tangents(BlockMatrix& matrix) const;
+    void set_bond_tangents(BlockMatrix& matrix) const;
     void add_block_tangents(const Eigen::VectorXd& q, TangentKind kind, BlockMatrix& matrix) const;
     void add_contact_tangents(const Eigen::VectorXd& q, TangentKind kind, BlockMatrix& matrix) const;
 
