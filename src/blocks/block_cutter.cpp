@@ -16,6 +16,7 @@
 #include "kluft/blocks/hexagon_lattice.hpp"
 #include "kluft/blocks/map_mender.hpp"
 #include "kluft/core/diagnostics.hpp"
+#include "kluft/core/memory.hpp"
 #include "kluft/geometry/polygon.hpp"
 #include "kluft/geometry/segment_grid.hpp"
 
@@ -491,7 +492,9 @@ double lattice_spacing(const GeometrySpec& spec) {
     return spec.tessellation ? spec.tessellation->hexagons.spacing : spec.reference_spacing;
 }
 
-CutBody cut_blocks(const GeometrySpec& spec) {
+namespace {
+
+CutBody cut(const GeometrySpec& spec) {
     check_spec(spec);
     const SourceNumbers numbers = number_sources(spec);
     const LocalFrame frame = local_frame(spec.domain);
@@ -511,6 +514,14 @@ CutBody cut_blocks(const GeometrySpec& spec) {
 
     body.system = SystemBuilder(spec, frame, numbers, map).build();
     measure(body.system, body.report);
+    return body;
+}
+
+} // namespace
+
+CutBody cut_blocks(const GeometrySpec& spec) {
+    CutBody body = cut(spec);
+    return_freed_memory(); // five times what the body needs, which the run would otherwise not get
     return body;
 }
 
