@@ -351,8 +351,11 @@ public:
         system_.lower = frame_.box.lower;
         system_.upper = frame_.box.upper;
         for (const BoundarySides& named : spec_.boundaries) system_.boundaries.push_back({named.name, {}});
+        system_.blocks.reserve(drafts.size());
         for (Draft& draft : drafts) add_block(draft);
         join_interfaces();
+        system_.vertices.shrink_to_fit();
+        system_.interfaces.shrink_to_fit();
         system_.spacing = lattice_spacing(spec_);
         if (system_.spacing == 0.0) {
             const double total = std::accumulate(system_.blocks.begin(), system_.blocks.end(), 0.0,

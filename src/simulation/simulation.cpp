@@ -210,8 +210,6 @@ private:
         passes_ = 0;
         step_balanced_ = true;
         worst_share_ = 0.0;
-        const Eigen::VectorXd before = work_.displacement;
-        const double factor_before = work_.load_factor;
         const bool check =
             model_.has_potential_cracks && ((work_.step + 1) % std::max(1, cracks_.every) == 0 || last_of_stage);
         const bool smooth = advance(target, check);
@@ -222,7 +220,8 @@ private:
         work_.unbalanced_in_succession = step_balanced_ ? 0 : work_.unbalanced_in_succession + 1;
         if (!step_balanced_) ++report_.unbalanced_steps;
         if (smooth) {
-            work_.displacement_rate = (work_.displacement - before) / (target - factor_before);
+            work_.displacement_rate =
+                (work_.displacement - accepted_.displacement) / (target - accepted_.load_factor);
         } else {
             work_.displacement_rate.resize(0);
         }
