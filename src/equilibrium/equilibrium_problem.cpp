@@ -100,13 +100,6 @@ Mat2 full_stiffness(const InterfaceLaw& law) {
     return Eigen::Vector2d(law.normal_stiffness, law.shear_stiffness).asDiagonal();
 }
 
-Mat2 symmetric_part(const PointTraction& traction) {
-    Mat2 tangent = Mat2::Zero();
-    tangent(0, 0) = std::max(0.0, traction.tangent(0, 0));
-    tangent(1, 1) = traction.state == ContactState::locked ? std::max(0.0, traction.tangent(1, 1)) : 0.0;
-    return tangent;
-}
-
 struct GapAndSlip {
     double gap;
     double slip;
@@ -130,7 +123,7 @@ Mat2 point_tangent(const EquilibriumProblem& problem, const ContactPoint& point,
     }
     const PointTraction traction = traction_of(*problem.laws, point, q);
     if (traction.state == ContactState::open) return Mat2::Zero();
-    return kind == TangentKind::symmetric ? symmetric_part(traction) : traction.tangent;
+    return kind == TangentKind::symmetric ? symmetric_tangent(traction) : traction.tangent;
 }
 
 /// M of a block: integral of N^T N, with at least `least_area` of mass.
@@ -146,6 +139,13 @@ Mat6 mass(const Block& block, double least_area) {
 }
 
 } // namespace
+
+Mat2 symmetric_tangent(const PointTraction& traction) {
+    Mat2 tangent = Mat2::Zero();
+    tangent(0, 0) = std::max(0.0, traction.tangent(0, 0));
+    tangent(1, 1) = traction.state == ContactState::locked ? std::max(0.0, traction.tangent(1, 1)) : 0.0;
+    return tangent;
+}
 
 PointTraction contact_traction(const EquilibriumProblem& problem, int i, const Eigen::VectorXd& q) {
     return traction_of(*problem.laws, problem.contacts[i], q);
