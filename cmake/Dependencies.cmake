@@ -19,6 +19,9 @@ if(NOT BLAS_FOUND)
                       "slower in the sparse factorization, so Kluft does not build with it.")
 endif()
 
+kluft_purpose(OpenMP "number of threads of CHOLMOD")
+find_package(OpenMP REQUIRED COMPONENTS CXX)
+
 kluft_purpose(METIS "ordering of the block graph")
 find_package(METIS REQUIRED)
 

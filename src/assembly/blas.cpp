@@ -9,6 +9,7 @@
 // NOLINTBEGIN(readability-identifier-naming): names of the BLAS
 extern "C" {
 void openblas_set_num_threads(int n_threads);
+void omp_set_num_threads(int n_threads);
 void dtrsm_(const char* side, const char* uplo, const char* trans, const char* diag, const int* m, const int* n,
             const double* alpha, const double* a, const int* lda, double* b, const int* ldb);
 void dgemm_(const char* trans_a, const char* trans_b, const int* m, const int* n, const int* k, const double* alpha,
@@ -43,6 +44,9 @@ void take_blas_work_space() {
     taken = true;
 }
 
-void set_blas_threads(int n_threads) { openblas_set_num_threads(n_threads); }
+void set_blas_threads(int n_threads) {
+    openblas_set_num_threads(n_threads);
+    omp_set_num_threads(n_threads); // CHOLMOD's own loops
+}
 
 } // namespace kluft

@@ -13,7 +13,7 @@ void multiply(int m, int n, int k, const double* a, int lda, const double* b, in
 /// Throws ResourceError out of memory.
 void take_blas_work_space();
 
-/// Number of threads of the BLAS (OpenBLAS) for the whole process.
+/// Number of threads of the BLAS (OpenBLAS) and of CHOLMOD for the whole process.
 void set_blas_threads(int n_threads);
 
 } // namespace kluft
