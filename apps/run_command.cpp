@@ -11,6 +11,7 @@
 #include "commands.hpp"
 #include "kluft/assembly/blas.hpp"
 #include "kluft/core/diagnostics.hpp"
+#include "kluft/core/memory.hpp"
 #include "kluft/core/version.hpp"
 #include "kluft/kinematics/affine.hpp"
 #include "kluft/output/progress_line.hpp"
@@ -161,6 +162,7 @@ ExitCode simulate(const Model& model, const Scene& scene, State& state, RunWrite
 } // namespace
 
 ExitCode run(const RunArguments& arguments) {
+    return_large_pieces();
     const Scene scene = read_scene(arguments.scene, arguments.overrides);
     const fs::path directory =
         arguments.directory.empty() ? fs::path("results") / scene.name : fs::path(arguments.directory);

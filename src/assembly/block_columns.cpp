@@ -113,48 +113,64 @@ void unpermute(const std::vector<int>& position, const double* permuted, Eigen::
     }
 }
 
-BlockColumns::BlockColumns(const BlockPattern& pattern, const std::vector<int>& position, Part part) {
+BlockColumns::BlockColumns(const BlockPattern& pattern, const std::vector<int>& position, Part part) : part_(part) {
     const int n = pattern.n_blocks();
     const auto block_at = inverse_of(position);
-    const std::size_t blocks = part == Part::all ? pattern.n_entries() : (pattern.n_entries() + n) / 2;
-    starts_.reserve(static_cast<std::size_t>(nu) * n + 1);
-    starts_.push_back(0);
-    sources_.reserve(blocks);
+    sources_.reserve(part == Part::all ? pattern.n_entries() : (pattern.n_entries() + n) / 2);
+    source_starts_.reserve(static_cast<std::size_t>(n) + 1);
     source_starts_.push_back(0);
-    rows_.reserve(blocks * nu * nu - (part == Part::all ? 0 : static_cast<std::size_t>(n) * nu * (nu - 1) / 2));
-    std::vector<std::pair<int, int>> column; // (position of the row, row), by structural symmetry
-    for (int p = 0; p < n; ++p) {
+    for (int p = 0; p < n; ++p) { // by structural symmetry the column has the rows of the row
         const int b = block_at[p];
-        column.clear();
+        const auto first = static_cast<std::ptrdiff_t>(sources_.size());
         for (int entry = pattern.row_start(b); entry < pattern.row_start(b + 1); ++entry) {
             const int row = pattern.column(entry);
-            if (part == Part::all || position[row] >= p) column.emplace_back(position[row], row);
+            if (part == Part::all || position[row] >= p) sources_.push_back({pattern.find(row, b), position[row]});
         }
-        std::sort(column.begin(), column.end());
-        for (const auto& [at, row] : column)
-            sources_.push_back({pattern.find(row, b), part == Part::lower && row == b});
+        std::sort(sources_.begin() + first, sources_.end(),
+                  [](const Source& x, const Source& y) { return x.row < y.row; });
         source_starts_.push_back(static_cast<int>(sources_.size()));
+    }
+}
+
+std::int64_t BlockColumns::size() const {
+    return nu * (static_cast<std::int64_t>(source_starts_.size()) - 1);
+}
+
+void BlockColumns::gather_structure() {
+    if (!rows_.empty()) return;
+    const int n = static_cast<int>(source_starts_.size()) - 1;
+    starts_.reserve(static_cast<std::size_t>(nu) * n + 1);
+    starts_.push_back(0);
+    rows_.reserve(sources_.size() * nu * nu - (part_ == Part::all ? 0 : static_cast<std::size_t>(n) * nu * (nu - 1) / 2));
+    for (int p = 0; p < n; ++p) {
         for (int j = 0; j < nu; ++j) {
-            for (const auto& [at, row] : column) {
-                for (int i = part == Part::lower && row == b ? j : 0; i < nu; ++i) rows_.push_back(nu * at + i);
+            for (int k = source_starts_[p]; k < source_starts_[p + 1]; ++k) {
+                for (int i = first_row(p, sources_[k], j); i < nu; ++i) rows_.push_back(nu * sources_[k].row + i);
             }
             starts_.push_back(static_cast<std::int64_t>(rows_.size()));
         }
     }
-    values_.resize(rows_.size());
 }
 
 void BlockColumns::gather(const BlockMatrix& matrix) {
+    gather_structure();
+    values_.resize(rows_.size());
     const int n = static_cast<int>(source_starts_.size()) - 1;
+    double* value = values_.data();
     for (int p = 0; p < n; ++p) {
         for (int j = 0; j < nu; ++j) {
-            double* value = values_.data() + starts_[static_cast<std::size_t>(nu) * p + j];
             for (int k = source_starts_[p]; k < source_starts_[p + 1]; ++k) {
-                const int first = sources_[k].cut ? j : 0;
+                const int first = first_row(p, sources_[k], j);
                 value = std::copy_n(matrix.values[sources_[k].entry].data() + nu * j + first, nu - first, value);
             }
         }
     }
+}
+
+void BlockColumns::release() {
+    starts_ = std::vector<std::int64_t>(); // clearing would keep the room
+    rows_ = std::vector<std::int64_t>();
+    values_ = std::vector<double>();
 }
 
 } // namespace kluft

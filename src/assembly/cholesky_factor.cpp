@@ -80,8 +80,11 @@ CholeskyFactor::~CholeskyFactor() = default;
 void CholeskyFactor::analyze(const BlockPattern& pattern, const std::vector<int>& position) {
     cholmod_l_free_factor(&cholmod_->factor, &cholmod_->common);
     columns_ = BlockColumns(pattern, position, BlockColumns::Part::lower);
+    columns_.gather_structure();
     cholmod_sparse matrix = lower_triangle(columns_);
+    matrix.xtype = CHOLMOD_PATTERN;
     cholmod_->factor = cholmod_l_analyze(&matrix, &cholmod_->common);
+    columns_.release();
     cholmod_->require_memory();
     if (cholmod_->factor == nullptr || cholmod_->factor->is_super == 0) {
         throw ResourceError("the symbolic analysis failed");
@@ -103,6 +106,8 @@ bool CholeskyFactor::factorize(const BlockMatrix& matrix) {
     columns_.gather(matrix);
     cholmod_sparse view = lower_triangle(columns_);
     cholmod_l_factorize(&view, cholmod_->factor, &cholmod_->common);
+    columns_.release();
+    cholmod_l_free_work(&cholmod_->common);
     cholmod_->require_memory();
     return cholmod_->common.status == CHOLMOD_OK && cholmod_->factor->minor == cholmod_->factor->n;
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
+#include <utility>
 
 #include "kluft/contact/broad_phase.hpp"
 #include "kluft/kinematics/affine.hpp"
@@ -26,68 +28,129 @@ constexpr double vertex_weight = 0.2;
 constexpr std::array<double, 3> lobatto_positions{0.0, 0.5, 1.0};
 constexpr std::array<double, 3> lobatto_weights{1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0};
 
-/// The edges of a block that can touch another one, in their current position.
+/// An edge that can touch another block, in its current position.
+struct CurrentEdge {
+    int edge = 0;
+    int arriving = 0; ///< the edge before it in its loop
+    Vec2 before;      ///< where that one starts
+    Vec2 start, end;
+    Vec2 direction;
+    double length = 0.0;
+};
+
+/// The edges of a block that can touch others: edges[first] .. edges[last - 1] of all of them.
 struct Surface {
     int block = 0;
     bool separated = false; ///< has an edge that is not bonded inside the body
-    struct CurrentEdge {
-        int edge = 0;
-        Vec2 start, end;
-        Vec2 direction;
-        double length = 0.0;
-    };
+    std::size_t first = 0;
+    std::size_t last = 0;
+};
+
+struct Surfaces {
+    std::vector<Surface> all;
     std::vector<CurrentEdge> edges;
+    std::vector<int> of_block; ///< -1 for a block without any
+    std::vector<Vec2> corners; ///< of the block at work
+
+    [[nodiscard]] std::span<const CurrentEdge> edges_of(const Surface& surface) const {
+        return std::span(edges).subspan(surface.first, surface.last - surface.first);
+    }
 };
 
 bool is_bonded(const ContactSurfaces& surfaces, const Edge& edge) {
     return edge.interface >= 0 && surfaces.bonded[edge.interface];
 }
 
-Surface current_surface(const BlockSystem& system, const ContactSurfaces& surfaces, const Eigen::VectorXd& q, int b) {
-    Surface surface;
-    surface.block = b;
-    const Block& block = system.blocks[b];
-    for (int e = 0; e < static_cast<int>(block.edges.size()); ++e) {
-        const Edge& edge = block.edges[e];
-        if (is_bonded(surfaces, edge)) continue;
-        surface.separated = surface.separated || edge.interface >= 0;
-        Surface::CurrentEdge current;
-        current.edge = e;
-        current.start = current_position(system, q, b, edge.start);
-        current.end = current_position(system, q, b, edge.end);
-        current.length = (current.end - current.start).norm();
-        current.direction = (current.end - current.start) / current.length;
-        surface.edges.push_back(current);
-    }
-    return surface;
+CurrentEdge current_edge(int edge, int arriving, const Vec2& before, const Vec2& start, const Vec2& end) {
+    CurrentEdge current{edge, arriving, before, start, end, Vec2::Zero(), (end - start).norm()};
+    current.direction = (end - start) / current.length;
+    return current;
 }
 
-BlockBox bounding_box(const Surface& surface) {
-    BlockBox box{surface.block, surface.edges.front().start, surface.edges.front().start};
-    for (const auto& edge : surface.edges) {
-        box.lower = box.lower.cwiseMin(edge.start).cwiseMin(edge.end);
-        box.upper = box.upper.cwiseMax(edge.start).cwiseMax(edge.end);
+void append_surface(const BlockSystem& system, const ContactSurfaces& contact_surfaces, const Eigen::VectorXd& q, int b,
+                    Surfaces& surfaces) {
+    const Block& block = system.blocks[b];
+    const auto touches = [&](const Edge& edge) { return !is_bonded(contact_surfaces, edge); };
+    if (std::ranges::none_of(block.edges, touches)) return;
+    Surface surface{b, false, surfaces.edges.size(), 0};
+    std::vector<Vec2>& corners = surfaces.corners;
+    corners.clear();
+    for (const Edge& edge : block.edges) corners.push_back(current_position(system, q, b, edge.start));
+    for (std::size_t loop = 0; loop < block.loop_starts.size(); ++loop) {
+        const int first = block.loop_starts[loop];
+        const int last =
+            loop + 1 < block.loop_starts.size() ? block.loop_starts[loop + 1] : static_cast<int>(block.edges.size());
+        for (int e = first; e < last; ++e) {
+            if (!touches(block.edges[e])) continue;
+            surface.separated = surface.separated || block.edges[e].interface >= 0;
+            const int before = e > first ? e - 1 : last - 1;
+            const int after = e + 1 < last ? e + 1 : first;
+            surfaces.edges.push_back(current_edge(e, before, corners[before], corners[e], corners[after]));
+        }
     }
-    return box;
+    surface.last = surfaces.edges.size();
+    surfaces.of_block[b] = static_cast<int>(surfaces.all.size());
+    surfaces.all.push_back(surface);
+}
+
+Surfaces current_surfaces(const BlockSystem& system, const ContactSurfaces& contact_surfaces,
+                          const Eigen::VectorXd& q) {
+    Surfaces surfaces;
+    surfaces.of_block.assign(system.blocks.size(), -1);
+    for (int b = 0; b < system.n_blocks(); ++b) append_surface(system, contact_surfaces, q, b, surfaces);
+    return surfaces;
+}
+
+std::vector<BlockBox> bounding_boxes(const Surfaces& surfaces) {
+    std::vector<BlockBox> boxes;
+    boxes.reserve(surfaces.all.size());
+    for (const Surface& surface : surfaces.all) {
+        const auto edges = surfaces.edges_of(surface);
+        BlockBox box{surface.block, edges.front().start, edges.front().start};
+        for (const CurrentEdge& edge : edges) {
+            box.lower = box.lower.cwiseMin(edge.start).cwiseMin(edge.end);
+            box.upper = box.upper.cwiseMax(edge.start).cwiseMax(edge.end);
+        }
+        boxes.push_back(box);
+    }
+    return boxes;
 }
 
 /// The narrow phase of one pair of blocks.
 class PairDetection {
 public:
-    PairDetection(const BlockSystem& system, const ContactSurfaces& surfaces, const Eigen::VectorXd& q, double reach,
-                  std::vector<ContactPoint>& points)
-        : system_(system), surfaces_(surfaces), q_(q), reach_(reach), points_(points) {}
+    PairDetection(const BlockSystem& system, const ContactSurfaces& surfaces, const Eigen::VectorXd& q, double reach)
+        : system_(system), surfaces_(surfaces), q_(q), reach_(reach) {}
 
-    void run(const Surface& a, const Surface& b) {
-        bonded_pair_ = bonded(a.block, b.block);
-        deepest_ = -deepest_penetration * std::min(system_.blocks[a.block].size, system_.blocks[b.block].size);
+    /// Makes room for the points of so many overlaps.
+    void expect(std::size_t n_overlaps) { points_.reserve(lobatto_positions.size() * n_overlaps); }
+
+    void run(int a, std::span<const CurrentEdge> edges_a, int b, std::span<const CurrentEdge> edges_b) {
+        bonded_pair_ = bonded(a, b);
+        deepest_ = -deepest_penetration * std::min(system_.blocks[a].size, system_.blocks[b].size);
         overlapping_.clear();
-        for (const auto& edge_a : a.edges) {
-            for (const auto& edge_b : b.edges) append_overlap(a, edge_a, b, edge_b);
+        for (const auto& edge_a : edges_a) {
+            for (const auto& edge_b : edges_b) append_overlap(a, edge_a, b, edge_b);
         }
         if (bonded_pair_) return;
-        append_vertices(a, b, false);
-        append_vertices(b, a, true);
+        append_vertices(a, edges_a, b, edges_b, false);
+        append_vertices(b, edges_b, a, edges_a, true);
+    }
+
+    /// The points of all pairs so far, sorted by key; for pairs (a, b) in ascending order, a < b. Those of the lower
+    /// block are in its order already.
+    std::vector<ContactPoint> take_points() {
+        const auto same_block = [](const ContactPoint& p, const ContactPoint& q) { return p.block_a == q.block_a; };
+        for (auto first = points_.begin(); first != points_.end();) {
+            auto last = std::find_if_not(first, points_.end(), [&](const auto& p) { return same_block(*first, p); });
+            std::ranges::sort(first, last, {}, &ContactPoint::key);
+            first = last;
+        }
+        std::ranges::sort(points_of_higher_, {}, &ContactPoint::key);
+        const auto middle = static_cast<std::ptrdiff_t>(points_.size());
+        points_.insert(points_.end(), points_of_higher_.begin(), points_of_higher_.end());
+        std::ranges::inplace_merge(points_, points_.begin() + middle, {}, &ContactPoint::key);
+        return std::move(points_);
     }
 
 private:
@@ -118,36 +181,34 @@ private:
         return surfaces_.friction[law_a] <= surfaces_.friction[law_b] ? law_a : law_b;
     }
 
-    ContactPoint point_between(const Surface& a, const Surface::CurrentEdge& edge_a, double s_a, const Surface& b,
-                               const Surface::CurrentEdge& edge_b, double s_b) const {
-        const Edge& side_a = reference(a.block, edge_a.edge);
-        const Edge& side_b = reference(b.block, edge_b.edge);
+    ContactPoint point_between(int a, const CurrentEdge& edge_a, double s_a, int b, const CurrentEdge& edge_b,
+                               double s_b) const {
+        const Edge& side_a = reference(a, edge_a.edge);
+        const Edge& side_b = reference(b, edge_b.edge);
         const Vec2 x_a = edge_start(system_, side_a) + s_a * (edge_end(system_, side_a) - edge_start(system_, side_a));
         const Vec2 x_b = edge_start(system_, side_b) + s_b * (edge_end(system_, side_b) - edge_start(system_, side_b));
         ContactPoint point;
-        point.block_a = a.block;
-        point.block_b = b.block;
-        point.xi_a = block_coordinates(system_.blocks[a.block], x_a);
-        point.xi_b = block_coordinates(system_.blocks[b.block], x_b);
+        point.block_a = a;
+        point.block_b = b;
+        point.xi_a = block_coordinates(system_.blocks[a], x_a);
+        point.xi_b = block_coordinates(system_.blocks[b], x_b);
         point.offset = x_b - x_a;
         if (point.offset.norm() <= same_point * edge_a.length) point.offset.setZero();
         point.law = law_between(side_a, side_b);
         if (side_a.interface >= 0 && side_a.interface == side_b.interface) point.interface = side_a.interface;
-        point.key = {a.block, edge_a.edge, b.block, edge_b.edge, -1};
+        point.key = {a, edge_a.edge, b, edge_b.edge, -1};
         return point;
     }
 
-    void finish(ContactPoint& point, const Vec2& along) {
+    void finish(ContactPoint& point, const Vec2& along) const {
         point.normal = right_normal(along);
         point.tangent = along;
         point.slip_start = along.dot(relative_position(point, q_));
-        points_.push_back(point);
     }
 
-    void append_overlap(const Surface& a, const Surface::CurrentEdge& edge_a, const Surface& b,
-                        const Surface::CurrentEdge& edge_b) {
+    void append_overlap(int a, const CurrentEdge& edge_a, int b, const CurrentEdge& edge_b) {
         if (edge_a.direction.dot(edge_b.direction) > facing_cosine) return;
-        if (!may_touch(reference(a.block, edge_a.edge), reference(b.block, edge_b.edge))) return;
+        if (!may_touch(reference(a, edge_a.edge), reference(b, edge_b.edge))) return;
         const Vec2 along = (edge_a.direction - edge_b.direction).normalized();
         const Vec2 normal = right_normal(along);
         const Vec2 d = edge_b.end - edge_a.start; // differences first: positions far from the origin lose digits
@@ -175,6 +236,7 @@ private:
             point.weight = lobatto_weights[k] * overlap;
             point.key.point = k;
             finish(point, along);
+            points_.push_back(point);
         }
     }
 
@@ -183,52 +245,40 @@ private:
         return std::ranges::find(overlapping_, pair) != overlapping_.end();
     }
 
-    /// Vertices of `owner` (the start of each of its edges) against the edges of `target`.
-    void append_vertices(const Surface& owner, const Surface& target, bool swapped) {
-        const Block& block = system_.blocks[owner.block];
-        for (const auto& leaving : owner.edges) {
-            const int arriving = previous_edge(block, leaving.edge);
-            const Vec2 before = current_position(system_, q_, owner.block, block.edges[arriving].start);
-            for (const auto& edge : target.edges) {
-                append_vertex(owner, leaving, arriving, before, target, edge, swapped);
-            }
+    /// Vertices of `owner` (the start of each of its edges) against the edges of `target`; `swapped` if the owner is the
+    /// higher block.
+    void append_vertices(int owner, std::span<const CurrentEdge> leaving_edges, int target,
+                         std::span<const CurrentEdge> edges, bool swapped) {
+        for (const auto& leaving : leaving_edges) {
+            for (const auto& edge : edges) append_vertex(owner, leaving, target, edge, swapped);
         }
     }
 
-    void append_vertex(const Surface& owner, const Surface::CurrentEdge& leaving, int arriving, const Vec2& before,
-                       const Surface& target, const Surface::CurrentEdge& edge, bool swapped) {
+    void append_vertex(int owner, const CurrentEdge& leaving, int target, const CurrentEdge& edge, bool swapped) {
         const Vec2 outward = right_normal(edge.direction);
         const Vec2 from_edge = leaving.start - edge.start;
         const double gap = outward.dot(from_edge);
         if (gap > reach_ || gap < deepest_) return;
         const double s = edge.direction.dot(from_edge) / edge.length;
         if (s < 0.0 || s > 1.0) return;
-        if (outward.dot(leaving.end - leaving.start) < 0.0 || outward.dot(before - leaving.start) < 0.0) return;
-        const Edge& target_edge = reference(target.block, edge.edge);
-        const int vertex = reference(owner.block, leaving.edge).start;
+        if (outward.dot(leaving.end - leaving.start) < 0.0 || outward.dot(leaving.before - leaving.start) < 0.0) return;
+        const Edge& target_edge = reference(target, edge.edge);
+        const int vertex = reference(owner, leaving.edge).start;
         if (vertex == target_edge.start || vertex == target_edge.end) return;
-        if (overlap_covers(leaving.edge, edge.edge, swapped) || overlap_covers(arriving, edge.edge, swapped)) return;
+        if (overlap_covers(leaving.edge, edge.edge, swapped) || overlap_covers(leaving.arriving, edge.edge, swapped))
+            return;
         ContactPoint point = point_between(owner, leaving, 0.0, target, edge, s);
-        point.weight = vertex_weight * std::min(edge.length, system_.blocks[owner.block].size);
+        point.weight = vertex_weight * std::min(edge.length, system_.blocks[owner].size);
         finish(point, -edge.direction);
-    }
-
-    static int previous_edge(const Block& block, int e) {
-        for (std::size_t loop = 0; loop < block.loop_starts.size(); ++loop) {
-            const int first = block.loop_starts[loop];
-            const int last = loop + 1 < block.loop_starts.size() ? block.loop_starts[loop + 1]
-                                                                 : static_cast<int>(block.edges.size());
-            if (e == first) return last - 1;
-            if (e > first && e < last) return e - 1;
-        }
-        return e;
+        (swapped ? points_of_higher_ : points_).push_back(point);
     }
 
     const BlockSystem& system_;
     const ContactSurfaces& surfaces_;
     const Eigen::VectorXd& q_;
     double reach_;
-    std::vector<ContactPoint>& points_;
+    std::vector<ContactPoint> points_;           ///< with block_a the lower block of the pair
+    std::vector<ContactPoint> points_of_higher_; ///< vertices of the higher block
     bool bonded_pair_ = false;
     double deepest_ = 0.0;
     std::vector<std::pair<int, int>> overlapping_; ///< (edge of a, edge of b) of the present pair
@@ -246,27 +296,20 @@ void transfer_histories(const std::vector<ContactMemory>& memory, std::vector<Co
 
 DetectedContacts detect_contacts(const BlockSystem& system, const ContactSurfaces& surfaces, const Eigen::VectorXd& q,
                                  double reach, const std::vector<ContactMemory>& memory) {
-    std::vector<Surface> touching;
-    std::vector<int> index(system.blocks.size(), -1);
-    std::vector<BlockBox> boxes;
-    for (int b = 0; b < system.n_blocks(); ++b) {
-        Surface surface = current_surface(system, surfaces, q, b);
-        if (surface.edges.empty()) continue;
-        boxes.push_back(bounding_box(surface));
-        index[b] = static_cast<int>(touching.size());
-        touching.push_back(std::move(surface));
-    }
-
+    const Surfaces all = current_surfaces(system, surfaces, q);
     DetectedContacts result;
-    PairDetection pair_detection(system, surfaces, q, reach, result.points);
-    for (const auto& [a, b] : meeting_boxes(boxes, reach)) {
-        const Surface& surface_a = touching[index[a]];
-        const Surface& surface_b = touching[index[b]];
+    const auto pairs = meeting_boxes(bounding_boxes(all), reach);
+    result.near_pairs.reserve(pairs.size());
+    PairDetection pair_detection(system, surfaces, q, reach);
+    pair_detection.expect(all.edges.size() / 2);
+    for (const auto& [a, b] : pairs) {
+        const Surface& surface_a = all.all[all.of_block[a]];
+        const Surface& surface_b = all.all[all.of_block[b]];
         if (!surface_a.separated && !surface_b.separated) continue;
         result.near_pairs.emplace_back(a, b);
-        pair_detection.run(surface_a, surface_b);
+        pair_detection.run(a, all.edges_of(surface_a), b, all.edges_of(surface_b));
     }
-    std::ranges::sort(result.points, {}, &ContactPoint::key);
+    result.points = pair_detection.take_points();
     transfer_histories(memory, result.points);
     return result;
 }

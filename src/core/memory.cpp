@@ -14,4 +14,12 @@ void return_freed_memory() {
 #endif
 }
 
+void return_large_pieces() {
+#ifdef __GLIBC__
+    constexpr int large = 1 << 20;
+    mallopt(M_MMAP_THRESHOLD, large);
+    mallopt(M_TRIM_THRESHOLD, large);
+#endif
+}
+
 } // namespace kluft

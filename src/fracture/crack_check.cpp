@@ -14,6 +14,7 @@ template <typename Index>
 std::vector<CrackCandidate> check_bonds(const BlockSystem& system, const std::vector<char>& bonded,
                                         const std::vector<Mat2>& stresses, Index index) {
     std::vector<CrackCandidate> candidates;
+    candidates.reserve(static_cast<std::size_t>(std::ranges::count(bonded, 1)));
     for (int i = 0; i < system.n_interfaces(); ++i) {
         if (!bonded[i]) continue;
         const auto stress = mean_principal_stresses(system.interfaces[i], stresses);

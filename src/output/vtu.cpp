@@ -24,75 +24,85 @@ namespace {
 constexpr std::uint8_t vtk_line = 3;
 constexpr std::uint8_t vtk_polygon = 7;
 
-void append_xyz(std::vector<double>& values, const Vec2& v) { values.insert(values.end(), {v.x(), v.y(), 0.0}); }
-
 void add_stamp(VtuDocument& document, const StepRecord& record, std::string_view about) {
     document.add_field("about", std::vector<std::string>{std::string(about)});
     document.add_field("step", static_cast<std::int32_t>(record.step));
     document.add_field("axial_strain", record.axial_strain);
 }
 
+void add_types(VtuDocument& document, std::size_t n_cells, std::uint8_t type) {
+    auto types = document.types();
+    for (std::size_t i = 0; i < n_cells; ++i) types.put(type);
+}
+
 void add_block_shapes(VtuDocument& document, const BlockSystem& system, const FieldRecord& fields) {
-    std::vector<double> points;
-    std::vector<double> displacement;
-    std::vector<std::int64_t> connectivity;
-    std::vector<std::int64_t> ends;
-    std::int64_t first = 0;
-    for (const Block& block : system.blocks) {
-        for (const Edge& edge : block.edges) append_xyz(points, system.origin + edge_start(system, edge));
-        for (const int edge : keyhole_polygon(system, block)) connectivity.push_back(first + edge);
-        ends.push_back(static_cast<std::int64_t>(connectivity.size()));
-        first += static_cast<std::int64_t>(block.edges.size());
+    {
+        auto points = document.points();
+        for (const Block& block : system.blocks) {
+            for (const Edge& edge : block.edges) points.put(Vec2(system.origin + edge_start(system, edge)));
+        }
     }
-    for (const Vec2& u : fields.displacement) append_xyz(displacement, u);
-    document.add_points(points);
-    document.add_cells(connectivity, ends, vtk_polygon);
-    document.add_point_vectors("displacement", displacement);
+    std::vector<std::int64_t> ends;
+    ends.reserve(system.blocks.size());
+    {
+        auto connectivity = document.connectivity();
+        std::int64_t first = 0;
+        std::int64_t end = 0;
+        for (const Block& block : system.blocks) {
+            for (const int edge : keyhole_polygon(system, block)) {
+                connectivity.put(first + edge);
+                ++end;
+            }
+            ends.push_back(end);
+            first += static_cast<std::int64_t>(block.edges.size());
+        }
+    }
+    {
+        auto array = document.ends();
+        for (const std::int64_t end : ends) array.put(end);
+    }
+    add_types(document, system.blocks.size(), vtk_polygon);
+    auto displacement = document.point_vectors("displacement");
+    for (const Vec2& u : fields.displacement) displacement.put(u);
 }
 
 void add_block_fields(VtuDocument& document, const BlockSystem& system, const FieldRecord& fields) {
-    std::vector<double> xx, yy, xy, major, minor;
-    for (const Mat2& stress : fields.stress) {
-        xx.push_back(stress(0, 0));
-        yy.push_back(stress(1, 1));
-        xy.push_back(0.5 * (stress(0, 1) + stress(1, 0)));
-        const auto [p1, p3] = principal_compression(stress);
-        major.push_back(p1);
-        minor.push_back(p3);
-    }
-    std::vector<std::int32_t> material, index;
-    for (const Block& block : system.blocks) {
-        material.push_back(block.material);
-        index.push_back(static_cast<std::int32_t>(index.size()));
-    }
-    document.add_cell_field("stress_xx", xx);
-    document.add_cell_field("stress_yy", yy);
-    document.add_cell_field("stress_xy", xy);
-    document.add_cell_field("sigma_1", major);
-    document.add_cell_field("sigma_3", minor);
-    document.add_cell_field("material", material);
-    document.add_cell_field("block", index);
+    const auto& stress = fields.stress;
+    document.add_cell_field("stress_xx", [&](std::size_t b) { return stress[b](0, 0); });
+    document.add_cell_field("stress_yy", [&](std::size_t b) { return stress[b](1, 1); });
+    document.add_cell_field("stress_xy", [&](std::size_t b) { return 0.5 * (stress[b](0, 1) + stress[b](1, 0)); });
+    document.add_cell_field("sigma_1", [&](std::size_t b) { return principal_compression(stress[b]).first; });
+    document.add_cell_field("sigma_3", [&](std::size_t b) { return principal_compression(stress[b]).second; });
+    document.add_cell_field("material", [&](std::size_t b) { return std::int32_t{system.blocks[b].material}; });
+    document.add_cell_field("block", [](std::size_t b) { return static_cast<std::int32_t>(b); });
 }
 
 void add_interface_shapes(VtuDocument& document, const BlockSystem& system, const FieldRecord& fields) {
-    const auto first = first_vertices(system);
-    std::vector<double> points;
-    std::vector<double> displacement;
-    std::vector<std::int64_t> connectivity;
-    std::vector<std::int64_t> ends;
-    for (const Interface& interface : system.interfaces) {
-        const Edge& edge = system.blocks[interface.block_a].edges[interface.edge_a];
-        const InterfaceMotion motion = interface_motion(system, first, fields.displacement, interface);
-        append_xyz(points, system.origin + edge_start(system, edge));
-        append_xyz(points, system.origin + edge_end(system, edge));
-        append_xyz(displacement, 0.5 * (motion.start_a + motion.start_b));
-        append_xyz(displacement, 0.5 * (motion.end_a + motion.end_b));
-        for (int i = 0; i < 2; ++i) connectivity.push_back(static_cast<std::int64_t>(connectivity.size()));
-        ends.push_back(static_cast<std::int64_t>(connectivity.size()));
+    const std::size_t n = system.interfaces.size();
+    {
+        auto points = document.points();
+        for (const Interface& interface : system.interfaces) {
+            const Edge& edge = system.blocks[interface.block_a].edges[interface.edge_a];
+            points.put(Vec2(system.origin + edge_start(system, edge)));
+            points.put(Vec2(system.origin + edge_end(system, edge)));
+        }
     }
-    document.add_points(points);
-    document.add_cells(connectivity, ends, vtk_line);
-    document.add_point_vectors("displacement", displacement);
+    {
+        auto connectivity = document.connectivity();
+        for (std::size_t i = 0; i < 2 * n; ++i) connectivity.put(static_cast<std::int64_t>(i));
+    }
+    {
+        auto ends = document.ends();
+        for (std::size_t i = 0; i < n; ++i) ends.put(static_cast<std::int64_t>(2 * i + 2));
+    }
+    add_types(document, n, vtk_line);
+    auto displacement = document.point_vectors("displacement");
+    const auto first = first_vertices(system);
+    for (const Interface& interface : system.interfaces) {
+        const InterfaceMotion motion = interface_motion(system, first, fields.displacement, interface);
+        displacement.put(Vec2(0.5 * (motion.start_a + motion.start_b)));
+        displacement.put(Vec2(0.5 * (motion.end_a + motion.end_b)));
+    }
 }
 
 std::int32_t mode_code(const FieldRecord::InterfaceFields& fields) {
@@ -113,30 +123,16 @@ std::int32_t state_code(ContactState state) {
 }
 
 void add_interface_fields(VtuDocument& document, const BlockSystem& system, const FieldRecord& fields) {
-    std::vector<std::int32_t> state, bonded, mode, fracture, index;
-    std::vector<double> normal, shear, gap, slip;
-    for (const auto& each : fields.interfaces) {
-        state.push_back(state_code(each.state));
-        bonded.push_back(each.bonded ? 1 : 0);
-        mode.push_back(mode_code(each));
-        normal.push_back(each.normal_traction);
-        shear.push_back(each.shear_traction);
-        gap.push_back(each.gap);
-        slip.push_back(each.slip);
-    }
-    for (const Interface& interface : system.interfaces) {
-        fracture.push_back(interface.fracture);
-        index.push_back(static_cast<std::int32_t>(index.size()));
-    }
-    document.add_cell_field("state", state);
-    document.add_cell_field("bonded", bonded);
-    document.add_cell_field("crack_mode", mode);
-    document.add_cell_field("normal_traction", normal);
-    document.add_cell_field("shear_traction", shear);
-    document.add_cell_field("gap", gap);
-    document.add_cell_field("slip", slip);
-    document.add_cell_field("mapped_fracture", fracture);
-    document.add_cell_field("interface", index);
+    const auto& each = fields.interfaces;
+    document.add_cell_field("state", [&](std::size_t i) { return state_code(each[i].state); });
+    document.add_cell_field("bonded", [&](std::size_t i) { return std::int32_t{each[i].bonded}; });
+    document.add_cell_field("crack_mode", [&](std::size_t i) { return mode_code(each[i]); });
+    document.add_cell_field("normal_traction", [&](std::size_t i) { return each[i].normal_traction; });
+    document.add_cell_field("shear_traction", [&](std::size_t i) { return each[i].shear_traction; });
+    document.add_cell_field("gap", [&](std::size_t i) { return each[i].gap; });
+    document.add_cell_field("slip", [&](std::size_t i) { return each[i].slip; });
+    document.add_cell_field("mapped_fracture", [&](std::size_t i) { return system.interfaces[i].fracture; });
+    document.add_cell_field("interface", [](std::size_t i) { return static_cast<std::int32_t>(i); });
 }
 
 std::string file_name(std::string_view part, int step) { return fmt::format("{}_{:06}.vtu", part, step); }

@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <utility>
 
 #include <fmt/format.h>
@@ -15,57 +16,60 @@ VtuDocument::VtuDocument(std::size_t n_points, std::size_t n_cells) : n_points_(
     appended_.reserve(xml_bytes + bytes_per_point * n_points + bytes_per_cell * n_cells);
 }
 
-std::vector<double> VtuDocument::finite(const std::vector<double>& values) {
-    std::vector<double> checked = values;
-    for (double& value : checked) {
-        if (std::isfinite(value)) continue;
-        value = 0.0;
-        ++n_replaced_;
-    }
-    return checked;
+VtuDocument::Array::Array(VtuDocument& document) : document_(document), begin_(document.appended_.size()) {
+    constexpr std::uint64_t length_to_come = 0;
+    append(&length_to_come, sizeof length_to_come);
 }
 
-void VtuDocument::add_array(std::string& section, std::string_view attributes, const void* bytes, std::size_t size) {
+VtuDocument::Array::~Array() {
+    const std::uint64_t length = document_.appended_.size() - begin_ - sizeof length;
+    std::memcpy(&document_.appended_[begin_], &length, sizeof length);
+}
+
+void VtuDocument::Array::append(const void* bytes, std::size_t size) {
+    document_.appended_.append(static_cast<const char*>(bytes), size);
+}
+
+void VtuDocument::Array::put(double number) {
+    const double checked = document_.finite(number);
+    append(&checked, sizeof checked);
+}
+
+void VtuDocument::Array::put(const Vec2& vector) {
+    put(vector.x());
+    put(vector.y());
+    put(0.0);
+}
+
+double VtuDocument::finite(double number) {
+    if (std::isfinite(number)) return number;
+    ++n_replaced_;
+    return 0.0;
+}
+
+VtuDocument::Array VtuDocument::begin(std::string& section, std::string_view attributes) {
     section += fmt::format("<DataArray {} format=\"appended\" offset=\"{}\"/>\n", attributes, appended_.size());
-    const std::uint64_t length = size;
-    appended_.append(reinterpret_cast<const char*>(&length), sizeof length);
-    appended_.append(static_cast<const char*>(bytes), size);
+    return Array(*this);
 }
 
-void VtuDocument::add_points(const std::vector<double>& xyz) {
-    const auto values = finite(xyz);
-    add_array(points_, R"(type="Float64" Name="Points" NumberOfComponents="3")", values.data(),
-              values.size() * sizeof(double));
+VtuDocument::Array VtuDocument::points() {
+    return begin(points_, R"(type="Float64" Name="Points" NumberOfComponents="3")");
 }
 
-void VtuDocument::add_cells(const std::vector<std::int64_t>& connectivity, const std::vector<std::int64_t>& ends,
-                            std::uint8_t type) {
-    const std::vector<std::uint8_t> types(n_cells_, type);
-    add_array(cells_, R"(type="Int64" Name="connectivity")", connectivity.data(),
-              connectivity.size() * sizeof(std::int64_t));
-    add_array(cells_, R"(type="Int64" Name="offsets")", ends.data(), ends.size() * sizeof(std::int64_t));
-    add_array(cells_, R"(type="UInt8" Name="types")", types.data(), types.size());
+VtuDocument::Array VtuDocument::point_vectors(std::string_view name) {
+    return begin(point_data_, fmt::format(R"(type="Float64" Name="{}" NumberOfComponents="3")", name));
 }
 
-void VtuDocument::add_point_vectors(std::string_view name, const std::vector<double>& xyz) {
-    const auto values = finite(xyz);
-    add_array(point_data_, fmt::format(R"(type="Float64" Name="{}" NumberOfComponents="3")", name), values.data(),
-              values.size() * sizeof(double));
-}
+VtuDocument::Array VtuDocument::connectivity() { return begin(cells_, R"(type="Int64" Name="connectivity")"); }
+VtuDocument::Array VtuDocument::ends() { return begin(cells_, R"(type="Int64" Name="offsets")"); }
+VtuDocument::Array VtuDocument::types() { return begin(cells_, R"(type="UInt8" Name="types")"); }
 
-void VtuDocument::add_cell_field(std::string_view name, const std::vector<double>& values) {
-    const auto checked = finite(values);
-    add_array(cell_data_, fmt::format(R"(type="Float64" Name="{}")", name), checked.data(),
-              checked.size() * sizeof(double));
-}
-
-void VtuDocument::add_cell_field(std::string_view name, const std::vector<std::int32_t>& values) {
-    add_array(cell_data_, fmt::format(R"(type="Int32" Name="{}")", name), values.data(),
-              values.size() * sizeof(std::int32_t));
+VtuDocument::Array VtuDocument::cell_field(std::string_view name, std::string_view type) {
+    return begin(cell_data_, fmt::format(R"(type="{}" Name="{}")", type, name));
 }
 
 void VtuDocument::add_field(std::string_view name, double value) {
-    const double checked = finite({value}).front();
+    const double checked = finite(value);
     field_data_ +=
         fmt::format("<DataArray type=\"Float64\" Name=\"{}\" NumberOfTuples=\"1\" format=\"ascii\">{}</DataArray>\n",
                     name, checked);

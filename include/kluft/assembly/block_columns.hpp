@@ -18,7 +18,8 @@ namespace kluft {
 void permute(const std::vector<int>& position, const Eigen::VectorXd& natural, double* permuted);
 void unpermute(const std::vector<int>& position, const double* permuted, Eigen::VectorXd& natural);
 
-/// Compressed columns of a matrix on a block pattern, rows ascending; either complete or its lower triangle only.
+/// Compressed columns of a matrix on a block pattern, rows ascending; either complete or its lower triangle only. The
+/// columns, which take 2 kB per block of a hexagon net for a triangle, exist from `gather` to `release`.
 class BlockColumns {
 public:
     enum class Part { all, lower };
@@ -26,24 +27,34 @@ public:
     BlockColumns() = default;
     BlockColumns(const BlockPattern& pattern, const std::vector<int>& position, Part part);
 
-    [[nodiscard]] std::int64_t size() const { return static_cast<std::int64_t>(starts_.size()) - 1; }
+    [[nodiscard]] std::int64_t size() const; ///< number of columns, 6 n_blocks
     [[nodiscard]] std::vector<std::int64_t>& starts() { return starts_; } ///< per column and one past the last
     [[nodiscard]] std::vector<std::int64_t>& rows() { return rows_; }     ///< per nonzero
-    [[nodiscard]] std::vector<double>& values() { return values_; }       ///< per nonzero, as last gathered
+    [[nodiscard]] std::vector<double>& values() { return values_; }       ///< per nonzero
 
+    /// Starts and rows alone.
+    void gather_structure();
     /// Takes the values of a matrix on the same pattern.
     void gather(const BlockMatrix& matrix);
+    void release();
 
 private:
+    /// A block of a column of blocks.
     struct Source {
-        int entry = 0;    ///< of the pattern
-        bool cut = false; ///< a diagonal block of which the lower triangle counts
+        int entry = 0; ///< of the pattern
+        int row = 0;   ///< position of its row of blocks
     };
+    /// First row that counts in column j of a block: the lower triangle of diagonal blocks, if that is all.
+    [[nodiscard]] int first_row(int column_of_blocks, const Source& source, int j) const {
+        return part_ == Part::lower && source.row == column_of_blocks ? j : 0;
+    }
+
+    Part part_ = Part::all;
+    std::vector<Source> sources_;    ///< by column of blocks, in elimination order, rows ascending
+    std::vector<int> source_starts_; ///< per column of blocks and one past the last
     std::vector<std::int64_t> starts_;
     std::vector<std::int64_t> rows_;
     std::vector<double> values_;
-    std::vector<Source> sources_;    ///< blocks by column of blocks, in elimination order
-    std::vector<int> source_starts_; ///< per column of blocks and one past the last
 };
 
 } // namespace kluft

@@ -7,4 +7,8 @@ namespace kluft {
 /// pieces. Does nothing where the C library has no call for it.
 void return_freed_memory();
 
+/// From now on pieces of a megabyte and more go back as soon as they are freed. The GNU allocator would otherwise raise
+/// that limit to the largest piece freed so far, and keep up to twice as much. Does nothing elsewhere.
+void return_large_pieces();
+
 } // namespace kluft
