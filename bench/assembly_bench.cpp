@@ -1,0 +1,43 @@
+// Tangent and residual of the whole body.
+#include <benchmark/benchmark.h>
+
+#include "benchmarks.hpp"
+
+namespace kluft::bench {
+
+namespace {
+
+void assemble_tangent(benchmark::State& state, const Body& body) {
+    EquilibriumEvaluator evaluator(body.problem(), body.pattern());
+    BlockMatrix matrix;
+    for (auto _ : state) {
+        evaluator.tangent(body.displacement(), TangentKind::symmetric, matrix);
+        benchmark::DoNotOptimize(matrix.values.data());
+    }
+}
+
+void assemble_fractured_tangent(benchmark::State& state, const Body& bonded) {
+    const Body body(bonded.model(), Joining::fractured);
+    assemble_tangent(state, body);
+}
+
+void evaluate_residual(benchmark::State& state, const Body& body) {
+    EquilibriumEvaluator evaluator(body.problem(), body.pattern());
+    Residual residual;
+    for (auto _ : state) {
+        evaluator.residual(body.displacement(), residual);
+        benchmark::DoNotOptimize(residual.forces.data());
+    }
+}
+
+} // namespace
+
+void register_assembly_benchmarks(const Body& body) {
+    benchmark::RegisterBenchmark("tangent", [&body](auto& state) { assemble_tangent(state, body); })->UseRealTime();
+    benchmark::RegisterBenchmark("fractured_tangent", [&body](auto& state) {
+        assemble_fractured_tangent(state, body);
+    })->UseRealTime();
+    benchmark::RegisterBenchmark("residual", [&body](auto& state) { evaluate_residual(state, body); })->UseRealTime();
+}
+
+} // namespace kluft::bench
