@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "commands.hpp"
-#include "kluft/assembly/linear_solver.hpp"
+#include "kluft/assembly/blas.hpp"
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/core/version.hpp"
 #include "kluft/kinematics/affine.hpp"

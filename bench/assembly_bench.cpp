@@ -10,7 +10,7 @@ namespace {
 void assemble_tangent(benchmark::State& state, const Body& body) {
     EquilibriumEvaluator evaluator(body.problem(), body.pattern());
     BlockMatrix matrix;
-    for (auto _ : state) {
+    while (state.KeepRunning()) {
         evaluator.tangent(body.displacement(), TangentKind::symmetric, matrix);
         benchmark::DoNotOptimize(matrix.values.data());
     }
@@ -24,7 +24,7 @@ void assemble_fractured_tangent(benchmark::State& state, const Body& bonded) {
 void evaluate_residual(benchmark::State& state, const Body& body) {
     EquilibriumEvaluator evaluator(body.problem(), body.pattern());
     Residual residual;
-    for (auto _ : state) {
+    while (state.KeepRunning()) {
         evaluator.residual(body.displacement(), residual);
         benchmark::DoNotOptimize(residual.forces.data());
     }
@@ -33,11 +33,9 @@ void evaluate_residual(benchmark::State& state, const Body& body) {
 } // namespace
 
 void register_assembly_benchmarks(const Body& body) {
-    benchmark::RegisterBenchmark("tangent", [&body](auto& state) { assemble_tangent(state, body); })->UseRealTime();
-    benchmark::RegisterBenchmark("fractured_tangent", [&body](auto& state) {
-        assemble_fractured_tangent(state, body);
-    })->UseRealTime();
-    benchmark::RegisterBenchmark("residual", [&body](auto& state) { evaluate_residual(state, body); })->UseRealTime();
+    add_benchmark("tangent", [&body](benchmark::State& state) { assemble_tangent(state, body); });
+    add_benchmark("fractured_tangent", [&body](benchmark::State& state) { assemble_fractured_tangent(state, body); });
+    add_benchmark("residual", [&body](benchmark::State& state) { evaluate_residual(state, body); });
 }
 
 } // namespace kluft::bench

@@ -31,7 +31,9 @@ int run_benchmarks(int argc, char** argv) {
     std::vector<int> threads{1};
     app.add_option("SCENE", scene, "Scene file")->required();
     app.add_option("--set", overrides, "Override a value of the scene")->allow_extra_args(false);
-    app.add_option("--threads", threads, "Threads of the BLAS, e.g. 1,2")->delimiter(',')->check(CLI::PositiveNumber);
+    app.add_option("--threads", threads, "Threads of the BLAS, e.g. 1,2; updates run with the first")
+        ->delimiter(',')
+        ->check(CLI::PositiveNumber);
     CLI11_PARSE(app, argc, argv);
 
     const Model model = bench::read_model(scene, overrides);
@@ -39,7 +41,9 @@ int run_benchmarks(int argc, char** argv) {
     describe(body);
     bench::register_dense_benchmarks(threads);
     bench::register_assembly_benchmarks(body);
-    bench::register_solver_benchmarks(body, threads);
+    bench::FactoredBody factored(body);
+    bench::register_solver_benchmarks(factored, threads);
+    bench::register_update_benchmarks(factored, threads.front());
     benchmark::RunSpecifiedBenchmarks();
     benchmark::Shutdown();
     return 0;

@@ -11,6 +11,7 @@
 #include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
+#include "kluft/assembly/blas.hpp"
 #include "kluft/contact/bonds.hpp"
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/core/stopwatch.hpp"

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "kluft/assembly/linear_solver.hpp"
+#include "kluft/assembly/blas.hpp"
 #include "support/scene_run.hpp"
 
 namespace kluft {

@@ -1,12 +1,16 @@
-// Sparse direct solution of K x = b on a block pattern: CHOLMOD for symmetric positive definite K, UMFPACK for
-// unsymmetric K. Nothing of either library is seen outside this unit.
+// Sparse direct solution of K x = b on a block pattern, with the factor reused as long as K changes little: CHOLMOD's
+// supernodal L L' of a symmetric positive definite reference, low-rank changes on top of it, and Krylov refinement
+// against the K of the moment; or UMFPACK's L U of K itself. The only entrance to the units of either.
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include <Eigen/Core>
 
 #include "kluft/assembly/block_matrix.hpp"
+#include "kluft/assembly/cholesky_factor.hpp"
+#include "kluft/assembly/low_rank_update.hpp"
 
 namespace kluft {
 
@@ -18,13 +22,28 @@ enum class Factorization {
 struct LinearSolverStatistics {
     int analyses = 0;
     int factorizations = 0;
+    int updates = 0;     ///< sets of changes on top of a factor
+    int rank = 0;        ///< largest that stood on one factor
+    int refinements = 0; ///< Krylov vectors of all solutions
     double analyze_seconds = 0.0;
     double factorize_seconds = 0.0;
+    double update_seconds = 0.0;
     double solve_seconds = 0.0;
 };
 
-/// The four verbs of a backend: analyze, factorize, (update,) solve. The symbolic analysis is repeated only when
-/// `analyze` is called with another pattern; the ordering is METIS's nested dissection of the graph of blocks.
+/// How exactly a solution must fulfil K x = b: either is enough.
+struct SolveGoal {
+    double residual = 0.0;         ///< |b - K x| (norm)
+    double backward_error = 1e-12; ///< |b - K x| / (|K| |x| + |b|), with the norm of Frobenius
+};
+
+struct SolveReport {
+    bool accepted = false;
+    int refinements = 0; ///< Krylov vectors
+};
+
+/// The four verbs of a backend: analyze, factorize, update, solve. The symbolic analysis is repeated only when
+/// `analyze` is called with another pattern.
 class LinearSolver {
 public:
     LinearSolver();
@@ -39,8 +58,20 @@ public:
     /// Throws ResourceError out of memory.
     [[nodiscard]] bool factorize(const BlockMatrix& matrix, Factorization kind);
 
-    /// x = K^-1 b with the last factor; sizes 6 n_blocks.
+    /// Puts low-rank changes on top of a Cholesky factor: the complete list of what has changed since `factorize`.
+    /// False, and the factor should be renewed, if their rank exceeds max_rank() or the changed matrix is singular.
+    [[nodiscard]] bool update(const std::vector<StiffnessChange>& changes);
+
+    /// Rank beyond which a factorization is cheaper, 3 sqrt(unknowns), and what stands on the factor.
+    [[nodiscard]] int max_rank() const;
+    [[nodiscard]] int rank() const;
+
+    /// x = K^-1 b with the last factor and its changes alone; sizes 6 n_blocks.
     void solve(const Eigen::VectorXd& b, Eigen::VectorXd& x);
+
+    /// The same, refined against `matrix` until the goal is reached or `max_refinements` are used up.
+    SolveReport solve(const BlockMatrix& matrix, const Eigen::VectorXd& b, const SolveGoal& goal, int max_refinements,
+                      Eigen::VectorXd& x);
 
     [[nodiscard]] const LinearSolverStatistics& statistics() const;
 
@@ -49,15 +80,7 @@ private:
     std::unique_ptr<Backend> backend_;
 };
 
-/// Nonzeros of L and flops of one factorization of the pattern by CHOLMOD's symbolic count, and bytes of the factor.
-struct FactorCost {
-    double nonzeros = 0.0;
-    double flops = 0.0;
-    double bytes = 0.0;
-};
+/// Cost of a factorization of the pattern by CHOLMOD's symbolic count. Throws ResourceError out of memory.
 [[nodiscard]] FactorCost factor_cost(const BlockPattern& pattern);
-
-/// Sets the number of threads of the BLAS (OpenBLAS) for the whole process.
-void set_blas_threads(int n_threads);
 
 } // namespace kluft

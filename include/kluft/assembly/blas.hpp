@@ -1,0 +1,19 @@
+// The few routines of the BLAS that Kluft calls itself, on matrices stored by columns.
+#pragma once
+
+namespace kluft {
+
+/// X := L^-1 X with the lower triangle L (n x n, leading dimension ldl); X has n rows and `width` columns.
+void solve_lower_triangle(int n, int width, const double* l, int ldl, double* x, int ldx);
+
+/// C := A B; A is m x k, B is k x n.
+void multiply(int m, int n, int k, const double* a, int lda, const double* b, int ldb, double* c, int ldc);
+
+/// The BLAS maps its work space at its first use and tries for ever where the system refuses it: takes it now.
+/// Throws ResourceError out of memory.
+void take_blas_work_space();
+
+/// Number of threads of the BLAS (OpenBLAS) for the whole process.
+void set_blas_threads(int n_threads);
+
+} // namespace kluft

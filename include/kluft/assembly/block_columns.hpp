@@ -1,0 +1,49 @@
+// The stiffness matrix by columns, in elimination order: what sparse factorizations read.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "kluft/assembly/block_matrix.hpp"
+
+namespace kluft {
+
+/// New position of each block in a fill-reducing order: METIS's nested dissection of the graph of blocks, postordered
+/// along the elimination tree. Throws ResourceError out of memory.
+[[nodiscard]] std::vector<int> elimination_order(const BlockPattern& pattern);
+
+/// Vectors of unknowns from the natural to the elimination order and back; sizes 6 n_blocks.
+void permute(const std::vector<int>& position, const Eigen::VectorXd& natural, double* permuted);
+void unpermute(const std::vector<int>& position, const double* permuted, Eigen::VectorXd& natural);
+
+/// Compressed columns of a matrix on a block pattern, rows ascending; either complete or its lower triangle only.
+class BlockColumns {
+public:
+    enum class Part { all, lower };
+
+    BlockColumns() = default;
+    BlockColumns(const BlockPattern& pattern, const std::vector<int>& position, Part part);
+
+    [[nodiscard]] std::int64_t size() const { return static_cast<std::int64_t>(starts_.size()) - 1; }
+    [[nodiscard]] std::vector<std::int64_t>& starts() { return starts_; } ///< per column and one past the last
+    [[nodiscard]] std::vector<std::int64_t>& rows() { return rows_; }     ///< per nonzero
+    [[nodiscard]] std::vector<double>& values() { return values_; }       ///< per nonzero, as last gathered
+
+    /// Takes the values of a matrix on the same pattern.
+    void gather(const BlockMatrix& matrix);
+
+private:
+    struct Source {
+        int entry = 0;    ///< of the pattern
+        bool cut = false; ///< a diagonal block of which the lower triangle counts
+    };
+    std::vector<std::int64_t> starts_;
+    std::vector<std::int64_t> rows_;
+    std::vector<double> values_;
+    std::vector<Source> sources_;    ///< blocks by column of blocks, in elimination order
+    std::vector<int> source_starts_; ///< per column of blocks and one past the last
+};
+
+} // namespace kluft

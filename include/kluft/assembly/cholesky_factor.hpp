@@ -1,0 +1,63 @@
+// The factor L L' = K of a symmetric positive definite stiffness by CHOLMOD's supernodal method, and its parts along a
+// path of the elimination tree. CHOLMOD is not seen outside this unit.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "kluft/assembly/block_columns.hpp"
+
+namespace kluft {
+
+/// Columns of L that share their rows below the diagonal block.
+struct Supernode {
+    std::int64_t first_column = 0;
+    int n_columns = 0;
+    int n_rows = 0;                     ///< those of the diagonal block included
+    const std::int64_t* rows = nullptr; ///< ascending; the first n_columns are the columns themselves
+    const double* values = nullptr;     ///< n_rows x n_columns by columns; the upper triangle of the top is not used
+};
+
+/// Nonzeros of L, flops of one factorization and bytes of the stored factor, by the symbolic count.
+struct FactorCost {
+    double nonzeros = 0.0;
+    double flops = 0.0;
+    double bytes = 0.0;
+};
+
+/// Vectors here are in elimination order.
+class CholeskyFactor {
+public:
+    CholeskyFactor();
+    ~CholeskyFactor();
+    CholeskyFactor(const CholeskyFactor&) = delete;
+    CholeskyFactor& operator=(const CholeskyFactor&) = delete;
+
+    /// Symbolic analysis; forgets the earlier factor. Throws ResourceError out of memory.
+    void analyze(const BlockPattern& pattern, const std::vector<int>& position);
+    /// False if the matrix is not positive definite. Throws ResourceError out of memory.
+    [[nodiscard]] bool factorize(const BlockMatrix& matrix);
+    /// x := L^-1 x and x := L'^-1 x, size 6 n_blocks. Throw ResourceError out of memory.
+    void solve_lower(std::vector<double>& x);
+    void solve_upper(std::vector<double>& x);
+
+    [[nodiscard]] FactorCost cost() const;
+
+    [[nodiscard]] int n_supernodes() const { return static_cast<int>(parent_.size()); }
+    [[nodiscard]] Supernode supernode(int k) const;
+    [[nodiscard]] int supernode_of_column(std::int64_t column) const { return of_column_[column]; }
+    /// The next supernode on the path to the root, -1 at the root.
+    [[nodiscard]] int parent(int k) const { return parent_[k]; }
+
+private:
+    struct Cholmod;
+    std::unique_ptr<Cholmod> cholmod_;
+    BlockColumns columns_;
+    std::vector<int> parent_;
+    std::vector<int> of_column_;
+};
+
+} // namespace kluft

@@ -1,0 +1,31 @@
+// Flexible GMRES (Saad, SIAM J. Sci. Comput. 14, 1993): refines what a factor of a nearby matrix solves.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace kluft {
+
+/// Keeps its basis between solutions, so that only the first ones allocate.
+class Gmres {
+public:
+    using Operator = std::function<void(const Eigen::VectorXd& x, Eigen::VectorXd& y)>; ///< y = A x
+
+    /// Adds to x the correction for the residual r = b - A x and leaves in r what remains by the recurrence. Stops at
+    /// |r| <= bound or after `max_vectors`. Returns the number of applications of the preconditioner.
+    int correct(const Operator& matrix, const Operator& precondition, int max_vectors, double bound, Eigen::VectorXd& r,
+                Eigen::VectorXd& x);
+
+private:
+    void extend_basis(int n);
+    void rotate(int column);
+
+    std::vector<Eigen::VectorXd> v_; ///< orthonormal
+    std::vector<Eigen::VectorXd> z_; ///< preconditioned
+    std::vector<Eigen::VectorXd> h_; ///< columns of the triangle
+    Eigen::VectorXd cosine_, sine_, right_side_, weights_;
+};
+
+} // namespace kluft

@@ -1,0 +1,82 @@
+// Low-rank changes of a factored stiffness by the formula of Sherman, Morrison and Woodbury, with solves along paths of
+// the elimination tree (Hager, SIAM Review 31, 1989; docs/theory.md, "Reuse of the factor").
+#pragma once
+
+#include <array>
+#include <map>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+
+#include "kluft/assembly/cholesky_factor.hpp"
+
+namespace kluft {
+
+/// A change of stiffness between two blocks: sum over i, j of stiffness(i, j) row_i' row_j. The rows are linear in the
+/// unknowns of the two blocks, which must have an entry in the pattern.
+struct StiffnessChange {
+    long patch = 0; ///< identity of the rows: the same number has the same rows until the next factorization
+    int block_a = 0;
+    int block_b = 0;
+    int n_rows = 4;
+    Eigen::Matrix<double, 4, 6> rows_a = Eigen::Matrix<double, 4, 6>::Zero();
+    Eigen::Matrix<double, 4, 6> rows_b = Eigen::Matrix<double, 4, 6>::Zero();
+    Eigen::Matrix4d stiffness = Eigen::Matrix4d::Zero(); ///< may be unsymmetric
+};
+
+/// K = L L' + B' D B for the rows B of all patches seen since `start`. Vectors are in elimination order.
+class LowRankUpdate {
+public:
+    /// Forgets all rows: the factor is new.
+    void start(const CholeskyFactor& factor, const std::vector<int>& position);
+
+    /// D of the complete list of changes; rows seen for the first time are appended, those of zero stiffness left out.
+    /// False if the changed matrix is singular to working precision.
+    [[nodiscard]] bool set(const std::vector<StiffnessChange>& changes);
+
+    /// Between the two triangular solutions: z := z - W (I + D G)^-1 D W' z with W = L^-1 B', G = W' W.
+    void apply(std::vector<double>& z);
+
+    /// Rows seen since `start`.
+    [[nodiscard]] int rank() const { return rank_; }
+    /// What `set` would make of it.
+    [[nodiscard]] int rank_with(const std::vector<StiffnessChange>& changes) const;
+
+private:
+    static constexpr int batch_width = 16;
+
+    /// Columns of W, stored along the union of their paths.
+    struct Batch {
+        std::vector<int> supernodes; ///< ascending
+        std::vector<int> offsets;    ///< of the first row of each supernode's columns, and the length
+        int first = 0;               ///< row of B of the first column
+        Eigen::MatrixXd w;
+    };
+    struct NewRow {
+        int supernode = 0; ///< where the path starts
+        int change = 0;    ///< in the list of changes
+        int row = 0;       ///< in the patch
+    };
+    using PatchRows = std::array<int, 4>; ///< place of each row in B, -1 if not seen
+
+    void append(const std::vector<StiffnessChange>& changes, const std::vector<NewRow>& rows, std::size_t first,
+                std::size_t last);
+    void solve_along_path(Batch& batch);
+    void extend_gram(const Batch& batch);
+
+    const CholeskyFactor* factor_ = nullptr;
+    const std::vector<int>* position_ = nullptr;
+    std::map<long, PatchRows> patches_;
+    std::vector<Batch> batches_;
+    int rank_ = 0;
+    bool changed_ = false; ///< D is not zero
+    Eigen::MatrixXd gram_; ///< G, at least rank x rank
+    Eigen::MatrixXd d_;    ///< D
+    Eigen::PartialPivLU<Eigen::MatrixXd> small_;
+    Eigen::VectorXd t_, y_;
+    std::vector<int> packed_of_; ///< per supernode of the batch in work
+    Eigen::MatrixXd below_;
+};
+
+} // namespace kluft

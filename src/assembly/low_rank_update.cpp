@@ -1,0 +1,213 @@
+#include "kluft/assembly/low_rank_update.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kluft/assembly/blas.hpp"
+#include "kluft/kinematics/affine.hpp"
+
+namespace kluft {
+
+namespace {
+
+constexpr int nu = n_block_unknowns;
+constexpr double least_pivot_ratio =
+    1e-11; ///< of the small matrix: below, the changed stiffness is as good as singular
+
+bool counts(const StiffnessChange& change, int row) {
+    return change.stiffness.row(row).head(change.n_rows).cwiseAbs().maxCoeff() > 0.0 ||
+           change.stiffness.col(row).head(change.n_rows).cwiseAbs().maxCoeff() > 0.0;
+}
+
+} // namespace
+
+void LowRankUpdate::start(const CholeskyFactor& factor, const std::vector<int>& position) {
+    factor_ = &factor;
+    position_ = &position;
+    patches_.clear();
+    batches_.clear();
+    rank_ = 0;
+    changed_ = false;
+    packed_of_.assign(factor.n_supernodes(), -1);
+}
+
+int LowRankUpdate::rank_with(const std::vector<StiffnessChange>& changes) const {
+    int rank = rank_;
+    for (const StiffnessChange& change : changes) {
+        const auto known = patches_.find(change.patch);
+        for (int row = 0; row < change.n_rows; ++row) {
+            if (counts(change, row) && (known == patches_.end() || known->second[row] < 0)) ++rank;
+        }
+    }
+    return rank;
+}
+
+bool LowRankUpdate::set(const std::vector<StiffnessChange>& changes) {
+    std::vector<NewRow> rows;
+    for (int c = 0; c < static_cast<int>(changes.size()); ++c) {
+        const StiffnessChange& change = changes[c];
+        PatchRows& known = patches_.try_emplace(change.patch, PatchRows{-1, -1, -1, -1}).first->second;
+        const int start = std::min((*position_)[change.block_a], (*position_)[change.block_b]);
+        for (int row = 0; row < change.n_rows; ++row) {
+            if (known[row] < 0 && counts(change, row))
+                rows.push_back({factor_->supernode_of_column(nu * start), c, row});
+        }
+    }
+    // Neighbours in the postorder share most of their paths.
+    std::ranges::stable_sort(rows, {}, &NewRow::supernode);
+    for (std::size_t first = 0; first < rows.size(); first += batch_width) {
+        const std::size_t last = std::min(rows.size(), first + batch_width);
+        for (std::size_t i = first; i < last; ++i) {
+            patches_.at(changes[rows[i].change].patch)[rows[i].row] = rank_ + static_cast<int>(i - first);
+        }
+        append(changes, rows, first, last);
+    }
+
+    d_.setZero(rank_, rank_);
+    changed_ = false;
+    for (const StiffnessChange& change : changes) {
+        const PatchRows& at = patches_.at(change.patch);
+        for (int i = 0; i < change.n_rows; ++i) {
+            for (int j = 0; j < change.n_rows; ++j) {
+                if (change.stiffness(i, j) == 0.0) continue;
+                d_(at[i], at[j]) = change.stiffness(i, j);
+                changed_ = true;
+            }
+        }
+    }
+    if (!changed_) return true;
+    Eigen::MatrixXd small = Eigen::MatrixXd::Identity(rank_, rank_);
+    for (const StiffnessChange& change : changes) {
+        const PatchRows& at = patches_.at(change.patch);
+        for (int i = 0; i < change.n_rows; ++i) {
+            for (int j = 0; j < change.n_rows; ++j) {
+                if (change.stiffness(i, j) == 0.0) continue;
+                small.row(at[i]).noalias() += change.stiffness(i, j) * gram_.row(at[j]).head(rank_);
+            }
+        }
+    }
+    small_.compute(small);
+    const auto pivots = small_.matrixLU().diagonal().cwiseAbs();
+    return pivots.allFinite() && pivots.minCoeff() > least_pivot_ratio * pivots.maxCoeff();
+}
+
+void LowRankUpdate::append(const std::vector<StiffnessChange>& changes, const std::vector<NewRow>& rows,
+                           std::size_t first, std::size_t last) {
+    Batch batch;
+    batch.first = rank_;
+    const int width = static_cast<int>(last - first);
+    for (std::size_t i = first; i < last; ++i) {
+        for (int k = rows[i].supernode; k >= 0 && packed_of_[k] < 0; k = factor_->parent(k)) {
+            packed_of_[k] = 0;
+            batch.supernodes.push_back(k);
+        }
+    }
+    std::ranges::sort(batch.supernodes);
+    int length = 0;
+    for (const int k : batch.supernodes) {
+        packed_of_[k] = length;
+        batch.offsets.push_back(length);
+        length += factor_->supernode(k).n_columns;
+    }
+    batch.offsets.push_back(length);
+
+    batch.w.setZero(length, width);
+    const auto place = [&](int block, const auto& row, int column) {
+        const std::int64_t at = static_cast<std::int64_t>(nu) * (*position_)[block];
+        for (int i = 0; i < nu; ++i) { // the unknowns of a block may be in two supernodes
+            const int k = factor_->supernode_of_column(at + i);
+            batch.w(packed_of_[k] + static_cast<int>(at + i - factor_->supernode(k).first_column), column) += row[i];
+        }
+    };
+    for (std::size_t i = first; i < last; ++i) {
+        const StiffnessChange& change = changes[rows[i].change];
+        const int column = static_cast<int>(i - first);
+        place(change.block_a, change.rows_a.row(rows[i].row), column);
+        place(change.block_b, change.rows_b.row(rows[i].row), column);
+    }
+    solve_along_path(batch);
+    for (const int k : batch.supernodes) packed_of_[k] = -1;
+    rank_ += width;
+    batches_.push_back(std::move(batch));
+    extend_gram(batches_.back());
+}
+
+/// w := L^-1 w, of which only the supernodes of the path are not zero.
+void LowRankUpdate::solve_along_path(Batch& batch) {
+    const int width = static_cast<int>(batch.w.cols());
+    const int length = static_cast<int>(batch.w.rows());
+    for (std::size_t s = 0; s < batch.supernodes.size(); ++s) {
+        const Supernode node = factor_->supernode(batch.supernodes[s]);
+        double* top = batch.w.data() + batch.offsets[s];
+        solve_lower_triangle(node.n_columns, width, node.values, node.n_rows, top, length);
+        const int n_below = node.n_rows - node.n_columns;
+        if (n_below == 0) continue;
+        below_.resize(n_below, width);
+        multiply(n_below, width, node.n_columns, node.values + node.n_columns, node.n_rows, top, length, below_.data(),
+                 n_below);
+        for (int i = 0; i < n_below;) { // runs of rows in one supernode
+            const std::int64_t row = node.rows[node.n_columns + i];
+            const int k = factor_->supernode_of_column(row);
+            const Supernode above = factor_->supernode(k);
+            const std::int64_t end = above.first_column + above.n_columns;
+            for (; i < n_below && node.rows[node.n_columns + i] < end; ++i) {
+                const int at = packed_of_[k] + static_cast<int>(node.rows[node.n_columns + i] - above.first_column);
+                batch.w.row(at) -= below_.row(i);
+            }
+        }
+    }
+}
+
+/// The rows and columns of G that a new batch brings: the products with all batches over common supernodes.
+void LowRankUpdate::extend_gram(const Batch& batch) {
+    if (gram_.rows() < rank_) gram_.conservativeResize(2 * rank_, 2 * rank_);
+    const int width = static_cast<int>(batch.w.cols());
+    for (const Batch& other : batches_) {
+        auto product = gram_.block(other.first, batch.first, other.w.cols(), width);
+        product.setZero();
+        for (std::size_t i = 0, j = 0; i < other.supernodes.size() && j < batch.supernodes.size();) {
+            if (other.supernodes[i] != batch.supernodes[j]) {
+                ++(other.supernodes[i] < batch.supernodes[j] ? i : j);
+                continue;
+            }
+            std::size_t n = 1; // a run of common supernodes is one product
+            while (i + n < other.supernodes.size() && j + n < batch.supernodes.size() &&
+                   other.supernodes[i + n] == batch.supernodes[j + n]) {
+                ++n;
+            }
+            const int length = other.offsets[i + n] - other.offsets[i];
+            product.noalias() +=
+                other.w.middleRows(other.offsets[i], length).transpose() * batch.w.middleRows(batch.offsets[j], length);
+            i += n;
+            j += n;
+        }
+        gram_.block(batch.first, other.first, width, other.w.cols()) = product.transpose();
+    }
+}
+
+void LowRankUpdate::apply(std::vector<double>& z) {
+    if (!changed_) return;
+    t_.setZero(rank_);
+    for (const Batch& batch : batches_) {
+        auto t = t_.segment(batch.first, batch.w.cols());
+        for (std::size_t s = 0; s < batch.supernodes.size(); ++s) {
+            const int length = batch.offsets[s + 1] - batch.offsets[s];
+            const auto first = factor_->supernode(batch.supernodes[s]).first_column;
+            t.noalias() += batch.w.middleRows(batch.offsets[s], length).transpose() *
+                           Eigen::Map<const Eigen::VectorXd>(z.data() + first, length);
+        }
+    }
+    y_.noalias() = d_ * t_;
+    y_ = small_.solve(y_);
+    for (const Batch& batch : batches_) {
+        const auto y = y_.segment(batch.first, batch.w.cols());
+        for (std::size_t s = 0; s < batch.supernodes.size(); ++s) {
+            const int length = batch.offsets[s + 1] - batch.offsets[s];
+            const auto first = factor_->supernode(batch.supernodes[s]).first_column;
+            Eigen::Map<Eigen::VectorXd>(z.data() + first, length).noalias() -=
+                batch.w.middleRows(batch.offsets[s], length) * y;
+        }
+    }
+}
+
+} // namespace kluft

@@ -1,0 +1,148 @@
+#include "kluft/assembly/linear_solver.hpp"
+#include "support/dense_matrix.hpp"
+#include "support/hexagon_matrix.hpp"
+
+#include <random>
+
+#include <Eigen/LU>
+#include <gtest/gtest.h>
+
+namespace kluft {
+namespace {
+
+/// A change with random rows between two neighbours; its stiffness is random, unsymmetric on request.
+StiffnessChange random_change(long patch, std::pair<int, int> pair, bool symmetric, std::mt19937& generator) {
+    std::normal_distribution<double> value;
+    StiffnessChange change;
+    change.patch = patch;
+    std::tie(change.block_a, change.block_b) = pair;
+    for (int i = 0; i < 24; ++i) {
+        change.rows_a(i / 6, i % 6) = value(generator);
+        change.rows_b(i / 6, i % 6) = value(generator);
+    }
+    for (int i = 0; i < 16; ++i) change.stiffness(i / 4, i % 4) = value(generator);
+    if (symmetric) change.stiffness = (change.stiffness * change.stiffness.transpose()).eval();
+    return change;
+}
+
+/// The changed matrix, entry by entry.
+void add(const StiffnessChange& change, BlockMatrix& matrix) {
+    const BlockPattern& pattern = *matrix.pattern;
+    const auto& c = change.stiffness;
+    matrix.values[pattern.find(change.block_a, change.block_a)] += change.rows_a.transpose() * c * change.rows_a;
+    matrix.values[pattern.find(change.block_a, change.block_b)] += change.rows_a.transpose() * c * change.rows_b;
+    matrix.values[pattern.find(change.block_b, change.block_a)] += change.rows_b.transpose() * c * change.rows_a;
+    matrix.values[pattern.find(change.block_b, change.block_b)] += change.rows_b.transpose() * c * change.rows_b;
+}
+
+class LowRankUpdateOf : public ::testing::TestWithParam<int> {};
+
+// The expected solution is that of the changed matrix by dense elimination.
+TEST_P(LowRankUpdateOf, ChangesOnTopOfAFactorSolveTheChangedMatrix) {
+    const auto pairs = hexagon_pairs(GetParam());
+    const BlockPattern pattern(GetParam() * GetParam(), pairs);
+    std::mt19937 generator(3);
+    const BlockMatrix reference = hexagon_matrix(pattern, generator);
+    LinearSolver solver;
+    solver.analyze(pattern);
+    ASSERT_TRUE(solver.factorize(reference, Factorization::cholesky));
+
+    std::vector<StiffnessChange> changes;
+    const std::size_t n_changes = 7;
+    for (std::size_t i = 0; i < n_changes; ++i) {
+        const auto pair = pairs[(i * 17) % pairs.size()];
+        changes.push_back(random_change(static_cast<long>(100 + i), pair, i % 2 == 0, generator));
+        BlockMatrix changed = reference;
+        for (const auto& change : changes) add(change, changed);
+        if (4 * static_cast<int>(i + 1) > solver.max_rank()) {
+            EXPECT_FALSE(solver.update(changes));
+            break;
+        }
+        ASSERT_TRUE(solver.update(changes)); // what was added before stays: the small matrix is bordered
+        const Eigen::VectorXd b = Eigen::VectorXd::Random(6 * pattern.n_blocks());
+        Eigen::VectorXd x;
+        solver.solve(b, x);
+        const Eigen::VectorXd expected = dense(changed).partialPivLu().solve(b);
+        EXPECT_LT((x - expected).norm(), 1e-9 * expected.norm()) << i + 1 << " changes";
+    }
+    EXPECT_EQ(solver.statistics().factorizations, 1);
+}
+INSTANTIATE_TEST_SUITE_P(Sides, LowRankUpdateOf, ::testing::Values(2, 3, 8, 12));
+
+TEST(LowRankUpdate, AChangeTakenBackLeavesTheReference) {
+    const auto pairs = hexagon_pairs(5);
+    const BlockPattern pattern(25, pairs);
+    std::mt19937 generator(4);
+    const BlockMatrix reference = hexagon_matrix(pattern, generator);
+    LinearSolver solver;
+    solver.analyze(pattern);
+    ASSERT_TRUE(solver.factorize(reference, Factorization::cholesky));
+    ASSERT_TRUE(solver.update({random_change(1, pairs[3], false, generator)}));
+    EXPECT_EQ(solver.rank(), 4);
+    ASSERT_TRUE(solver.update({}));
+    const Eigen::VectorXd b = Eigen::VectorXd::Random(150);
+    Eigen::VectorXd x;
+    solver.solve(b, x);
+    const Eigen::VectorXd expected = dense(reference).partialPivLu().solve(b);
+    EXPECT_LT((x - expected).norm(), 1e-11 * expected.norm());
+}
+
+TEST(LowRankUpdate, RowsWithoutStiffnessTakeNoRank) {
+    const auto pairs = hexagon_pairs(4);
+    const BlockPattern pattern(16, pairs);
+    std::mt19937 generator(5);
+    LinearSolver solver;
+    solver.analyze(pattern);
+    ASSERT_TRUE(solver.factorize(hexagon_matrix(pattern, generator), Factorization::cholesky));
+    StiffnessChange change = random_change(1, pairs[0], true, generator);
+    change.stiffness.setZero();
+    change.stiffness(2, 2) = 1.0;
+    ASSERT_TRUE(solver.update({change}));
+    EXPECT_EQ(solver.rank(), 1);
+}
+
+// A body that the change lets go: the rows are those of the only spring to the ground, so to speak.
+TEST(LowRankUpdate, AChangeThatMakesTheMatrixSingularIsRefused) {
+    const auto pairs = hexagon_pairs(2);
+    const BlockPattern pattern(4, pairs);
+    std::mt19937 generator(6);
+    BlockMatrix matrix;
+    matrix.reset(pattern);
+    for (int b = 0; b < 4; ++b) matrix.values[pattern.find(b, b)] = Mat6::Identity();
+    StiffnessChange change;
+    change.patch = 1;
+    std::tie(change.block_a, change.block_b) = pairs[0];
+    change.rows_a(0, 0) = 1.0;
+    change.stiffness(0, 0) = -1.0;
+    LinearSolver solver;
+    solver.analyze(pattern);
+    ASSERT_TRUE(solver.factorize(matrix, Factorization::cholesky));
+    EXPECT_FALSE(solver.update({change}));
+}
+
+TEST(LinearSolver, RefinementMeetsTheMatrixOfTheMomentFromAnOldFactor) {
+    const auto pairs = hexagon_pairs(8);
+    const BlockPattern pattern(64, pairs);
+    std::mt19937 generator(7);
+    const BlockMatrix reference = hexagon_matrix(pattern, generator);
+    BlockMatrix now = reference;
+    std::normal_distribution<double> value(0.0, 1e-3);
+    for (Mat6& block : now.values) {
+        for (int i = 0; i < 36; ++i) block(i / 6, i % 6) += value(generator); // not symmetric any more
+    }
+    for (int i = 0; i < 5; ++i) add(random_change(i, pairs[11 * i], false, generator), now);
+    LinearSolver solver;
+    solver.analyze(pattern);
+    ASSERT_TRUE(solver.factorize(reference, Factorization::cholesky));
+    const Eigen::VectorXd b = Eigen::VectorXd::Random(384);
+    Eigen::VectorXd x;
+    const SolveReport report = solver.solve(now, b, {}, 60, x);
+    EXPECT_TRUE(report.accepted);
+    EXPECT_GT(report.refinements, 0);
+    const Eigen::VectorXd expected = dense(now).partialPivLu().solve(b);
+    EXPECT_LT((x - expected).norm(), 1e-8 * expected.norm());
+    EXPECT_FALSE(solver.solve(now, b, {}, 2, x).accepted);
+}
+
+} // namespace
+} // namespace kluft
