@@ -93,7 +93,7 @@ constexpr std::array update_benchmarks{
     UpdateBenchmark{"load_step", load_step, iterations_of_step* points_per_iteration}};
 
 /// Each sample needs a new factor.
-int samples(int n_blocks) { return n_blocks < 10'000 ? 5 : n_blocks < many_blocks ? 2 : 1; }
+int samples(int n_blocks) { return n_blocks < 10'000 ? 5 : 1; }
 
 void add_placement(FactoredBody& body, Placement placement, const std::string& suffix, int threads) {
     for (const auto& [name, measure, points] : update_benchmarks) {
