@@ -82,15 +82,25 @@ RunOutcome outcome_of(const RunReport& report, const Model& model) {
     outcome.status = report.status;
     outcome.message = report.diagnosis;
     outcome.open_close_iterations = report.costs.open_close_iterations;
-    outcome.factorizations = report.costs.factorizations;
-    outcome.analyses = report.costs.analyses;
+    outcome.counts = {{"factorizations", report.costs.factorizations},
+                      {"analyses", report.costs.analyses},
+                      {"updates", report.costs.updates},
+                      {"rank", report.costs.largest_rank},
+                      {"refinements", report.costs.refinements},
+                      {"relaxations", report.costs.relaxations},
+                      {"events", report.costs.events}};
     outcome.unknowns = n_block_unknowns * model.system.n_blocks();
     outcome.elapsed_s = report.costs.elapsed_s;
     outcome.version = std::string(version());
-    outcome.seconds = {{"detection", seconds.detection},         {"set_up", seconds.set_up},
-                       {"assembly", seconds.assembly},           {"analysis", seconds.analysis},
-                       {"factorization", seconds.factorization}, {"solution", seconds.solution},
-                       {"crack_check", seconds.crack_check},     {"output", seconds.observers}};
+    outcome.seconds = {{"detection", seconds.detection},
+                       {"set_up", seconds.set_up},
+                       {"assembly", seconds.assembly},
+                       {"analysis", seconds.analysis},
+                       {"factorization", seconds.factorization},
+                       {"update", seconds.update},
+                       {"solution", seconds.solution},
+                       {"crack_check", seconds.crack_check},
+                       {"output", seconds.observers}};
     return outcome;
 }
 

@@ -104,6 +104,11 @@ void Constraints::project(Eigen::VectorXd& v) const {
     }
 }
 
+void Constraints::project(int block, Vec6& v) const {
+    const auto at = std::ranges::lower_bound(blocks_, block, {}, &Constrained::block);
+    if (at != blocks_.end() && at->block == block) v = (at->projector * v).eval();
+}
+
 void Constraints::project(BlockMatrix& matrix, double scale) const {
     const BlockPattern& pattern = *matrix.pattern;
     for (const Constrained& c : blocks_) {

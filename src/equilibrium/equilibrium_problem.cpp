@@ -49,13 +49,6 @@ Mat2 full_stiffness(const InterfaceLaw& law) {
     return Eigen::Vector2d(law.normal_stiffness, law.shear_stiffness).asDiagonal();
 }
 
-Mat2 symmetric_part(const PointTraction& traction) {
-    Mat2 tangent = Mat2::Zero();
-    tangent(0, 0) = std::max(0.0, traction.tangent(0, 0));
-    tangent(1, 1) = traction.state == ContactState::locked ? std::max(0.0, traction.tangent(1, 1)) : 0.0;
-    return tangent;
-}
-
 struct GapAndSlip {
     double gap;
     double slip;
@@ -83,6 +76,13 @@ Mat6 mass(const Block& block, double least_area) {
 }
 
 } // namespace
+
+Mat2 symmetric_tangent(const PointTraction& traction) {
+    Mat2 tangent = Mat2::Zero();
+    tangent(0, 0) = std::max(0.0, traction.tangent(0, 0));
+    tangent(1, 1) = traction.state == ContactState::locked ? std::max(0.0, traction.tangent(1, 1)) : 0.0;
+    return tangent;
+}
 
 PointTraction contact_traction(const EquilibriumProblem& problem, int i, const Eigen::VectorXd& q) {
     const ContactPoint& point = problem.contacts[i];
@@ -192,7 +192,7 @@ void EquilibriumEvaluator::tangent(const Eigen::VectorXd& q, TangentKind kind, B
         }
         const auto traction = contact_traction(problem_, static_cast<int>(i), q);
         if (traction.state == ContactState::open) continue;
-        const Mat2 tangent = kind == TangentKind::symmetric ? symmetric_part(traction) : traction.tangent;
+        const Mat2 tangent = kind == TangentKind::symmetric ? symmetric_tangent(traction) : traction.tangent;
         add_point_tangent(point, tangent, contact_slots_[i], matrix);
     }
     if (kind != TangentKind::exact) return;

@@ -176,8 +176,7 @@ RunSummary RunWriter::summary_of(const RunOutcome& outcome) const {
     summary.blocks = system_.n_blocks();
     summary.interfaces = system_.n_interfaces();
     summary.unknowns = outcome.unknowns;
-    summary.factorizations = outcome.factorizations;
-    summary.analyses = outcome.analyses;
+    summary.counts = outcome.counts;
     summary.elapsed_s = outcome.elapsed_s;
     summary.peak_memory_bytes = peak_memory_bytes();
     summary.version = outcome.version;

@@ -16,7 +16,7 @@ namespace kluft {
 
 namespace {
 
-constexpr int format_version = 2;
+constexpr int format_version = 3;
 constexpr std::string_view format_name = "kluft state";
 
 /// What went wrong inside HDF5; the callers add the file's name.
@@ -165,10 +165,11 @@ struct Writer {
         write_array(file, name, numbers.data(), numbers.size());
     }
     void operator()(const char* name, const RunCosts& costs) {
-        const std::array counts{costs.open_close_iterations, costs.factorizations, costs.analyses};
+        const std::array counts{costs.open_close_iterations, costs.factorizations, costs.analyses,    costs.updates,
+                                costs.largest_rank,          costs.refinements,    costs.relaxations, costs.events};
         const RunSeconds& s = costs.seconds;
-        const std::array seconds{costs.elapsed_s, s.detection, s.set_up,      s.assembly, s.analysis,
-                                 s.factorization, s.solution,  s.crack_check, s.observers};
+        const std::array seconds{costs.elapsed_s, s.detection, s.set_up,   s.assembly,    s.analysis,
+                                 s.factorization, s.update,    s.solution, s.crack_check, s.observers};
         write_array(file, (std::string(name) + "_counts").c_str(), counts.data(), counts.size());
         write_array(file, (std::string(name) + "_seconds").c_str(), seconds.data(), seconds.size());
     }
@@ -213,13 +214,18 @@ struct Reader {
     void operator()(const char* name, RunCosts& costs) {
         const auto counts = read_array<int>(file, (std::string(name) + "_counts").c_str());
         const auto seconds = read_array<double>(file, (std::string(name) + "_seconds").c_str());
-        if (counts.size() != 3 || seconds.size() != 9) throw Hdf5Failure{name};
+        if (counts.size() != 8 || seconds.size() != 10) throw Hdf5Failure{name};
         costs.open_close_iterations = counts[0];
         costs.factorizations = counts[1];
         costs.analyses = counts[2];
+        costs.updates = counts[3];
+        costs.largest_rank = counts[4];
+        costs.refinements = counts[5];
+        costs.relaxations = counts[6];
+        costs.events = counts[7];
         costs.elapsed_s = seconds[0];
-        costs.seconds = {seconds[1], seconds[2], seconds[3], seconds[4],
-                         seconds[5], seconds[6], seconds[7], seconds[8]};
+        costs.seconds = {seconds[1], seconds[2], seconds[3], seconds[4], seconds[5],
+                         seconds[6], seconds[7], seconds[8], seconds[9]};
     }
 };
 

@@ -16,6 +16,10 @@ namespace kluft {
 
 namespace {
 
+/// Members of the file that count what was computed.
+constexpr std::array count_names{"factorizations", "analyses",    "updates", "rank",
+                                 "refinements",    "relaxations", "events"};
+
 using Json = nlohmann::ordered_json;
 using Rows = std::vector<StepRecord>;
 
@@ -176,8 +180,7 @@ RunSummary summary_in(const Json& json) {
     json.at("blocks").get_to(summary.blocks);
     json.at("interfaces").get_to(summary.interfaces);
     json.at("unknowns").get_to(summary.unknowns);
-    json.at("factorizations").get_to(summary.factorizations);
-    json.at("analyses").get_to(summary.analyses);
+    for (const char* name : count_names) json.at(name).get_to(summary.counts[name]);
     summary.elapsed_s = optional_number(json, "elapsed_s").value_or(0.0);
     json.at("peak_memory_bytes").get_to(summary.peak_memory_bytes);
     json.at("version").get_to(summary.version);
@@ -249,8 +252,10 @@ std::string summary_json(const RunSummary& summary) {
     json["steps"] = numbers.steps;
     json["unbalanced_steps"] = numbers.unbalanced_steps;
     json["open_close_iterations"] = numbers.open_close_iterations;
-    json["factorizations"] = summary.factorizations;
-    json["analyses"] = summary.analyses;
+    for (const char* name : count_names) {
+        const auto count = summary.counts.find(name);
+        json[name] = count == summary.counts.end() ? 0 : count->second;
+    }
     json["elapsed_s"] = number(summary.elapsed_s);
     json["peak_memory_bytes"] = summary.peak_memory_bytes;
     json["platen_stage"] = summary.platen_stage ? Json(*summary.platen_stage) : Json(nullptr);

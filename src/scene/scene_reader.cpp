@@ -51,6 +51,7 @@ SolverOptions read_solver_options(const SceneSection& section) {
     options.max_iterations = section.count("max_iterations");
     options.max_unbalanced_steps = section.count("max_unbalanced_steps");
     options.tangent = static_cast<Tangent>(section.choice("tangent"));
+    options.reuse = section.boolean("reuse");
     options.repeatable = section.boolean("repeatable");
     return options;
 }

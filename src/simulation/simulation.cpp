@@ -120,6 +120,7 @@ private:
         OpenCloseOptions options;
         options.tolerance = solver.tolerance;
         options.max_iterations = solver.max_iterations;
+        options.reuse = solver.reuse;
         options.tangent = solver.tangent == Tangent::unsymmetric ? TangentKind::exact : TangentKind::symmetric;
         return options;
     }
@@ -130,9 +131,13 @@ private:
         const LinearSolverStatistics& linear = linear_.statistics();
         costs.factorizations += linear.factorizations;
         costs.analyses += linear.analyses;
+        costs.updates += linear.updates;
+        costs.largest_rank = std::max(costs.largest_rank, linear.rank);
+        costs.refinements += linear.refinements;
         costs.elapsed_s = elapsed();
         costs.seconds.analysis += linear.analyze_seconds;
         costs.seconds.factorization += linear.factorize_seconds;
+        costs.seconds.update += linear.update_seconds;
         costs.seconds.solution += linear.solve_seconds;
         costs.seconds.assembly += open_close_.assembly_seconds();
         return costs;
@@ -202,6 +207,7 @@ private:
 
     void load_step(double target, bool last_of_stage) {
         iterations_at_start_ = report_.costs.open_close_iterations;
+        if (options_.repeatable) open_close_.forget_factor();
         passes_ = 0;
         step_balanced_ = true;
         worst_share_ = 0.0;
@@ -395,7 +401,7 @@ private:
     /// Pseudo-transient continuation at a load factor from the work state, which moves along: eta grows on the blocks
     /// that stop the iteration and falls again as they come to rest.
     Trial relax(double load_factor, const std::vector<int>& restless) {
-        ++report_.relaxations;
+        ++report_.costs.relaxations;
         std::vector<double> factor(model_.system.blocks.size(), 1.0);
         for (const int b : restless) factor[b] = relaxation_growth;
         Trial last; // that converged
@@ -547,7 +553,7 @@ private:
             if (cracks_.update == CrackUpdate::single) broken.resize(1);
             any = true;
             ++passes_;
-            ++report_.events;
+            ++report_.costs.events;
             for (const auto& candidate : broken) break_bond(candidate);
             std::ranges::sort(work_.contacts, {}, &ContactMemory::key);
             prepare();

@@ -468,7 +468,8 @@ TEST_F(CommandLine, BodyThatNothingHoldsEndsWithExitCode3) {
 
 // ---- interruption and resumption -----------------------------------------------------------------------------------
 
-const Words long_run{"run", model("quickstart.yaml"), "--quiet", "--set", "stages.1.steps=120"};
+const Words long_run{"run",   model("quickstart.yaml"), "--quiet", "--set", "stages.1.steps=120",
+                     "--set", "solver.repeatable=true"};
 
 Words with(Words words, const Words& more) {
     words.insert(words.end(), more.begin(), more.end());

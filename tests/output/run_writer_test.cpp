@@ -54,7 +54,7 @@ public:
     RunSummary finish(RunStatus status = RunStatus::done) {
         RunOutcome outcome;
         outcome.status = status;
-        outcome.factorizations = 17;
+        outcome.counts["factorizations"] = 17;
         outcome.version = "0.1.0";
         outcome.unknowns = 6 * system_.n_blocks();
         return writer_.finish(outcome, state_, fields());

@@ -36,7 +36,7 @@ State state_of(int n_blocks) {
     state.unbalanced_in_succession = 2;
     state.displacement_rate = 3.0 * state.displacement;
     state.near_pairs = {{0, 3}, {2, 1}};
-    state.costs = {179, 180, 2, 12.5, {1, 2, 3, 4, 5, 6, 7, 8}};
+    state.costs = {179, 180, 2, 150, 40, 2000, 3, 5, 12.5, {1, 2, 3, 4, 5, 6, 7, 8, 9}};
     return state;
 }
 
@@ -66,6 +66,11 @@ void expect_same(const State& a, const State& b) {
     EXPECT_EQ(a.costs.open_close_iterations, b.costs.open_close_iterations);
     EXPECT_EQ(a.costs.factorizations, b.costs.factorizations);
     EXPECT_EQ(a.costs.analyses, b.costs.analyses);
+    EXPECT_EQ(a.costs.updates, b.costs.updates);
+    EXPECT_EQ(a.costs.largest_rank, b.costs.largest_rank);
+    EXPECT_EQ(a.costs.refinements, b.costs.refinements);
+    EXPECT_EQ(a.costs.relaxations, b.costs.relaxations);
+    EXPECT_EQ(a.costs.events, b.costs.events);
     EXPECT_EQ(a.costs.elapsed_s, b.costs.elapsed_s);
     EXPECT_EQ(a.costs.seconds.detection, b.costs.seconds.detection);
     EXPECT_EQ(a.costs.seconds.observers, b.costs.seconds.observers);

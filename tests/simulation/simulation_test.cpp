@@ -88,7 +88,7 @@ stages: [{name: pressure, pressure: {left: 0.2 MPa, right: 0.2 MPa, top: 0.2 MPa
 )");
     ASSERT_EQ(run.report.status, RunStatus::done);
     EXPECT_EQ(run.report.unbalanced_steps, 0);
-    EXPECT_EQ(run.report.relaxations, 0);
+    EXPECT_EQ(run.report.costs.relaxations, 0);
     EXPECT_NEAR(run.history.back().lateral_stress, 0.2e6, 1e2);
     EXPECT_NEAR(run.history.back().axial_stress, 0.2e6, 2e3);
 }

@@ -8,6 +8,7 @@
 #include "kluft/assembly/block_matrix.hpp"
 #include "kluft/blocks/block_system.hpp"
 #include "kluft/core/vector.hpp"
+#include "kluft/kinematics/affine.hpp"
 
 namespace kluft {
 
@@ -63,6 +64,8 @@ public:
     [[nodiscard]] Eigen::VectorXd travel_motion(Eigen::Index n) const;
     /// Removes the constrained part of a vector of unknowns or forces.
     void project(Eigen::VectorXd& v) const;
+    /// The same for a vector of one block.
+    void project(int block, Vec6& v) const;
     /// K := P K P + scale (1 - P).
     void project(BlockMatrix& matrix, double scale) const;
     /// Force that the support of `boundary` exerts on the body when `residual` = internal - other external forces.

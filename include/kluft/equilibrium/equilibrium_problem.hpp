@@ -78,6 +78,9 @@ private:
 [[nodiscard]] PointTraction contact_traction(const EquilibriumProblem& problem, int i, const Eigen::VectorXd& q);
 [[nodiscard]] PointTraction bond_traction(const EquilibriumProblem& problem, int i, const Eigen::VectorXd& q);
 
+/// The positive definite part of a contact point's tangent: a sliding point has no shear stiffness.
+[[nodiscard]] Mat2 symmetric_tangent(const PointTraction& traction);
+
 /// Cauchy stress of each block at q (Pa, positive in tension).
 [[nodiscard]] std::vector<Mat2> block_stresses(const BlockSystem& system, const std::vector<ElasticModuli>& moduli,
                                                const Eigen::VectorXd& q);

@@ -6,6 +6,7 @@
 #include "kluft/assembly/block_matrix.hpp"
 #include "kluft/assembly/linear_solver.hpp"
 #include "kluft/equilibrium/equilibrium_problem.hpp"
+#include "kluft/equilibrium/stiffness_reference.hpp"
 
 namespace kluft {
 
@@ -13,6 +14,7 @@ struct OpenCloseOptions {
     double tolerance = 1e-5; ///< of |R|/F_ref
     int max_iterations = 12; ///< linear solves per attempt: give up early, a relaxation is cheaper (measured)
     TangentKind tangent = TangentKind::exact;
+    bool reuse = true; ///< of the factor from one linear solve to the next; false: the exact tangent is factorized anew
     double motion_limit = 0.04; ///< largest change of a block's u or D per iteration, relative to the lattice spacing
 };
 
@@ -43,13 +45,25 @@ public:
     OpenCloseSummary solve(const EquilibriumProblem& problem, const BlockPattern& pattern, Eigen::VectorXd& q,
                            bool unloaded = false);
 
+    /// The next linear solve makes a new factor: what follows does not depend on what was solved before.
+    void forget_factor() { reference_.forget(); }
+
     /// Time spent so far in residuals and tangents (s).
     [[nodiscard]] double assembly_seconds() const { return assembly_seconds_; }
 
 private:
     void evaluate(EquilibriumEvaluator& evaluator, const Eigen::VectorXd& q, Residual& residual);
     [[nodiscard]] bool find_increment(const EquilibriumProblem& problem, EquilibriumEvaluator& evaluator,
-                                      const Eigen::VectorXd& q, bool held, TangentKind kind);
+                                      const Eigen::VectorXd& q, TangentKind kind);
+    void assemble(const EquilibriumProblem& problem, EquilibriumEvaluator& evaluator, const Eigen::VectorXd& q,
+                  TangentKind kind);
+    [[nodiscard]] bool solve_anew(const EquilibriumProblem& problem, TangentKind kind);
+    [[nodiscard]] bool solve_with_reuse(const EquilibriumProblem& problem, EquilibriumEvaluator& evaluator,
+                                        const Eigen::VectorXd& q);
+    [[nodiscard]] bool update_factor(const EquilibriumProblem& problem, const Eigen::VectorXd& q);
+    [[nodiscard]] bool renew_factor(const EquilibriumProblem& problem, EquilibriumEvaluator& evaluator,
+                                    const Eigen::VectorXd& q);
+    [[nodiscard]] bool solve_refined(const EquilibriumProblem& problem);
     void limit_increment(const BlockSystem& system);
     void keep_free_part(const EquilibriumProblem& problem, const Eigen::VectorXd& q, Eigen::VectorXd& forces) const;
     void add_travel(const EquilibriumProblem& problem, double out_of_balance);
@@ -64,6 +78,10 @@ private:
     OpenCloseOptions options_;
     double assembly_seconds_ = 0.0;
     BlockMatrix matrix_;
+    StiffnessReference reference_; ///< of the factor that is reused
+    int analysis_of_factor_ = 0;   ///< of the linear solver, when the factor was made
+    int fresh_refinements_ = -1;   ///< of the first solution with the factor, -1 before
+    int excess_refinements_ = 0;   ///< of later solutions beyond it
     Residual residual_;
     Residual trial_;
     Eigen::VectorXd prescribed_, right_side_, increment_, position_, scratch_;

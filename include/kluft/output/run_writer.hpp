@@ -34,10 +34,9 @@ struct RunWriterOptions {
 /// How a run ended and what it cost.
 struct RunOutcome {
     RunStatus status = RunStatus::done;
-    std::string message; ///< the diagnosis, if not done
-    std::int64_t factorizations = 0;
-    std::int64_t analyses = 0;
-    std::optional<int> open_close_iterations; ///< all linear solves; none: the sum over the rows of history.csv
+    std::string message;                        ///< the diagnosis, if not done
+    std::map<std::string, std::int64_t> counts; ///< of what was computed, by name
+    std::optional<int> open_close_iterations;   ///< all linear solves; none: the sum over the rows of history.csv
     int unknowns = 0;
     double elapsed_s = 0.0;
     std::map<std::string, double> seconds; ///< by stage of the computation

@@ -59,8 +59,8 @@ struct RunSummary {
     int blocks = 0;
     int interfaces = 0;
     int unknowns = 0;
-    std::int64_t factorizations = 0;
-    std::int64_t analyses = 0;
+    std::map<std::string, std::int64_t> counts; ///< of what was computed: factorizations, analyses, updates,
+                                                ///< rank, refinements, relaxations, events
     double elapsed_s = 0.0;
     std::int64_t peak_memory_bytes = 0;
     std::string version;

@@ -10,6 +10,7 @@ struct RunSeconds {
     double assembly = 0.0; ///< residuals and tangents
     double analysis = 0.0;
     double factorization = 0.0;
+    double update = 0.0; ///< low-rank changes on top of a factor
     double solution = 0.0;
     double crack_check = 0.0;
     double observers = 0.0;
@@ -21,6 +22,11 @@ struct RunCosts {
     int open_close_iterations = 0; ///< all linear solves
     int factorizations = 0;
     int analyses = 0;
+    int updates = 0;      ///< linear solves with a factor that was kept
+    int largest_rank = 0; ///< of the changes on top of a factor
+    int refinements = 0;  ///< Krylov vectors in all linear solves
+    int relaxations = 0;
+    int events = 0;         ///< equilibria at which potential cracks failed
     double elapsed_s = 0.0; ///< wall-clock time
     RunSeconds seconds;
 };

@@ -18,8 +18,6 @@ struct RunReport {
     std::string diagnosis; ///< names the blocks and interfaces concerned, or what ran out; empty for `done`
     RunCosts costs;        ///< also of the parts of the run before a resumed state
     int unbalanced_steps = 0;
-    int relaxations = 0;
-    int events = 0; ///< equilibria at which potential cracks failed
     int detections = 0;
     int crack_checks = 0;
 };

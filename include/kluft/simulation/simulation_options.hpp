@@ -23,8 +23,8 @@ struct CrackOptions {
 };
 
 enum class Tangent {
-    unsymmetric, ///< exact (UMFPACK)
-    symmetric    ///< a sliding point drops its shear stiffness (CHOLMOD)
+    unsymmetric, ///< exact
+    symmetric    ///< a sliding point drops its shear stiffness
 };
 
 struct SolverOptions {
@@ -34,7 +34,9 @@ struct SolverOptions {
     int max_iterations = 12;       ///< open-close iterations per attempt
     int max_unbalanced_steps = 10; ///< successive unbalanced steps that end a run
     Tangent tangent = Tangent::unsymmetric;
-    bool repeatable = false; ///< one BLAS thread, so that whole runs are bit-identical for any thread count
+    bool reuse = true;       ///< of the factor; false: a factorization in each linear solve
+    bool repeatable = false; ///< one BLAS thread and a new factor in each load step: runs are bit-identical for any
+                             ///< thread count, and across a resume
 };
 
 } // namespace kluft

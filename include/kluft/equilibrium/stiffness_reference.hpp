@@ -1,0 +1,54 @@
+// What the factor in use was made of, and the low-rank changes since: contacts that closed, opened, began or ceased to
+// slide, and bonds that broke.
+#pragma once
+
+#include <array>
+#include <map>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "kluft/assembly/low_rank_update.hpp"
+#include "kluft/equilibrium/equilibrium_problem.hpp"
+
+namespace kluft {
+
+/// Keeps, for every contact, the symmetric stiffness that went into the factor. The points of an overlap are one patch:
+/// gap and slip at its two ends, between which both are linear, so that three points have rank four.
+class StiffnessReference {
+public:
+    /// The factor is that of the symmetric tangent of the problem at q.
+    void take(const EquilibriumProblem& problem, const Eigen::VectorXd& q);
+    /// There is no factor.
+    void forget() { taken_ = false; }
+    [[nodiscard]] bool taken() const { return taken_; }
+
+    /// True if the mass-like term is that of the factor.
+    [[nodiscard]] bool has_eta_of(const EquilibriumProblem& problem) const { return eta_ == problem.eta; }
+
+    /// Changes of the symmetric tangent at q against the factor. Small ones are left out: those of rotations, of the
+    /// elastic tangent and of sliding along a contact are for the refinement.
+    const std::vector<StiffnessChange>& changes(const EquilibriumProblem& problem, const Eigen::VectorXd& q);
+
+private:
+    using Key = std::array<int, 5>; ///< block_a, edge_a, block_b, edge_b, 1 for a vertex on an edge
+    struct Patch {
+        Key key{};
+        double scale = 0.0; ///< largest stiffness it can have
+        StiffnessChange change;
+    };
+
+    static Key key_of(const ContactPoint& point);
+    static void collect(const EquilibriumProblem& problem, const Eigen::VectorXd& q, std::vector<Patch>& patches);
+    void add_broken_bonds(const EquilibriumProblem& problem);
+
+    bool taken_ = false;
+    std::vector<Patch> reference_; ///< sorted by key
+    std::vector<int> bonded_;      ///< interfaces that were bonds, ascending
+    std::vector<double> eta_;
+    std::map<Key, long> numbers_; ///< of patches that have changed
+    std::vector<Patch> now_;
+    std::vector<StiffnessChange> changes_;
+};
+
+} // namespace kluft

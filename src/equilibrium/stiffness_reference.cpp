@@ -1,0 +1,140 @@
+#include "kluft/equilibrium/stiffness_reference.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+#include "kluft/kinematics/affine.hpp"
+
+namespace kluft {
+
+namespace {
+
+constexpr double least_change = 0.02; ///< of the largest stiffness of the patch
+constexpr std::array<double, 3> place_in_overlap{0.0, 0.5, 1.0};
+
+void set_rows(const ContactPoint& point, const Constraints& constraints, int first, StiffnessChange& change) {
+    const std::array<Vec2, 2> directions{point.normal, point.tangent};
+    for (int i = 0; i < 2; ++i) {
+        Vec6 on_a = -displacement_row(directions[i], point.xi_a);
+        Vec6 on_b = displacement_row(directions[i], point.xi_b);
+        constraints.project(point.block_a, on_a);
+        constraints.project(point.block_b, on_b);
+        change.rows_a.row(first + i) = on_a;
+        change.rows_b.row(first + i) = on_b;
+    }
+}
+
+/// Adds a stiffness at the place s of an overlap to that of its ends.
+void add_at(double s, const Mat2& stiffness, Eigen::Matrix4d& ends) {
+    const std::array<double, 2> share{1.0 - s, s};
+    for (int i = 0; i < 2; ++i) {
+        for (int j = 0; j < 2; ++j) ends.block<2, 2>(2 * i, 2 * j) += share[i] * share[j] * stiffness;
+    }
+}
+
+} // namespace
+
+StiffnessReference::Key StiffnessReference::key_of(const ContactPoint& point) {
+    const ContactKey& k = point.key;
+    return {k.block_a, k.edge_a, k.block_b, k.edge_b, k.point < 0 ? 1 : 0};
+}
+
+/// The patches of the contacts, which are sorted, with their symmetric stiffness at q.
+void StiffnessReference::collect(const EquilibriumProblem& problem, const Eigen::VectorXd& q,
+                                 std::vector<Patch>& patches) {
+    patches.clear();
+    for (int i = 0; i < static_cast<int>(problem.contacts.size()); ++i) {
+        const ContactPoint& point = problem.contacts[i];
+        const Key key = key_of(point);
+        if (patches.empty() || patches.back().key != key) {
+            Patch patch;
+            patch.key = key;
+            patch.change.block_a = point.block_a;
+            patch.change.block_b = point.block_b;
+            patch.change.n_rows = point.key.point < 0 ? 2 : 4;
+            patches.push_back(patch);
+        }
+        Patch& patch = patches.back();
+        patch.scale += point.weight * (*problem.laws)[point.law].normal_stiffness;
+        const Mat2 stiffness = point.weight * symmetric_tangent(contact_traction(problem, i, q));
+        if (point.key.point < 0) {
+            set_rows(point, problem.constraints, 0, patch.change);
+            patch.change.stiffness.topLeftCorner<2, 2>() += stiffness;
+            continue;
+        }
+        if (point.key.point != 1) set_rows(point, problem.constraints, point.key.point, patch.change);
+        add_at(place_in_overlap[point.key.point], stiffness, patch.change.stiffness);
+    }
+}
+
+void StiffnessReference::take(const EquilibriumProblem& problem, const Eigen::VectorXd& q) {
+    taken_ = true;
+    collect(problem, q, reference_);
+    bonded_.clear();
+    for (const ContactPoint& bond : problem.bonds) {
+        if (bonded_.empty() || bonded_.back() != bond.interface) bonded_.push_back(bond.interface);
+    }
+    eta_ = problem.eta;
+    numbers_.clear();
+}
+
+/// A broken bond was a patch of the reference, along its whole edge.
+void StiffnessReference::add_broken_bonds(const EquilibriumProblem& problem) {
+    std::vector<int> bonded;
+    for (const ContactPoint& bond : problem.bonds) {
+        if (bonded.empty() || bonded.back() != bond.interface) bonded.push_back(bond.interface);
+    }
+    if (bonded.size() == bonded_.size()) return;
+    std::vector<int> broken;
+    std::ranges::set_difference(bonded_, bonded, std::back_inserter(broken));
+    for (const int i : broken) {
+        const Interface& interface = problem.system->interfaces[i];
+        const InterfaceLaw& law = (*problem.laws)[interface.interface_type];
+        const Edge& edge = problem.system->blocks[interface.block_a].edges[interface.edge_a];
+        const double length = (edge_end(*problem.system, edge) - edge_start(*problem.system, edge)).norm();
+        Patch patch;
+        patch.key = interface.block_a < interface.block_b
+                        ? Key{interface.block_a, interface.edge_a, interface.block_b, interface.edge_b, 0}
+                        : Key{interface.block_b, interface.edge_b, interface.block_a, interface.edge_a, 0};
+        patch.scale = length * law.normal_stiffness;
+        const Mat2 stiffness = length * Eigen::Vector2d(law.normal_stiffness, law.shear_stiffness).asDiagonal();
+        for (const double s : {0.5 - 0.5 / std::sqrt(3.0), 0.5 + 0.5 / std::sqrt(3.0)}) {
+            add_at(s, 0.5 * stiffness, patch.change.stiffness);
+        }
+        reference_.push_back(patch);
+    }
+    bonded_ = std::move(bonded);
+    std::ranges::stable_sort(reference_, {}, &Patch::key);
+}
+
+const std::vector<StiffnessChange>& StiffnessReference::changes(const EquilibriumProblem& problem,
+                                                                const Eigen::VectorXd& q) {
+    add_broken_bonds(problem);
+    collect(problem, q, now_);
+    changes_.clear();
+    const auto keep = [&](const Patch& patch, const Eigen::Matrix4d& change, double scale) {
+        if (patch.change.rows_a.isZero(0.0)) return; // a broken bond that is not near any more
+        if (change.cwiseAbs().maxCoeff() <= least_change * scale) return;
+        changes_.push_back(patch.change);
+        changes_.back().stiffness = change;
+        changes_.back().patch = numbers_.try_emplace(patch.key, static_cast<long>(numbers_.size())).first->second;
+    };
+    auto before = reference_.begin();
+    for (const Patch& patch : now_) {
+        for (; before != reference_.end() && before->key < patch.key; ++before) {
+            keep(*before, -before->change.stiffness, before->scale); // separated
+        }
+        if (before != reference_.end() && before->key == patch.key) {
+            keep(patch, patch.change.stiffness - before->change.stiffness, std::max(patch.scale, before->scale));
+            ++before;
+        } else {
+            keep(patch, patch.change.stiffness, patch.scale);
+        }
+    }
+    for (; before != reference_.end(); ++before) keep(*before, -before->change.stiffness, before->scale);
+    return changes_;
+}
+
+} // namespace kluft
