@@ -23,8 +23,9 @@ void register_assembly_benchmarks(const Body& body);
 /// refactorization/threads:N (factorization and solution), factorization/threads:N and solution/threads:N.
 void register_solver_benchmarks(FactoredBody& body, const std::vector<int>& threads);
 
-/// path_set_up/10/PLACEMENT, iteration/10/PLACEMENT, iteration/100/PLACEMENT and load_step/PLACEMENT for changed points
-/// that are spread over the body or, in bodies of up to 100 000 blocks, also lie in a line.
+/// path_set_up/10/PLACEMENT, iteration/N/PLACEMENT, frictional_iteration/N/PLACEMENT (the tangent is unsymmetric, the
+/// changes of the factor are not) and load_step/PLACEMENT for N = 10 or 100 changed points that are spread over the
+/// body or, in bodies of up to 100 000 blocks, also lie in a line.
 void register_update_benchmarks(FactoredBody& body, int threads);
 
 } // namespace kluft::bench

@@ -68,7 +68,20 @@ std::vector<int> line_interfaces(const BlockSystem& system, std::vector<Candidat
     return chosen;
 }
 
-StiffnessChange change_of(const Body& body, int interface, bool opens) {
+/// Change of d(normal, shear)/d(gap, slip) of a bonded point (Pa/m).
+Mat2 change_of_tangent(const Model& model, const ContactPoint& point, bool opens, Sliding sliding) {
+    const InterfaceLaw& law = model.laws[point.law];
+    Mat2 change = Mat2::Zero();
+    change(1, 1) = -law.shear_stiffness;
+    if (opens) {
+        change(0, 0) = -law.normal_stiffness;
+    } else if (sliding == Sliding::frictional) {
+        change(1, 0) = law.normal_stiffness * model.laws[model.fracture_law[point.law]].tan_friction;
+    }
+    return change;
+}
+
+StiffnessChange change_of(const Body& body, int interface, bool opens, Sliding sliding) {
     const std::array<double, n_bond_points> no_shear{};
     std::vector<ContactPoint> points;
     append_bond_points(body.model().system, interface, body.displacement(), no_shear.data(), points);
@@ -79,28 +92,28 @@ StiffnessChange change_of(const Body& body, int interface, bool opens) {
     change.n_rows = 2 * n_bond_points;
     for (int k = 0; k < n_bond_points; ++k) {
         const ContactPoint& point = points[k];
-        const InterfaceLaw& law = body.model().laws[point.law];
         const std::array<Vec2, 2> directions{point.normal, point.tangent};
         for (int d = 0; d < 2; ++d) {
             change.rows_a.row(2 * k + d) = -displacement_row(directions[d], point.xi_a).transpose();
             change.rows_b.row(2 * k + d) = displacement_row(directions[d], point.xi_b).transpose();
         }
-        change.stiffness(2 * k, 2 * k) = opens ? -point.weight * law.normal_stiffness : 0.0;
-        change.stiffness(2 * k + 1, 2 * k + 1) = -point.weight * law.shear_stiffness;
+        change.stiffness.block<2, 2>(2 * k, 2 * k) =
+            point.weight * change_of_tangent(body.model(), point, opens, sliding);
     }
     return change;
 }
 
 } // namespace
 
-std::vector<StiffnessChange> changed_interfaces(const Body& body, Placement placement, int n) {
+std::vector<StiffnessChange> changed_interfaces(const Body& body, Placement placement, int n, Sliding sliding) {
     const BlockSystem& system = body.model().system;
     auto candidates = free_interfaces(body);
     n = std::min(n, static_cast<int>(candidates.size()));
     const auto chosen = placement == Placement::spread ? spread_interfaces(system, std::move(candidates), n)
                                                        : line_interfaces(system, std::move(candidates), n);
     std::vector<StiffnessChange> changes;
-    for (int k = 0; k < n; ++k) changes.push_back(change_of(body, chosen[k], k % open_every == open_every - 1));
+    for (int k = 0; k < n; ++k)
+        changes.push_back(change_of(body, chosen[k], k % open_every == open_every - 1, sliding));
     return changes;
 }
 

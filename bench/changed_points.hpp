@@ -15,9 +15,15 @@ enum class Placement {
     line    ///< along a fracture that grows from the middle of the body
 };
 
-/// Both points of `n` bonded interfaces each: three of four interfaces lose their shear stiffness (sliding), the fourth
-/// all stiffness (open).
-[[nodiscard]] std::vector<StiffnessChange> changed_interfaces(const Body& body, Placement placement, int n);
+/// What becomes of the tangent of a sliding point.
+enum class Sliding {
+    frictionless, ///< it loses its shear stiffness: symmetric
+    frictional    ///< and its shear traction follows its pressure: the exact tangent
+};
+
+/// Both points of `n` bonded interfaces each: three of four interfaces slide, the fourth opens and loses all stiffness.
+[[nodiscard]] std::vector<StiffnessChange> changed_interfaces(const Body& body, Placement placement, int n,
+                                                              Sliding sliding);
 
 /// Adds the changes to a stiffness.
 void add_changes(std::span<const StiffnessChange> changes, BlockMatrix& matrix);

@@ -24,11 +24,10 @@ public:
     [[nodiscard]] bool update(std::span<const StiffnessChange> changes);
     /// With the factor and its changes.
     void solve();
-    /// The same, refined against the assembled stiffness.
-    void solve_exactly();
+    /// The same, refined against the assembled stiffness. Returns the number of Krylov vectors.
+    int solve_refined();
 
     [[nodiscard]] const Body& body() const { return body_; }
-    [[nodiscard]] const LinearSolver& solver() const { return solver_; }
 
 private:
     const Body& body_;
