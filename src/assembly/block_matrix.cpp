@@ -21,6 +21,8 @@ BlockPattern::BlockPattern(int n_blocks, const std::vector<std::pair<int, int>>&
         columns_.push_back(column);
     }
     for (int b = 0; b < n_blocks; ++b) row_starts_[b + 1] += row_starts_[b];
+    diagonal_.reserve(static_cast<std::size_t>(n_blocks));
+    for (int b = 0; b < n_blocks; ++b) diagonal_.push_back(find(b, b));
 }
 
 int BlockPattern::find(int row, int column) const {

@@ -16,6 +16,7 @@
 #include "kluft/blocks/hexagon_lattice.hpp"
 #include "kluft/blocks/map_mender.hpp"
 #include "kluft/core/diagnostics.hpp"
+#include "kluft/core/memory.hpp"
 #include "kluft/geometry/polygon.hpp"
 #include "kluft/geometry/segment_grid.hpp"
 
@@ -350,8 +351,11 @@ public:
         system_.lower = frame_.box.lower;
         system_.upper = frame_.box.upper;
         for (const BoundarySides& named : spec_.boundaries) system_.boundaries.push_back({named.name, {}});
+        system_.blocks.reserve(drafts.size());
         for (Draft& draft : drafts) add_block(draft);
         join_interfaces();
+        system_.vertices.shrink_to_fit();
+        system_.interfaces.shrink_to_fit();
         system_.spacing = lattice_spacing(spec_);
         if (system_.spacing == 0.0) {
             const double total = std::accumulate(system_.blocks.begin(), system_.blocks.end(), 0.0,
@@ -491,7 +495,9 @@ double lattice_spacing(const GeometrySpec& spec) {
     return spec.tessellation ? spec.tessellation->hexagons.spacing : spec.reference_spacing;
 }
 
-CutBody cut_blocks(const GeometrySpec& spec) {
+namespace {
+
+CutBody cut(const GeometrySpec& spec) {
     check_spec(spec);
     const SourceNumbers numbers = number_sources(spec);
     const LocalFrame frame = local_frame(spec.domain);
@@ -511,6 +517,14 @@ CutBody cut_blocks(const GeometrySpec& spec) {
 
     body.system = SystemBuilder(spec, frame, numbers, map).build();
     measure(body.system, body.report);
+    return body;
+}
+
+} // namespace
+
+CutBody cut_blocks(const GeometrySpec& spec) {
+    CutBody body = cut(spec);
+    return_freed_memory(); // five times what the body needs, which the run would otherwise not get
     return body;
 }
 

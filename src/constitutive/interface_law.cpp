@@ -61,15 +61,6 @@ ShearLimit shear_limit(const InterfaceLaw& law, double pressure) {
     return {pressure * (ramp + law.tan_friction), ramp + law.tan_friction};
 }
 
-PointTraction bond_traction(const InterfaceLaw& law, double start_shear, double gap, double slip) {
-    PointTraction result;
-    result.normal = law.normal_stiffness * gap;
-    result.shear = start_shear + law.shear_stiffness * slip;
-    result.tangent << law.normal_stiffness, 0.0, 0.0, law.shear_stiffness;
-    result.history.shear_trial = result.shear;
-    return result;
-}
-
 PointTraction fracture_traction(const InterfaceLaw& law, const PointHistory& start, double gap, double slip) {
     PointTraction result;
     result.history.dilation = start.dilation;

@@ -1,10 +1,6 @@
 #include "kluft/contact/bonds.hpp"
 
-#include <array>
 #include <cmath>
-
-#include "kluft/kinematics/affine.hpp"
-
 namespace kluft {
 
 namespace {
@@ -13,8 +9,7 @@ const std::array<double, n_bond_points> gauss_positions{0.5 - 0.5 / std::sqrt(3.
 
 } // namespace
 
-void append_bond_points(const BlockSystem& system, int i, const Eigen::VectorXd& q, const double* shear,
-                        std::vector<ContactPoint>& points) {
+Bond bond_at(const BlockSystem& system, int i, const Eigen::VectorXd& q, const double* shear) {
     const Interface& interface = system.interfaces[i];
     const Block& block_a = system.blocks[interface.block_a];
     const Block& block_b = system.blocks[interface.block_b];
@@ -25,24 +20,21 @@ void append_bond_points(const BlockSystem& system, int i, const Eigen::VectorXd&
                              current_position(system, q, interface.block_a, edge.start);
     const Vec2 direction_b = current_position(system, q, interface.block_b, edge.end) -
                              current_position(system, q, interface.block_b, edge.start);
-    const Vec2 along = (direction_a.normalized() + direction_b.normalized()).normalized();
-
+    Bond bond;
+    bond.interface = i;
+    bond.law = interface.interface_type;
+    bond.block_a = interface.block_a;
+    bond.block_b = interface.block_b;
+    bond.tangent = (direction_a.normalized() + direction_b.normalized()).normalized();
+    bond.weight = 0.5 * (end - start).norm();
     for (int k = 0; k < n_bond_points; ++k) {
         const Vec2 x = start + gauss_positions[k] * (end - start);
-        ContactPoint point;
-        point.block_a = interface.block_a;
-        point.block_b = interface.block_b;
-        point.xi_a = block_coordinates(block_a, x);
-        point.xi_b = block_coordinates(block_b, x);
-        point.normal = right_normal(along);
-        point.tangent = along;
-        point.weight = 0.5 * (end - start).norm();
-        point.law = interface.interface_type;
-        point.interface = i;
-        point.history.shear_trial = shear[k];
-        point.slip_start = point.tangent.dot(relative_position(point, q));
-        points.push_back(point);
+        bond.xi_a[k] = block_coordinates(block_a, x);
+        bond.xi_b[k] = block_coordinates(block_b, x);
+        bond.slip_start[k] = bond.tangent.dot(relative_displacement(bond, k, q));
+        bond.shear_start[k] = shear[k];
     }
+    return bond;
 }
 
 double bond_shear_at(const double* shear, double s) {

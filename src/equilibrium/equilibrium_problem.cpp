@@ -1,6 +1,7 @@
 #include "kluft/equilibrium/equilibrium_problem.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -13,36 +14,86 @@ namespace {
 constexpr double touching_gap = 1e-6; ///< of the lattice spacing
 
 /// (1, xi): the weights of u, D's first and D's second column in the displacement of a point.
-std::array<double, 3> shape(const Vec2& xi) { return {1.0, xi.x(), xi.y()}; }
+using Shape = std::array<double, 3>;
+Shape shape(const Vec2& xi) { return {1.0, xi.x(), xi.y()}; }
 
-void add_outer(const std::array<double, 3>& row, const std::array<double, 3>& column, const Mat2& stiffness,
-               Mat6& block) {
+/// Sets the rows of a matrix to zero shortly before they are used: what is then added finds them in the cache.
+class RowClearing {
+public:
+    RowClearing(BlockMatrix& matrix, const BlockPattern& pattern) : matrix_(matrix), pattern_(pattern) {
+        matrix.pattern = &pattern;
+        matrix.values.resize(static_cast<std::size_t>(pattern.n_entries()));
+    }
+    /// All rows below `row_end`, as far as they are not zero yet.
+    void advance(int row_end) {
+        if (row_end <= n_cleared_) return;
+        std::fill(matrix_.values.begin() + pattern_.row_start(n_cleared_),
+                  matrix_.values.begin() + pattern_.row_start(row_end), Mat6::Zero());
+        n_cleared_ = row_end;
+    }
+
+private:
+    BlockMatrix& matrix_;
+    const BlockPattern& pattern_;
+    int n_cleared_ = 0;
+};
+
+/// The four blocks of the matrix that a pair of blocks has.
+struct PairBlocks {
+    PairBlocks(BlockMatrix& matrix, int a, int b)
+        : aa(matrix.values[matrix.pattern->diagonal(a)]), ab(matrix.values[matrix.pattern->find(a, b)]),
+          ba(matrix.values[matrix.pattern->find(b, a)]), bb(matrix.values[matrix.pattern->diagonal(b)]) {}
+    Mat6 &aa, &ab, &ba, &bb;
+};
+
+/// `tangent`: of the traction with respect to (gap, slip), in the frame of `normal` (Pa/m).
+Mat2 point_stiffness(const Vec2& normal, double weight, const Mat2& tangent) {
+    Mat2 frame;
+    frame << normal, Vec2(-normal.y(), normal.x());
+    return weight * frame * tangent * frame.transpose();
+}
+
+/// Sums of s s^T over points of a pair with the same stiffness, s the shape on either side. Not Eigen's matrices: they
+/// would stop in memory between single and paired numbers.
+struct PairMoments {
+    using Moments = std::array<Shape, 3>;
+    Moments aa{};
+    Moments ab{};
+    Moments bb{};
+
+    void add(const Vec2& xi_a, const Vec2& xi_b) {
+        const Shape a = shape(xi_a);
+        const Shape b = shape(xi_b);
+        for (std::size_t i = 0; i < 3; ++i) {
+            for (std::size_t j = 0; j < 3; ++j) {
+                aa[i][j] += a[i] * a[j];
+                ab[i][j] += a[i] * b[j];
+                bb[i][j] += b[i] * b[j];
+            }
+        }
+    }
+};
+
+/// Adds the Kronecker product of moments (transposed or not) and a stiffness.
+template <bool transposed>
+void add_product(const PairMoments::Moments& moments, const Vec2& first_column, const Vec2& second_column,
+                 Mat6& block) {
     for (int j = 0; j < 3; ++j) {
-        for (int i = 0; i < 3; ++i) block.block<2, 2>(2 * i, 2 * j) += (row[i] * column[j]) * stiffness;
+        for (int i = 0; i < 3; ++i) {
+            const double moment = transposed ? moments[j][i] : moments[i][j];
+            block.col(2 * j).segment<2>(2 * i) += moment * first_column;
+            block.col(2 * j + 1).segment<2>(2 * i) += moment * second_column;
+        }
     }
 }
 
-void add_point_tangent(const ContactPoint& point, const Mat2& tangent, const std::array<int, 4>& slots,
-                       BlockMatrix& matrix) {
-    Mat2 frame;
-    frame << point.normal, point.tangent;
-    const Mat2 stiffness = point.weight * frame * tangent * frame.transpose();
-    const auto a = shape(point.xi_a);
-    const auto b = shape(point.xi_b);
-    add_outer(a, a, stiffness, matrix.values[slots[0]]);
-    add_outer(a, b, -stiffness, matrix.values[slots[1]]);
-    add_outer(b, a, -stiffness, matrix.values[slots[2]]);
-    add_outer(b, b, stiffness, matrix.values[slots[3]]);
-}
-
-/// Interface forces are internal: R gets +f on b where f is what b's opening stretches.
-void add_point_force(const ContactPoint& point, const Vec2& force, Eigen::VectorXd& forces,
-                     Eigen::VectorXd& magnitudes) {
-    add_force(forces, point.block_b, point.xi_b, force);
-    add_force(forces, point.block_a, point.xi_a, -force);
-    const Vec2 size = force.cwiseAbs();
-    add_force(magnitudes, point.block_b, point.xi_b.cwiseAbs(), size);
-    add_force(magnitudes, point.block_a, point.xi_a.cwiseAbs(), size);
+void add_pair_tangent(const PairMoments& moments, const Mat2& stiffness, const PairBlocks& blocks) {
+    const Vec2 first = stiffness.col(0);
+    const Vec2 second = stiffness.col(1);
+    add_product<false>(moments.aa, first, second, blocks.aa);
+    add_product<false>(moments.ab, -first, -second, blocks.ab);
+    add_product<true>(moments.ab, -first, -second, blocks.ba);
+    add_product<false>(moments.bb, first, second, blocks.bb);
 }
 
 Mat2 full_stiffness(const InterfaceLaw& law) {
@@ -59,8 +110,20 @@ GapAndSlip gap_and_slip(const ContactPoint& point, const Eigen::VectorXd& q) {
     return {point.normal.dot(relative), point.tangent.dot(relative) - point.slip_start};
 }
 
-Vec2 point_force(const ContactPoint& point, const PointTraction& traction) {
-    return point.weight * (traction.normal * point.normal + traction.shear * point.tangent);
+PointTraction traction_of(const std::vector<InterfaceLaw>& laws, const ContactPoint& point, const Eigen::VectorXd& q) {
+    const auto [gap, slip] = gap_and_slip(point, q);
+    return fracture_traction(laws[point.law], point.history, gap, slip);
+}
+
+Mat2 point_tangent(const EquilibriumProblem& problem, const ContactPoint& point, const Eigen::VectorXd& q,
+                   TangentKind kind) {
+    if (kind == TangentKind::touching) {
+        const bool touches = gap_and_slip(point, q).gap <= touching_gap * problem.system->spacing;
+        return touches ? full_stiffness((*problem.laws)[point.law]) : Mat2(Mat2::Zero());
+    }
+    const PointTraction traction = traction_of(*problem.laws, point, q);
+    if (traction.state == ContactState::open) return Mat2::Zero();
+    return kind == TangentKind::symmetric ? symmetric_tangent(traction) : traction.tangent;
 }
 
 /// M of a block: integral of N^T N, with at least `least_area` of mass.
@@ -85,120 +148,147 @@ Mat2 symmetric_tangent(const PointTraction& traction) {
 }
 
 PointTraction contact_traction(const EquilibriumProblem& problem, int i, const Eigen::VectorXd& q) {
-    const ContactPoint& point = problem.contacts[i];
-    const auto [gap, slip] = gap_and_slip(point, q);
-    return fracture_traction((*problem.laws)[point.law], point.history, gap, slip);
+    return traction_of(*problem.laws, problem.contacts[i], q);
 }
 
-PointTraction bond_traction(const EquilibriumProblem& problem, int i, const Eigen::VectorXd& q) {
-    const ContactPoint& point = problem.bonds[i];
-    const auto [gap, slip] = gap_and_slip(point, q);
-    return bond_traction((*problem.laws)[point.law], point.history.shear_trial, gap, slip);
+PointTraction bond_traction(const EquilibriumProblem& problem, int i, int point, const Eigen::VectorXd& q) {
+    const Bond& bond = problem.bonds[i];
+    return bond_traction((*problem.laws)[bond.law], bond, point, q);
 }
 
-EquilibriumEvaluator::EquilibriumEvaluator(const EquilibriumProblem& problem, const BlockPattern& pattern)
-    : problem_(problem), pattern_(pattern) {
-    const auto slots_of = [&](const ContactPoint& point) -> Slots {
-        return {pattern.find(point.block_a, point.block_a), pattern.find(point.block_a, point.block_b),
-                pattern.find(point.block_b, point.block_a), pattern.find(point.block_b, point.block_b)};
-    };
-    bond_slots_.reserve(problem.bonds.size());
-    for (const auto& point : problem.bonds) bond_slots_.push_back(slots_of(point));
-    contact_slots_.reserve(problem.contacts.size());
-    for (const auto& point : problem.contacts) contact_slots_.push_back(slots_of(point));
-    for (int b = 0; b < pattern.n_blocks(); ++b) diagonal_.push_back(pattern.find(b, b));
+// ---- the residual ------------------------------------------------------------------------------------------------------
 
-    bonds_and_mass_.reset(pattern);
-    for (std::size_t i = 0; i < problem.bonds.size(); ++i) {
-        const Mat2 tangent = full_stiffness((*problem.laws)[problem.bonds[i].law]);
-        add_point_tangent(problem.bonds[i], tangent, bond_slots_[i], bonds_and_mass_);
+/// The sums that R and F_ref are made of, size 6 n_blocks.
+struct EquilibriumEvaluator::Sums {
+    Eigen::VectorXd& forces;
+    Eigen::VectorXd& magnitudes;
+    double stiffest = 0.0; ///< of the springs and blocks met so far (Pa)
+
+    void add(int block, const Vec2& xi, const Vec2& force) {
+        add_force(forces, block, xi, force);
+        add_force(magnitudes, block, xi.cwiseAbs(), force.cwiseAbs());
     }
-    if (!problem.eta.empty()) add_mass_tangent(bonds_and_mass_);
-}
-
-void EquilibriumEvaluator::add_mass_tangent(BlockMatrix& matrix) const {
-    for (int b = 0; b < pattern_.n_blocks(); ++b) {
-        matrix.values[diagonal_[b]] += problem_.eta[b] * mass(problem_.system->blocks[b], problem_.least_mass_area);
-    }
-}
+};
 
 void EquilibriumEvaluator::residual(const Eigen::VectorXd& q, Residual& result) {
-    const BlockSystem& system = *problem_.system;
     result.forces.setZero(q.size());
     magnitudes_.setZero(q.size());
-    double stiffest = 0.0;
+    Sums sums{result.forces, magnitudes_};
+    add_block_forces(q, sums);
+    add_bond_forces(q, sums);
+    add_contact_forces(q, sums);
+    add_pressures(q, sums);
+    if (!problem_.eta.empty()) add_mass_forces(q, result.forces);
+    result.force_scale = magnitudes_.norm();
+    result.roundoff = 64.0 * std::numeric_limits<double>::epsilon() * sums.stiffest * q.lpNorm<Eigen::Infinity>() *
+                      std::sqrt(static_cast<double>(q.size()));
+}
 
+void EquilibriumEvaluator::add_block_forces(const Eigen::VectorXd& q, Sums& sums) const {
+    const BlockSystem& system = *problem_.system;
     for (int b = 0; b < system.n_blocks(); ++b) {
         const Block& block = system.blocks[b];
         const ElasticModuli& moduli = (*problem_.moduli)[block.material];
         const Mat2 force = block.size * stress_of_gradient(displacement_gradient(q, b, block.size), moduli);
         const Eigen::Map<const Eigen::Vector4d> columns(force.data());
-        result.forces.segment<4>(n_block_unknowns * b + 2) += columns;
-        magnitudes_.segment<4>(n_block_unknowns * b + 2) += columns.cwiseAbs();
-        stiffest = std::max(stiffest, 2.0 * moduli.mu + moduli.lambda);
+        sums.forces.segment<4>(n_block_unknowns * b + 2) += columns;
+        sums.magnitudes.segment<4>(n_block_unknowns * b + 2) += columns.cwiseAbs();
+        sums.stiffest = std::max(sums.stiffest, 2.0 * moduli.mu + moduli.lambda);
         if (!problem_.densities.empty()) {
             const Vec2 weight = problem_.densities[block.material] * block.area * problem_.gravity;
-            result.forces.segment<2>(n_block_unknowns * b) -= weight;
-            magnitudes_.segment<2>(n_block_unknowns * b) += weight.cwiseAbs();
+            sums.forces.segment<2>(n_block_unknowns * b) -= weight;
+            sums.magnitudes.segment<2>(n_block_unknowns * b) += weight.cwiseAbs();
         }
     }
-    for (std::size_t i = 0; i < problem_.bonds.size(); ++i) {
-        const ContactPoint& point = problem_.bonds[i];
-        const auto traction = bond_traction(problem_, static_cast<int>(i), q);
-        add_point_force(point, point_force(point, traction), result.forces, magnitudes_);
-        stiffest = std::max(stiffest, point.weight * (*problem_.laws)[point.law].normal_stiffness);
-    }
-    for (std::size_t i = 0; i < problem_.contacts.size(); ++i) {
-        const ContactPoint& point = problem_.contacts[i];
-        const auto traction = contact_traction(problem_, static_cast<int>(i), q);
-        add_point_force(point, point_force(point, traction), result.forces, magnitudes_);
-        stiffest = std::max(stiffest, point.weight * (*problem_.laws)[point.law].normal_stiffness);
-    }
-    for (const PressureEdge& edge : problem_.pressure_edges) {
-        const double pressure = problem_.pressures[edge.boundary];
-        if (pressure == 0.0) continue;
-        const Vec2 force = pressure_force(edge, pressure, q);
-        add_force(result.forces, edge.block, edge.xi_middle, -force);
-        add_force(magnitudes_, edge.block, edge.xi_middle.cwiseAbs(), force.cwiseAbs());
-    }
-    if (!problem_.eta.empty()) {
-        for (int b = 0; b < system.n_blocks(); ++b) {
-            const Vec6 moved = q.segment<n_block_unknowns>(n_block_unknowns * b) -
-                               problem_.start.segment<n_block_unknowns>(n_block_unknowns * b);
-            result.forces.segment<n_block_unknowns>(n_block_unknowns * b) +=
-                problem_.eta[b] * (mass(system.blocks[b], problem_.least_mass_area) * moved);
-        }
-    }
-    result.force_scale = magnitudes_.norm();
-    result.roundoff = 64.0 * std::numeric_limits<double>::epsilon() * stiffest * q.lpNorm<Eigen::Infinity>() *
-                      std::sqrt(static_cast<double>(q.size()));
 }
 
-void EquilibriumEvaluator::tangent(const Eigen::VectorXd& q, TangentKind kind, BlockMatrix& matrix) {
-    const BlockSystem& system = *problem_.system;
-    matrix.pattern = &pattern_;
-    matrix.values = bonds_and_mass_.values;
-    for (int b = 0; b < system.n_blocks(); ++b) {
-        const Block& block = system.blocks[b];
-        matrix.values[diagonal_[b]].block<4, 4>(2, 2) += elastic_tangent(
-            deformation_gradient(q, b, block.size), (*problem_.moduli)[block.material], kind != TangentKind::exact);
-    }
-    for (std::size_t i = 0; i < problem_.contacts.size(); ++i) {
-        const ContactPoint& point = problem_.contacts[i];
-        if (kind == TangentKind::touching) {
-            if (gap_and_slip(point, q).gap > touching_gap * system.spacing) continue;
-            add_point_tangent(point, full_stiffness((*problem_.laws)[point.law]), contact_slots_[i], matrix);
-            continue;
+/// Interface forces are internal: R gets +f on b where f is what b's opening stretches.
+void EquilibriumEvaluator::add_bond_forces(const Eigen::VectorXd& q, Sums& sums) const {
+    for (const Bond& bond : problem_.bonds) {
+        const InterfaceLaw& law = (*problem_.laws)[bond.law];
+        for (int k = 0; k < n_bond_points; ++k) {
+            const auto traction = bond_traction(law, bond, k, q);
+            const Vec2 force = bond.weight * (traction.normal * bond.normal() + traction.shear * bond.tangent);
+            sums.add(bond.block_b, bond.xi_b[k], force);
+            sums.add(bond.block_a, bond.xi_a[k], -force);
         }
-        const auto traction = contact_traction(problem_, static_cast<int>(i), q);
-        if (traction.state == ContactState::open) continue;
-        const Mat2 tangent = kind == TangentKind::symmetric ? symmetric_tangent(traction) : traction.tangent;
-        add_point_tangent(point, tangent, contact_slots_[i], matrix);
+        sums.stiffest = std::max(sums.stiffest, bond.weight * law.normal_stiffness);
     }
+}
+
+void EquilibriumEvaluator::add_contact_forces(const Eigen::VectorXd& q, Sums& sums) const {
+    for (const ContactPoint& point : problem_.contacts) {
+        const auto traction = traction_of(*problem_.laws, point, q);
+        const Vec2 force = point.weight * (traction.normal * point.normal + traction.shear * point.tangent);
+        sums.add(point.block_b, point.xi_b, force);
+        sums.add(point.block_a, point.xi_a, -force);
+        sums.stiffest = std::max(sums.stiffest, point.weight * (*problem_.laws)[point.law].normal_stiffness);
+    }
+}
+
+void EquilibriumEvaluator::add_pressures(const Eigen::VectorXd& q, Sums& sums) const {
+    for (const PressureEdge& edge : problem_.pressure_edges) {
+        const double pressure = problem_.pressures[edge.boundary];
+        if (pressure != 0.0) sums.add(edge.block, edge.xi_middle, -pressure_force(edge, pressure, q));
+    }
+}
+
+void EquilibriumEvaluator::add_mass_forces(const Eigen::VectorXd& q, Eigen::VectorXd& forces) const {
+    const BlockSystem& system = *problem_.system;
+    for (int b = 0; b < system.n_blocks(); ++b) {
+        const Vec6 moved = q.segment<n_block_unknowns>(n_block_unknowns * b) -
+                           problem_.start.segment<n_block_unknowns>(n_block_unknowns * b);
+        forces.segment<n_block_unknowns>(n_block_unknowns * b) +=
+            problem_.eta[b] * (mass(system.blocks[b], problem_.least_mass_area) * moved);
+    }
+}
+
+// ---- its derivative ----------------------------------------------------------------------------------------------------
+
+void EquilibriumEvaluator::tangent(const Eigen::VectorXd& q, TangentKind kind, BlockMatrix& matrix) const {
+    set_bond_tangents(matrix);
+    add_block_tangents(q, kind, matrix);
+    add_contact_tangents(q, kind, matrix);
     if (kind != TangentKind::exact) return;
     for (const PressureEdge& edge : problem_.pressure_edges) {
         const double pressure = problem_.pressures[edge.boundary];
-        if (pressure != 0.0) add_pressure_tangent(edge, pressure, matrix.values[diagonal_[edge.block]]);
+        if (pressure == 0.0) continue;
+        add_pressure_tangent(edge, pressure, matrix.values[pattern_.diagonal(edge.block)]);
+    }
+}
+
+void EquilibriumEvaluator::add_block_tangents(const Eigen::VectorXd& q, TangentKind kind, BlockMatrix& matrix) const {
+    const BlockSystem& system = *problem_.system;
+    for (int b = 0; b < system.n_blocks(); ++b) {
+        const Block& block = system.blocks[b];
+        Mat6& diagonal = matrix.values[pattern_.diagonal(b)];
+        if (!problem_.eta.empty()) diagonal += problem_.eta[b] * mass(block, problem_.least_mass_area);
+        diagonal.block<4, 4>(2, 2) += elastic_tangent(deformation_gradient(q, b, block.size),
+                                                      (*problem_.moduli)[block.material], kind != TangentKind::exact);
+    }
+}
+
+/// The bonds are in the order of their lower block, so that only a band of rows is in use at a time.
+void EquilibriumEvaluator::set_bond_tangents(BlockMatrix& matrix) const {
+    RowClearing clearing(matrix, pattern_);
+    for (const Bond& bond : problem_.bonds) {
+        clearing.advance(std::max(bond.block_a, bond.block_b) + 1);
+        const Mat2 stiffness = point_stiffness(bond.normal(), bond.weight, full_stiffness((*problem_.laws)[bond.law]));
+        PairMoments moments;
+        for (int k = 0; k < n_bond_points; ++k) moments.add(bond.xi_a[k], bond.xi_b[k]);
+        add_pair_tangent(moments, stiffness, PairBlocks(matrix, bond.block_a, bond.block_b));
+    }
+    clearing.advance(pattern_.n_blocks());
+}
+
+void EquilibriumEvaluator::add_contact_tangents(const Eigen::VectorXd& q, TangentKind kind, BlockMatrix& matrix) const {
+    for (const ContactPoint& point : problem_.contacts) {
+        const Mat2 tangent = point_tangent(problem_, point, q, kind);
+        if (tangent.isZero(0.0)) continue;
+        PairMoments moments;
+        moments.add(point.xi_a, point.xi_b);
+        add_pair_tangent(moments, point_stiffness(point.normal, point.weight, tangent),
+                         PairBlocks(matrix, point.block_a, point.block_b));
     }
 }
 

@@ -73,9 +73,7 @@ void StiffnessReference::take(const EquilibriumProblem& problem, const Eigen::Ve
     taken_ = true;
     collect(problem, q, reference_);
     bonded_.clear();
-    for (const ContactPoint& bond : problem.bonds) {
-        if (bonded_.empty() || bonded_.back() != bond.interface) bonded_.push_back(bond.interface);
-    }
+    for (const Bond& bond : problem.bonds) bonded_.push_back(bond.interface);
     eta_ = problem.eta;
     numbers_.clear();
 }
@@ -83,9 +81,7 @@ void StiffnessReference::take(const EquilibriumProblem& problem, const Eigen::Ve
 /// A broken bond was a patch of the reference, along its whole edge.
 void StiffnessReference::add_broken_bonds(const EquilibriumProblem& problem) {
     std::vector<int> bonded;
-    for (const ContactPoint& bond : problem.bonds) {
-        if (bonded.empty() || bonded.back() != bond.interface) bonded.push_back(bond.interface);
-    }
+    for (const Bond& bond : problem.bonds) bonded.push_back(bond.interface);
     if (bonded.size() == bonded_.size()) return;
     std::vector<int> broken;
     std::ranges::set_difference(bonded_, bonded, std::back_inserter(broken));

@@ -2,10 +2,18 @@
 
 #include <bit>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
 namespace kluft {
+
+VtuDocument::VtuDocument(std::size_t n_points, std::size_t n_cells) : n_points_(n_points), n_cells_(n_cells) {
+    constexpr std::size_t xml_bytes = 16384;
+    constexpr std::size_t bytes_per_point = 56; // place, motion, index
+    constexpr std::size_t bytes_per_cell = 64;
+    appended_.reserve(xml_bytes + bytes_per_point * n_points + bytes_per_cell * n_cells);
+}
 
 std::vector<double> VtuDocument::finite(const std::vector<double>& values) {
     std::vector<double> checked = values;
@@ -82,16 +90,16 @@ void VtuDocument::add_field(std::string_view name, const std::vector<std::string
 std::string VtuDocument::content() {
     add_field("replaced_values", n_replaced_);
     const std::string_view order = std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian";
-    std::string text = fmt::format("<?xml version=\"1.0\"?>\n"
-                                   "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"{}\" "
-                                   "header_type=\"UInt64\">\n"
-                                   "<UnstructuredGrid>\n<FieldData>\n{}</FieldData>\n"
-                                   "<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n"
-                                   "<PointData>\n{}</PointData>\n<CellData>\n{}</CellData>\n"
-                                   "<Points>\n{}</Points>\n<Cells>\n{}</Cells>\n"
-                                   "</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_",
-                                   order, field_data_, n_points_, n_cells_, point_data_, cell_data_, points_, cells_);
-    text += appended_;
+    std::string text = std::move(appended_); // large: the rest goes around it
+    text.insert(0, fmt::format("<?xml version=\"1.0\"?>\n"
+                               "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"{}\" "
+                               "header_type=\"UInt64\">\n"
+                               "<UnstructuredGrid>\n<FieldData>\n{}</FieldData>\n"
+                               "<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n"
+                               "<PointData>\n{}</PointData>\n<CellData>\n{}</CellData>\n"
+                               "<Points>\n{}</Points>\n<Cells>\n{}</Cells>\n"
+                               "</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_",
+                               order, field_data_, n_points_, n_cells_, point_data_, cell_data_, points_, cells_));
     text += "\n</AppendedData>\n</VTKFile>\n";
     return text;
 }

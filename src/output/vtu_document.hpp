@@ -10,7 +10,7 @@ namespace kluft {
 
 class VtuDocument {
 public:
-    VtuDocument(std::size_t n_points, std::size_t n_cells) : n_points_(n_points), n_cells_(n_cells) {}
+    VtuDocument(std::size_t n_points, std::size_t n_cells);
 
     void add_points(const std::vector<double>& xyz);
     /// Cells by the point indices of each and the end of each in that list; all of one VTK type.
@@ -23,7 +23,8 @@ public:
     void add_field(std::string_view name, std::int32_t value);
     void add_field(std::string_view name, const std::vector<std::string>& texts);
 
-    /// The file's content. Ends the field data with the number of replaced values.
+    /// The file's content, which leaves the document without its arrays. Ends the field data with the number of
+    /// replaced values.
     [[nodiscard]] std::string content();
 
 private:

@@ -121,10 +121,12 @@ ContactCounts count_contacts(const Model& model, const State& state, const Equil
 std::vector<InterfaceTraction> bond_tractions(const Model& model, const EquilibriumProblem& problem,
                                               const Eigen::VectorXd& q) {
     std::vector<InterfaceTraction> tractions(model.system.interfaces.size());
-    for (int i = 0; i < static_cast<int>(problem.bonds.size()); ++i) {
-        const auto traction = bond_traction(problem, i, q);
-        tractions[problem.bonds[i].interface].normal += 0.5 * traction.normal;
-        tractions[problem.bonds[i].interface].shear += 0.5 * traction.shear;
+    for (const Bond& bond : problem.bonds) {
+        for (int k = 0; k < n_bond_points; ++k) {
+            const auto traction = bond_traction((*problem.laws)[bond.law], bond, k, q);
+            tractions[bond.interface].normal += 0.5 * traction.normal;
+            tractions[bond.interface].shear += 0.5 * traction.shear;
+        }
     }
     return tractions;
 }

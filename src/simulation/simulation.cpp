@@ -85,6 +85,11 @@ public:
           work_(state), gauges_(make_gauges(model)), open_close_(linear_, open_close_options(solver)) {
         for (const Stage& stage : model.loads.stages) n_steps_ += stage.steps;
         report_.costs = state.costs;
+        problem_.system = &model.system;
+        problem_.moduli = &model.moduli;
+        problem_.laws = &model.laws;
+        if (model.gravity != Vec2::Zero()) problem_.densities = model.densities;
+        problem_.least_mass_area = std::sqrt(0.75) * model.system.spacing * model.system.spacing;
     }
 
     RunReport run() {
@@ -211,8 +216,6 @@ private:
         passes_ = 0;
         step_balanced_ = true;
         worst_share_ = 0.0;
-        const Eigen::VectorXd before = work_.displacement;
-        const double factor_before = work_.load_factor;
         const bool check =
             model_.has_potential_cracks && ((work_.step + 1) % std::max(1, cracks_.every) == 0 || last_of_stage);
         const bool smooth = advance(target, check);
@@ -223,7 +226,8 @@ private:
         work_.unbalanced_in_succession = step_balanced_ ? 0 : work_.unbalanced_in_succession + 1;
         if (!step_balanced_) ++report_.unbalanced_steps;
         if (smooth) {
-            work_.displacement_rate = (work_.displacement - before) / (target - factor_before);
+            work_.displacement_rate =
+                (work_.displacement - accepted_.displacement) / (target - accepted_.load_factor);
         } else {
             work_.displacement_rate.resize(0);
         }
@@ -287,16 +291,13 @@ private:
 
     /// Contacts and frames of the work state; what all trials from it share.
     void prepare() {
-        problem_ = EquilibriumProblem{};
-        problem_.system = &model_.system;
-        problem_.moduli = &model_.moduli;
-        problem_.laws = &model_.laws;
         bonded_ = bonded_interfaces(work_);
         const bool separated = std::ranges::find(bonded_, 0) != bonded_.end();
         {
             const Stopwatch watch(report_.costs.seconds.set_up);
-            problem_.bonds = bond_points(model_, work_);
+            place_bonds(model_, work_, problem_.bonds);
         }
+        problem_.contacts.clear();
         std::vector<std::pair<int, int>> near_pairs;
         if (separated) {
             const Stopwatch watch(report_.costs.seconds.detection);
@@ -308,9 +309,8 @@ private:
         require_pattern(near_pairs);
         problem_.constraints = loads_->constraints();
         problem_.pressure_edges = loads_->edges();
-        if (model_.gravity != Vec2::Zero()) problem_.densities = model_.densities;
         problem_.start = work_.displacement;
-        problem_.least_mass_area = std::sqrt(0.75) * model_.system.spacing * model_.system.spacing;
+        problem_.eta.clear();
         const bool needs_mass = separated || !is_held(model_.system, bonded_, problem_.constraints);
         if (needs_mass && options_.viscosity > 0.0) {
             problem_.eta.assign(model_.system.blocks.size(), eta_of(options_.viscosity));
@@ -458,9 +458,10 @@ private:
 
     /// The place where the work state changes.
     void commit(const Trial& trial, double load_factor) {
-        for (int i = 0; i < static_cast<int>(problem_.bonds.size()); ++i) {
-            const int interface = problem_.bonds[i].interface;
-            work_.bond_shear[n_bond_points * interface + i % n_bond_points] = bond_traction(problem_, i, trial.q).shear;
+        for (const Bond& bond : problem_.bonds) {
+            const InterfaceLaw& law = model_.laws[bond.law];
+            double* const shear = &work_.bond_shear[n_bond_points * bond.interface];
+            for (int k = 0; k < n_bond_points; ++k) shear[k] = bond_traction(law, bond, k, trial.q).shear;
         }
         work_.contacts.clear();
         for (int i = 0; i < static_cast<int>(problem_.contacts.size()); ++i) {

@@ -24,13 +24,13 @@ std::vector<char> bonded_interfaces(const State& state) {
     return bonded;
 }
 
-std::vector<ContactPoint> bond_points(const Model& model, const State& state) {
-    std::vector<ContactPoint> points;
+void place_bonds(const Model& model, const State& state, std::vector<Bond>& bonds) {
+    bonds.clear();
+    bonds.reserve(static_cast<std::size_t>(std::ranges::count(state.interfaces, InterfaceStatus::potential_crack)));
     for (int i = 0; i < model.system.n_interfaces(); ++i) {
         if (state.interfaces[i] != InterfaceStatus::potential_crack) continue;
-        append_bond_points(model.system, i, state.displacement, &state.bond_shear[n_bond_points * i], points);
+        bonds.push_back(bond_at(model.system, i, state.displacement, &state.bond_shear[n_bond_points * i]));
     }
-    return points;
 }
 
 StateContacts state_contacts(const Model& model, const State& state) {
@@ -52,7 +52,7 @@ FieldRecord fields_of_state(const Model& model, const State& state) {
     problem.system = &model.system;
     problem.moduli = &model.moduli;
     problem.laws = &model.laws;
-    problem.bonds = bond_points(model, state);
+    place_bonds(model, state, problem.bonds);
     problem.contacts = state_contacts(model, state).points;
     return field_record(model, state, problem);
 }

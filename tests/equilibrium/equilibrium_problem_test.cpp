@@ -32,7 +32,7 @@ struct Body {
         problem.moduli = &moduli;
         problem.laws = &laws;
         problem.bonds = bonds_at(system, {1, 0}, at_rest(system));
-        for (auto& point : problem.bonds) point.history.shear_trial = uniform(-1e6, 1e6);
+        for (auto& each : problem.bonds) each.shear_start = {uniform(-1e6, 1e6), uniform(-1e6, 1e6)};
         problem.start = random_motion(system, 3e-4, uniform);
         problem.eta.assign(system.blocks.size(), 0.0);
         for (double& eta : problem.eta) eta = uniform(1e9, 1e11);
@@ -205,23 +205,24 @@ double energy(const Body& body, const Eigen::VectorXd& q) {
                    return (displacement_at(q, b, xi) - displacement_at(body.problem.start, b, xi)).squaredNorm();
                });
     }
-    std::size_t next = 0;
+    std::size_t bonds = 0;
     for (const Interface& interface : system.interfaces) {
         if (interface.interface_type != bond) continue;
         const Edge& edge = system.blocks[interface.block_a].edges[interface.edge_a];
         const Vec2 start = edge_start(system, edge), extent = edge_end(system, edge) - start;
         const Vec2 t = extent.normalized(), n(t.y(), -t.x());
-        for (const double s : {0.2113248654051871, 0.7886751345948129}) {
-            const Vec2 x = start + s * extent;
+        for (const std::size_t k : {0U, 1U}) {
+            const Vec2 x = start + std::array{0.2113248654051871, 0.7886751345948129}[k] * extent;
             const auto moved = [&](int b) {
                 const Block& block = system.blocks[b];
                 return displacement_at(q, b, (x - block.centroid) / block.size);
             };
             const Vec2 opening = moved(interface.block_b) - moved(interface.block_a);
             const double gap = n.dot(opening), slip = t.dot(opening);
-            const double shear = body.problem.bonds[next++].history.shear_trial;
+            const double shear = body.problem.bonds[bonds].shear_start[k];
             sum += 0.5 * extent.norm() * (0.5 * 1e11 * gap * gap + shear * slip + 0.5 * 4e10 * slip * slip);
         }
+        ++bonds;
     }
     return sum;
 }
@@ -260,21 +261,30 @@ TEST(EquilibriumProblem, SparseTangentAgreesWithTheDenseSumOfItsParts) {
     const BlockSystem& system = body.system;
     const EquilibriumProblem& problem = body.problem;
     Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(body.q.size(), body.q.size());
-    const auto add_point = [&](const ContactPoint& point, const Mat2& tangent) {
-        const Block& a = system.blocks[point.block_a];
-        const Block& b = system.blocks[point.block_b];
-        const Shape opening = shape_at(system, point.block_b, b.centroid + b.size * point.xi_b) -
-                              shape_at(system, point.block_a, a.centroid + a.size * point.xi_a);
+    const auto opening_at = [&](const auto& pair, const Vec2& xi_a, const Vec2& xi_b) -> Shape {
+        const Block& a = system.blocks[pair.block_a];
+        const Block& b = system.blocks[pair.block_b];
+        return shape_at(system, pair.block_b, b.centroid + b.size * xi_b) -
+               shape_at(system, pair.block_a, a.centroid + a.size * xi_a);
+    };
+    const auto add_point = [&](double weight, const Shape& opening, const Vec2& normal, const Vec2& along,
+                               const Mat2& tangent) {
         Mat2 frame;
-        frame.col(0) = point.normal;
-        frame.col(1) = point.tangent;
-        sum += point.weight * opening.transpose() * frame * tangent * frame.transpose() * opening;
+        frame.col(0) = normal;
+        frame.col(1) = along;
+        sum += weight * opening.transpose() * frame * tangent * frame.transpose() * opening;
     };
     for (int i = 0; i < static_cast<int>(problem.bonds.size()); ++i) {
-        add_point(problem.bonds[i], bond_traction(problem, i, body.q).tangent);
+        const Bond& each = problem.bonds[i];
+        for (int k = 0; k < n_bond_points; ++k) {
+            add_point(each.weight, opening_at(each, each.xi_a[k], each.xi_b[k]), each.normal(), each.tangent,
+                      bond_traction(problem, i, k, body.q).tangent);
+        }
     }
     for (int i = 0; i < static_cast<int>(problem.contacts.size()); ++i) {
-        add_point(problem.contacts[i], contact_traction(problem, i, body.q).tangent);
+        const ContactPoint& point = problem.contacts[i];
+        add_point(point.weight, opening_at(point, point.xi_a, point.xi_b), point.normal, point.tangent,
+                  contact_traction(problem, i, body.q).tangent);
     }
     for (int b = 0; b < system.n_blocks(); ++b) {
         const Block& block = system.blocks[b];

@@ -73,5 +73,26 @@ TEST(Repeatability, RepeatableRunHasTheSameBitsForAnyNumberOfThreads) {
     expect_same_runs(with_one, with_two);
 }
 
+// Reuse changes the way to an equilibrium, not the equilibrium: with tight tolerances the same states to 1e-8, cracks,
+// sliding and opening included.
+TEST(Repeatability, RunWithAReusedFactorReachesTheStatesOfOneThatAlwaysFactorizes) {
+    std::vector<std::string> overrides = {"stages.1.steps=12", "stages.1.strain.value=0.01", "cracks.update=all",
+                                          "solver.tolerance=1e-10", "solver.balance=1e-5"};
+    const auto reusing = quick_start(overrides);
+    overrides.emplace_back("solver.reuse=false");
+    const auto always = quick_start(overrides);
+    EXPECT_GT(always.cracks.size(), 0U);
+    EXPECT_LT(reusing.report.costs.factorizations, always.report.costs.factorizations / 2);
+    ASSERT_EQ(reusing.history.size(), always.history.size());
+    for (std::size_t i = 0; i < always.history.size(); ++i) {
+        EXPECT_NEAR(reusing.history[i].axial_stress, always.history[i].axial_stress,
+                    1e-8 * always.history.back().axial_stress)
+            << i;
+        EXPECT_EQ(reusing.history[i].cracks_shear, always.history[i].cracks_shear);
+        EXPECT_EQ(reusing.history[i].sliding, always.history[i].sliding);
+    }
+    EXPECT_LT((reusing.state.displacement - always.state.displacement).norm(), 1e-8 * always.state.displacement.norm());
+}
+
 } // namespace
 } // namespace kluft

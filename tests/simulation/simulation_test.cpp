@@ -269,11 +269,8 @@ TEST(Simulation, BlockStressIsTheLoveWeberSumOfItsContactForces) {
     ASSERT_EQ(run.report.status, RunStatus::done) << run.report.diagnosis;
     const BlockSystem& system = run.model.system;
     const Eigen::VectorXd& q = run.state.displacement;
-    EquilibriumProblem problem;
-    problem.system = &system;
-    problem.moduli = &run.model.moduli;
-    problem.laws = &run.model.laws;
-    problem.bonds = bond_points(run.model, run.state);
+    std::vector<Bond> bonds;
+    place_bonds(run.model, run.state, bonds);
     std::vector<Mat2> sums(system.blocks.size(), Mat2::Zero());
     std::vector<char> inside(system.blocks.size(), 1);
     for (int b = 0; b < system.n_blocks(); ++b) {
@@ -283,15 +280,16 @@ TEST(Simulation, BlockStressIsTheLoveWeberSumOfItsContactForces) {
             if (free_or_broken) inside[b] = 0;
         }
     }
-    for (int i = 0; i < static_cast<int>(problem.bonds.size()); ++i) {
-        const ContactPoint& point = problem.bonds[i];
-        const auto traction = bond_traction(problem, i, q);
-        const Vec2 force = point.weight * (traction.normal * point.normal + traction.shear * point.tangent);
-        const auto arm = [&](int b, const Vec2& xi) -> Vec2 {
-            return deformation_gradient(q, b, system.blocks[b].size) * (system.blocks[b].size * xi);
-        };
-        sums[point.block_a] += force * arm(point.block_a, point.xi_a).transpose();
-        sums[point.block_b] -= force * arm(point.block_b, point.xi_b).transpose();
+    const auto arm = [&](int b, const Vec2& xi) -> Vec2 {
+        return deformation_gradient(q, b, system.blocks[b].size) * (system.blocks[b].size * xi);
+    };
+    for (const Bond& bond : bonds) {
+        for (int k = 0; k < n_bond_points; ++k) {
+            const auto traction = bond_traction(run.model.laws[bond.law], bond, k, q);
+            const Vec2 force = bond.weight * (traction.normal * bond.normal() + traction.shear * bond.tangent);
+            sums[bond.block_a] += force * arm(bond.block_a, bond.xi_a[k]).transpose();
+            sums[bond.block_b] -= force * arm(bond.block_b, bond.xi_b[k]).transpose();
+        }
     }
     const auto stresses = block_stresses(system, run.model.moduli, q);
     int compared = 0;

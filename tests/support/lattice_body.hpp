@@ -71,15 +71,15 @@ inline Eigen::VectorXd random_motion(const BlockSystem& system, double amplitude
     return q;
 }
 
-/// The points of all interfaces whose type is a bond, in the frames of q and free of shear there.
-inline std::vector<ContactPoint> bonds_at(const BlockSystem& system, const std::vector<char>& is_bond_type,
-                                          const Eigen::VectorXd& q) {
+/// All interfaces whose type is a bond, in the frames of q and free of shear there.
+inline std::vector<Bond> bonds_at(const BlockSystem& system, const std::vector<char>& is_bond_type,
+                                  const Eigen::VectorXd& q) {
     const double shear[n_bond_points] = {};
-    std::vector<ContactPoint> points;
+    std::vector<Bond> bonds;
     for (int i = 0; i < system.n_interfaces(); ++i) {
-        if (is_bond_type[system.interfaces[i].interface_type]) append_bond_points(system, i, q, shear, points);
+        if (is_bond_type[system.interfaces[i].interface_type]) bonds.push_back(bond_at(system, i, q, shear));
     }
-    return points;
+    return bonds;
 }
 
 /// Surfaces on which each interface follows the law of its own type.
@@ -97,7 +97,7 @@ inline ContactSurfaces surfaces_of(const BlockSystem& system, const std::vector<
 /// Every pair that has a point.
 inline BlockPattern pattern_of(const EquilibriumProblem& problem) {
     std::vector<std::pair<int, int>> pairs;
-    for (const auto& point : problem.bonds) pairs.emplace_back(point.block_a, point.block_b);
+    for (const auto& bond : problem.bonds) pairs.emplace_back(bond.block_a, bond.block_b);
     for (const auto& point : problem.contacts) pairs.emplace_back(point.block_a, point.block_b);
     return {problem.system->n_blocks(), pairs};
 }

@@ -21,12 +21,14 @@ public:
     [[nodiscard]] int n_entries() const { return static_cast<int>(columns_.size()); }
     [[nodiscard]] int row_start(int row) const { return row_starts_[row]; }
     [[nodiscard]] int column(int entry) const { return columns_[entry]; }
+    [[nodiscard]] int diagonal(int row) const { return diagonal_[row]; }
     /// Entry (row, column), -1 if the pattern lacks it.
     [[nodiscard]] int find(int row, int column) const;
 
 private:
     std::vector<int> row_starts_{0};
     std::vector<int> columns_;
+    std::vector<int> diagonal_; ///< entry (row, row)
 };
 
 /// Values on a pattern; entry k is a 6 x 6 block.

@@ -51,7 +51,14 @@ struct ShearLimit {
 [[nodiscard]] ShearLimit shear_limit(const InterfaceLaw& law, double pressure);
 
 /// A bonded point: elastic in tension and shear. `start_shear` is the shear traction where slip = 0.
-[[nodiscard]] PointTraction bond_traction(const InterfaceLaw& law, double start_shear, double gap, double slip);
+[[nodiscard]] inline PointTraction bond_traction(const InterfaceLaw& law, double start_shear, double gap, double slip) {
+    PointTraction result;
+    result.normal = law.normal_stiffness * gap;
+    result.shear = start_shear + law.shear_stiffness * slip;
+    result.tangent << law.normal_stiffness, 0.0, 0.0, law.shear_stiffness;
+    result.history.shear_trial = result.shear;
+    return result;
+}
 
 /// A point of a fracture: no tension, Coulomb friction with rounding, dilation by plastic slip. `gap` is total,
 /// `slip` counts from where `start` was kept.

@@ -7,6 +7,7 @@
 
 #include "kluft/constitutive/interface_law.hpp"
 #include "kluft/core/vector.hpp"
+#include "kluft/kinematics/affine.hpp"
 
 namespace kluft {
 
@@ -40,12 +41,14 @@ struct ContactPoint {
     double weight = 0.0;         ///< length that the point stands for (m)
     double slip_start = 0.0;     ///< tangent . relative position where slip = 0 (m)
     int law = 0;                 ///< index of the interface law
-    int interface = -1;          ///< the interface of a bond or of a fracture's own two edges; -1 otherwise
+    int interface = -1;          ///< the interface of a fracture's own two edges; -1 otherwise
     PointHistory history;        ///< at the start of the load step
-    ContactKey key;              ///< of fracture points
+    ContactKey key;
 };
 
 /// x_b - x_a at displacements q (m).
-[[nodiscard]] Vec2 relative_position(const ContactPoint& point, const Eigen::VectorXd& q);
+[[nodiscard]] inline Vec2 relative_position(const ContactPoint& point, const Eigen::VectorXd& q) {
+    return point.offset + displacement_at(q, point.block_b, point.xi_b) - displacement_at(q, point.block_a, point.xi_a);
+}
 
 } // namespace kluft

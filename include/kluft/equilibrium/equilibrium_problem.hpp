@@ -2,7 +2,6 @@
 // R(q) = internal + interface - external + eta M (q - q_start) that defines it.
 #pragma once
 
-#include <array>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -13,6 +12,7 @@
 #include "kluft/blocks/block_system.hpp"
 #include "kluft/constitutive/block_elasticity.hpp"
 #include "kluft/constitutive/interface_law.hpp"
+#include "kluft/contact/bonds.hpp"
 #include "kluft/contact/contact.hpp"
 #include "kluft/equilibrium/boundary_terms.hpp"
 
@@ -22,7 +22,7 @@ struct EquilibriumProblem {
     const BlockSystem* system = nullptr;
     const std::vector<ElasticModuli>* moduli = nullptr; ///< per material
     const std::vector<InterfaceLaw>* laws = nullptr;
-    std::vector<ContactPoint> bonds;
+    std::vector<Bond> bonds;
     std::vector<ContactPoint> contacts;
     std::vector<PressureEdge> pressure_edges;
     std::vector<double> pressures; ///< per boundary (Pa)
@@ -47,36 +47,41 @@ struct Residual {
     double roundoff = 0.0;    ///< size of R that round-off of the displacements alone makes (N/m)
 };
 
-/// Work space of the evaluation; sizes follow the problem.
+/// Evaluates a problem that must outlive it; cheap to make.
 class EquilibriumEvaluator {
 public:
     /// `pattern` must contain every pair of the problem's points.
-    EquilibriumEvaluator(const EquilibriumProblem& problem, const BlockPattern& pattern);
+    EquilibriumEvaluator(const EquilibriumProblem& problem, const BlockPattern& pattern)
+        : problem_(problem), pattern_(pattern) {}
 
     /// R(q).
     void residual(const Eigen::VectorXd& q, Residual& result);
     /// dR/dq.
-    void tangent(const Eigen::VectorXd& q, TangentKind kind, BlockMatrix& matrix);
+    void tangent(const Eigen::VectorXd& q, TangentKind kind, BlockMatrix& matrix) const;
 
 private:
-    using Slots = std::array<int, 4>; ///< entries (aa, ab, ba, bb) of the pattern
-    void add_mass_tangent(BlockMatrix& matrix) const;
+    struct Sums;
+    void add_block_forces(const Eigen::VectorXd& q, Sums& sums) const;
+    void add_bond_forces(const Eigen::VectorXd& q, Sums& sums) const;
+    void add_contact_forces(const Eigen::VectorXd& q, Sums& sums) const;
+    void add_pressures(const Eigen::VectorXd& q, Sums& sums) const;
+    void add_mass_forces(const Eigen::VectorXd& q, Eigen::VectorXd& forces) const;
+    void set_bond_tangents(BlockMatrix& matrix) const;
+    void add_block_tangents(const Eigen::VectorXd& q, TangentKind kind, BlockMatrix& matrix) const;
+    void add_contact_tangents(const Eigen::VectorXd& q, TangentKind kind, BlockMatrix& matrix) const;
 
     const EquilibriumProblem& problem_;
     const BlockPattern& pattern_;
-    std::vector<Slots> bond_slots_;
-    std::vector<Slots> contact_slots_;
-    std::vector<int> diagonal_;
-    BlockMatrix bonds_and_mass_; ///< the part of the tangent that stays constant
-    Eigen::VectorXd magnitudes_;
+    Eigen::VectorXd magnitudes_; ///< size 6 n_blocks
 };
 
 /// The norm of eta M (q - q_start) (N/m).
 [[nodiscard]] double viscous_force(const EquilibriumProblem& problem, const Eigen::VectorXd& q);
 
-/// The traction of a contact point of the problem at q; `i` indexes problem.contacts.
+/// The traction at q of a contact point, or of a point (0 or 1) of a bond; `i` indexes problem.contacts or .bonds.
 [[nodiscard]] PointTraction contact_traction(const EquilibriumProblem& problem, int i, const Eigen::VectorXd& q);
-[[nodiscard]] PointTraction bond_traction(const EquilibriumProblem& problem, int i, const Eigen::VectorXd& q);
+[[nodiscard]] PointTraction bond_traction(const EquilibriumProblem& problem, int i, int point,
+                                          const Eigen::VectorXd& q);
 
 /// The positive definite part of a contact point's tangent: a sliding point has no shear stiffness.
 [[nodiscard]] Mat2 symmetric_tangent(const PointTraction& traction);

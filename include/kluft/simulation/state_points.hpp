@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "kluft/contact/bonds.hpp"
 #include "kluft/contact/contact.hpp"
 #include "kluft/simulation/model.hpp"
 #include "kluft/simulation/state.hpp"
@@ -14,8 +15,8 @@ namespace kluft {
 /// 1 for each interface that is still bonded.
 [[nodiscard]] std::vector<char> bonded_interfaces(const State& state);
 
-/// The two points of every bond, in the frames of the state.
-[[nodiscard]] std::vector<ContactPoint> bond_points(const Model& model, const State& state);
+/// Replaces `bonds` by those of the state, in its frames.
+void place_bonds(const Model& model, const State& state, std::vector<Bond>& bonds);
 
 struct StateContacts {
     std::vector<ContactPoint> points;
