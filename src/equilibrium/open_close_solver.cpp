@@ -17,8 +17,8 @@ constexpr int iterations_of_restless = 4;             ///< at the end of a faile
 constexpr double restless_share = 0.2;                ///< of the norm of the residual
 constexpr int max_refinements = 60;                   ///< Krylov vectors of one linear solve
 constexpr int refinements_worth_a_factorization = 25; ///< measured at 500, 5 000 and 50 000 blocks: 29, 31, 25
-constexpr double linear_share = 0.1;                  ///< of the tolerated residual, that a linear solve may leave
-constexpr double largest_linear_residual = 1e-2;      ///< of its right side
+constexpr double linear_share = 0.3;                  ///< of the tolerated residual, that a linear solve may leave
+constexpr double largest_linear_residual = 0.1;      ///< of its right side
 constexpr double travel_residual = 1e-8;              ///< of the column of a platen's travel
 
 double typical_diagonal(const BlockMatrix& matrix) {
@@ -190,7 +190,7 @@ bool OpenCloseSolver::solve_with_reuse(const EquilibriumProblem& problem, Equili
 /// False if there is no factor worth keeping.
 bool OpenCloseSolver::update_factor(const EquilibriumProblem& problem, const Eigen::VectorXd& q) {
     if (!reference_.taken() || analysis_of_factor_ != linear_solver_.statistics().analyses ||
-        excess_refinements_ > refinements_worth_a_factorization || !reference_.has_eta_of(problem)) {
+        excess_refinements_ > refinements_worth_a_factorization) {
         return false;
     }
     return linear_solver_.update(reference_.changes(problem, q));

@@ -29,7 +29,7 @@ namespace {
 constexpr int max_balance_rounds = 12;
 constexpr double least_balance_progress = 0.7; ///< of the viscous share per round, else the body is moving
 constexpr double relaxation_growth = 16.0;     ///< of eta on the blocks that stop the iteration
-constexpr double relaxation_decay = 4.0;       ///< after a solve in a few iterations
+constexpr double relaxation_decay = 4.0;       ///< after a solve in a few iterations, also of later load steps
 constexpr int easy_iterations = 6;
 constexpr double largest_relaxation = 4.0e6;
 constexpr double relaxed_tolerance = 0.1; ///< of `balance`: a residual on the way that does not matter
@@ -314,6 +314,7 @@ private:
         const bool needs_mass = separated || !is_held(model_.system, bonded_, problem_.constraints);
         if (needs_mass && options_.viscosity > 0.0) {
             problem_.eta.assign(model_.system.blocks.size(), eta_of(options_.viscosity));
+            for (std::size_t b = 0; b < work_.calming.size(); ++b) problem_.eta[b] *= work_.calming[b];
         }
     }
 
@@ -372,6 +373,7 @@ private:
         report_.costs.open_close_iterations += trial.summary.iterations;
         last_worst_block_ = trial.summary.worst_block;
         if (trial.converged()) balance(trial);
+        if (trial.balanced && trial.summary.iterations <= easy_iterations) decay(work_.calming);
         notify_progress(load_factor);
         return trial;
     }
@@ -402,13 +404,15 @@ private:
     /// that stop the iteration and falls again as they come to rest.
     Trial relax(double load_factor, const std::vector<int>& restless) {
         ++report_.costs.relaxations;
-        std::vector<double> factor(model_.system.blocks.size(), 1.0);
-        for (const int b : restless) factor[b] = relaxation_growth;
+        std::vector<double> factor = work_.calming;
+        factor.resize(model_.system.blocks.size(), 1.0);
+        (void)grow_eta(restless, factor);
         Trial last; // that converged
         for (int attempt = 0; attempt < max_relaxation_attempts; ++attempt) {
             if (stop_) throw Interrupted{};
             prepare();
             set_load(load_factor);
+            factor.resize(model_.system.blocks.size(), 1.0);
             problem_.eta = factor;
             for (double& eta : problem_.eta) eta *= relaxation_eta();
             Trial trial;
@@ -428,12 +432,13 @@ private:
             trial.viscous_share = viscous_share(trial);
             if (!trial.converged()) trial.viscous_share += trial.summary.residual_ratio;
             trial.balanced = trial.viscous_share <= options_.balance;
-            if (trial.balanced) return trial;
+            if (trial.balanced) {
+                work_.calming = factor;
+                return trial;
+            }
             commit(trial, work_.load_factor);
             if (is_falling()) throw NoEquilibrium{trial.summary.worst_block, trial.viscous_share, nothing_holds()};
-            if (trial.summary.iterations <= easy_iterations) {
-                for (double& f : factor) f = std::max(1.0, f / relaxation_decay);
-            }
+            if (trial.summary.iterations <= easy_iterations) decay(factor);
             last = std::move(trial);
         }
         if (last.q.size() == 0) throw NoEquilibrium{last_worst_block_, last.summary.residual_ratio};
@@ -454,6 +459,16 @@ private:
         for (const int b : restless) grow(factor[b]);
         if (restless.empty()) std::ranges::for_each(factor, grow);
         return grown;
+    }
+
+    /// Empty when nothing is left.
+    static void decay(std::vector<double>& factor) {
+        bool any = false;
+        for (double& f : factor) {
+            f = std::max(1.0, f / relaxation_decay);
+            any = any || f > 1.0;
+        }
+        if (!any) factor.clear();
     }
 
     /// The place where the work state changes.
