@@ -55,7 +55,7 @@ Body::Body(const Model& model, Joining joining) : model_(&model), displacement_(
     problem_.system = &system;
     problem_.moduli = &model.moduli;
     problem_.laws = &model.laws;
-    problem_.bonds = bond_points(model, state);
+    place_bonds(model, state, problem_.bonds);
     StateContacts contacts = state_contacts(model, state);
     problem_.contacts = std::move(contacts.points);
     pattern_ = pattern_of(system, std::move(contacts.near_pairs));

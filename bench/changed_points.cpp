@@ -69,36 +69,34 @@ std::vector<int> line_interfaces(const BlockSystem& system, std::vector<Candidat
 }
 
 /// Change of d(normal, shear)/d(gap, slip) of a bonded point (Pa/m).
-Mat2 change_of_tangent(const Model& model, const ContactPoint& point, bool opens, Sliding sliding) {
-    const InterfaceLaw& law = model.laws[point.law];
+Mat2 change_of_tangent(const Model& model, const Bond& bond, bool opens, Sliding sliding) {
+    const InterfaceLaw& law = model.laws[bond.law];
     Mat2 change = Mat2::Zero();
     change(1, 1) = -law.shear_stiffness;
     if (opens) {
         change(0, 0) = -law.normal_stiffness;
     } else if (sliding == Sliding::frictional) {
-        change(1, 0) = law.normal_stiffness * model.laws[model.fracture_law[point.law]].tan_friction;
+        change(1, 0) = law.normal_stiffness * model.laws[model.fracture_law[bond.law]].tan_friction;
     }
     return change;
 }
 
 StiffnessChange change_of(const Body& body, int interface, bool opens, Sliding sliding) {
     const std::array<double, n_bond_points> no_shear{};
-    std::vector<ContactPoint> points;
-    append_bond_points(body.model().system, interface, body.displacement(), no_shear.data(), points);
+    const Bond bond = bond_at(body.model().system, interface, body.displacement(), no_shear.data());
+    const std::array<Vec2, 2> directions{bond.normal(), bond.tangent};
+    const Mat2 tangent = bond.weight * change_of_tangent(body.model(), bond, opens, sliding);
     StiffnessChange change;
     change.patch = interface;
-    change.block_a = points.front().block_a;
-    change.block_b = points.front().block_b;
+    change.block_a = bond.block_a;
+    change.block_b = bond.block_b;
     change.n_rows = 2 * n_bond_points;
     for (int k = 0; k < n_bond_points; ++k) {
-        const ContactPoint& point = points[k];
-        const std::array<Vec2, 2> directions{point.normal, point.tangent};
         for (int d = 0; d < 2; ++d) {
-            change.rows_a.row(2 * k + d) = -displacement_row(directions[d], point.xi_a).transpose();
-            change.rows_b.row(2 * k + d) = displacement_row(directions[d], point.xi_b).transpose();
+            change.rows_a.row(2 * k + d) = -displacement_row(directions[d], bond.xi_a[k]).transpose();
+            change.rows_b.row(2 * k + d) = displacement_row(directions[d], bond.xi_b[k]).transpose();
         }
-        change.stiffness.block<2, 2>(2 * k, 2 * k) =
-            point.weight * change_of_tangent(body.model(), point, opens, sliding);
+        change.stiffness.block<2, 2>(2 * k, 2 * k) = tangent;
     }
     return change;
 }

@@ -18,7 +18,7 @@ constexpr double restless_share = 0.2;                ///< of the norm of the re
 constexpr int max_refinements = 60;                   ///< Krylov vectors of one linear solve
 constexpr int refinements_worth_a_factorization = 25; ///< measured at 500, 5 000 and 50 000 blocks: 29, 31, 25
 constexpr double linear_share = 0.3;                  ///< of the tolerated residual, that a linear solve may leave
-constexpr double largest_linear_residual = 0.1;      ///< of its right side
+constexpr double largest_linear_residual = 0.1;       ///< of its right side
 constexpr double travel_residual = 1e-8;              ///< of the column of a platen's travel
 
 double typical_diagonal(const BlockMatrix& matrix) {

@@ -226,8 +226,7 @@ private:
         work_.unbalanced_in_succession = step_balanced_ ? 0 : work_.unbalanced_in_succession + 1;
         if (!step_balanced_) ++report_.unbalanced_steps;
         if (smooth) {
-            work_.displacement_rate =
-                (work_.displacement - accepted_.displacement) / (target - accepted_.load_factor);
+            work_.displacement_rate = (work_.displacement - accepted_.displacement) / (target - accepted_.load_factor);
         } else {
             work_.displacement_rate.resize(0);
         }
