@@ -56,5 +56,6 @@ kluft_purpose(Threads "assembly and studies")
 find_package(Threads REQUIRED)
 
 add_feature_info(tests KLUFT_BUILD_TESTS "GoogleTest, run by ctest")
+add_feature_info(benchmarks KLUFT_BUILD_BENCH "Google Benchmark, run by scripts/bench")
 add_feature_info(sanitizers KLUFT_SANITIZE "address and undefined behaviour")
 add_feature_info(coverage KLUFT_COVERAGE "gcov counters")
