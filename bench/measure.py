@@ -32,7 +32,7 @@ EPILOG = """parts:
   shares    where the time of a run with a mapped fracture goes (bench/fractured.yaml, about 50 000 blocks)
   job       models/triaxial/case-3-all.yaml to 2 % strain with and without reuse of the factor
 
-Everything takes about half an hour on two cores and 8 GB of memory; without the bodies of 200 000 blocks six minutes.
+Everything takes a quarter of an hour on two cores and 8 GB of memory; without the bodies of 200 000 blocks six minutes.
 Nothing else should run on the machine. Raw results stay in build/release/bench/runs.
 
 examples:
