@@ -3,8 +3,17 @@
 #include <cholmod.h>
 
 #include "kluft/core/diagnostics.hpp"
+#include "kluft/core/memory.hpp"
 
 namespace kluft {
+
+namespace {
+
+/// Bytes beyond which the last factor is given up before the next one is prepared, so that it is never held together
+/// with two copies of the matrix. Below, fresh pages would cost more than they are worth.
+constexpr double large_factor = 16e6;
+
+} // namespace
 
 struct CholeskyFactor::Cholmod {
     Cholmod() {
@@ -31,6 +40,22 @@ struct CholeskyFactor::Cholmod {
         if (common.status == CHOLMOD_OUT_OF_MEMORY || common.status == CHOLMOD_TOO_LARGE) {
             throw ResourceError("out of memory in the factorization");
         }
+    }
+
+    /// Room for the numbers of the factor, as CHOLMOD would take it, but of huge pages if it is large: the system hands
+    /// them out much faster.
+    void allocate_factor() {
+        if (factor->xtype != CHOLMOD_PATTERN) return;
+        constexpr int yes = 1;
+        cholmod_l_change_factor(CHOLMOD_REAL, yes, yes, yes, yes, factor, &common);
+        require_memory();
+        prefer_huge_pages(factor->x, sizeof(double) * factor->xsize);
+    }
+
+    void free_numbers() {
+        constexpr int yes = 1;
+        if (factor != nullptr && factor->xtype != CHOLMOD_PATTERN)
+            cholmod_l_change_factor(CHOLMOD_PATTERN, yes, yes, yes, yes, factor, &common);
     }
 
     void solve(int system, std::vector<double>& x) {
@@ -102,8 +127,13 @@ void CholeskyFactor::analyze(const BlockPattern& pattern, const std::vector<int>
     }
 }
 
-bool CholeskyFactor::factorize(const BlockMatrix& matrix) {
+void CholeskyFactor::gather(const BlockMatrix& matrix) {
+    if (cost().bytes >= large_factor) forget();
     columns_.gather(matrix);
+}
+
+bool CholeskyFactor::factorize() {
+    cholmod_->allocate_factor();
     cholmod_sparse view = lower_triangle(columns_);
     cholmod_l_factorize(&view, cholmod_->factor, &cholmod_->common);
     columns_.release();
@@ -111,6 +141,8 @@ bool CholeskyFactor::factorize(const BlockMatrix& matrix) {
     cholmod_->require_memory();
     return cholmod_->common.status == CHOLMOD_OK && cholmod_->factor->minor == cholmod_->factor->n;
 }
+
+void CholeskyFactor::forget() { cholmod_->free_numbers(); }
 
 void CholeskyFactor::solve_lower(std::vector<double>& x) { cholmod_->solve(CHOLMOD_L, x); }
 

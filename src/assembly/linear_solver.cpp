@@ -37,6 +37,25 @@ struct LinearSolver::Backend {
     Factorization kind = Factorization::cholesky;
     LinearSolverStatistics statistics;
 
+    /// There is one factor at a time.
+    void gather(const BlockMatrix& matrix, Factorization new_kind) {
+        kind = new_kind;
+        if (kind == Factorization::lu) {
+            cholesky.forget();
+            lu.gather(matrix);
+        } else {
+            lu.forget();
+            cholesky.gather(matrix);
+        }
+    }
+
+    bool factorize() {
+        ++statistics.factorizations;
+        if (kind == Factorization::lu) return lu.factorize();
+        changes.start(cholesky, position);
+        return cholesky.factorize();
+    }
+
     void solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
         right_side.resize(b.size());
         permute(position, b, right_side.data());
@@ -66,13 +85,16 @@ void LinearSolver::analyze(const BlockPattern& pattern) {
 }
 
 bool LinearSolver::factorize(const BlockMatrix& matrix, Factorization kind) {
-    Backend& k = *backend_;
-    const Stopwatch watch(k.statistics.factorize_seconds);
-    k.kind = kind;
-    ++k.statistics.factorizations;
-    if (kind == Factorization::lu) return k.lu.factorize(matrix);
-    k.changes.start(k.cholesky, k.position);
-    return k.cholesky.factorize(matrix);
+    const Stopwatch watch(backend_->statistics.factorize_seconds);
+    backend_->gather(matrix, kind);
+    return backend_->factorize();
+}
+
+bool LinearSolver::factorize(BlockMatrix&& matrix, Factorization kind) {
+    const Stopwatch watch(backend_->statistics.factorize_seconds);
+    backend_->gather(matrix, kind);
+    matrix.release();
+    return backend_->factorize();
 }
 
 bool LinearSolver::update(const std::vector<StiffnessChange>& changes) {

@@ -47,10 +47,14 @@ void LuFactor::analyze(const BlockPattern& pattern, const std::vector<int>& posi
 
 void LuFactor::forget() { umfpack_->forget(); }
 
-bool LuFactor::factorize(const BlockMatrix& matrix) {
+void LuFactor::gather(const BlockMatrix& matrix) {
     Umfpack& u = *umfpack_;
     if (u.symbolic == nullptr) u.columns = BlockColumns(*u.pattern, *u.position, BlockColumns::Part::all);
     u.columns.gather(matrix);
+}
+
+bool LuFactor::factorize() {
+    Umfpack& u = *umfpack_;
     const auto n = u.columns.size();
     const auto* starts = u.columns.starts().data();
     const auto* rows = u.columns.rows().data();

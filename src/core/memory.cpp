@@ -1,6 +1,10 @@
 #include "kluft/core/memory.hpp"
 
+#include <cstdint>
 #include <cstdlib>
+
+#include <sys/mman.h>
+#include <unistd.h>
 
 #ifdef __GLIBC__
 #include <malloc.h>
@@ -19,6 +23,16 @@ void return_large_pieces() {
     constexpr int large = 1 << 20;
     mallopt(M_MMAP_THRESHOLD, large);
     mallopt(M_TRIM_THRESHOLD, large);
+#endif
+}
+
+void prefer_huge_pages([[maybe_unused]] void* begin, [[maybe_unused]] std::size_t size) {
+#ifdef MADV_HUGEPAGE
+    constexpr std::size_t large = 16U << 20U;
+    if (size < large) return;
+    const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
+    const std::uintptr_t skipped = (page - reinterpret_cast<std::uintptr_t>(begin) % page) % page;
+    madvise(static_cast<char*>(begin) + skipped, size - skipped, MADV_HUGEPAGE);
 #endif
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "kluft/core/stopwatch.hpp"
 
@@ -172,7 +173,8 @@ void OpenCloseSolver::assemble(const EquilibriumProblem& problem, EquilibriumEva
 /// increment_ and response_ by a factorization of the assembled matrix.
 bool OpenCloseSolver::solve_anew(const EquilibriumProblem& problem, TangentKind kind) {
     reference_.forget();
-    if (!linear_solver_.factorize(matrix_, kind == TangentKind::exact ? Factorization::lu : Factorization::cholesky))
+    const bool exact = kind == TangentKind::exact;
+    if (!linear_solver_.factorize(std::move(matrix_), exact ? Factorization::lu : Factorization::cholesky))
         return false;
     linear_solver_.solve(right_side_, increment_);
     if (problem.platen_force) linear_solver_.solve(travel_column_, response_);
@@ -209,7 +211,7 @@ bool OpenCloseSolver::renew_factor(const EquilibriumProblem& problem, Equilibriu
                                    const Eigen::VectorXd& q) {
     assemble(problem, evaluator, q, TangentKind::symmetric);
     reference_.forget();
-    if (!linear_solver_.factorize(matrix_, Factorization::cholesky)) return false;
+    if (!linear_solver_.factorize(std::move(matrix_), Factorization::cholesky)) return false;
     reference_.take(problem, q);
     analysis_of_factor_ = linear_solver_.statistics().analyses;
     fresh_refinements_ = -1;

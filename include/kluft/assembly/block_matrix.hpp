@@ -37,6 +37,8 @@ struct BlockMatrix {
     std::vector<Mat6> values;
 
     void reset(const BlockPattern& new_pattern);
+    /// Gives the memory of the values back.
+    void release() { values = std::vector<Mat6>(); }
     void set_zero();
     /// y = K x, sizes 6 n_blocks.
     void multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const;

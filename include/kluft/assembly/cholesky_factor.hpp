@@ -38,8 +38,12 @@ public:
 
     /// Symbolic analysis; forgets the earlier factor. Throws ResourceError out of memory.
     void analyze(const BlockPattern& pattern, const std::vector<int>& position);
-    /// False if the matrix is not positive definite. Throws ResourceError out of memory.
-    [[nodiscard]] bool factorize(const BlockMatrix& matrix);
+    /// Copies what the next `factorize` reads; there is no factor until then.
+    void gather(const BlockMatrix& matrix);
+    /// False if the gathered matrix is not positive definite. Throws ResourceError out of memory.
+    [[nodiscard]] bool factorize();
+    /// Gives the memory of the factor back; the analysis stays.
+    void forget();
     /// x := L^-1 x and x := L'^-1 x, size 6 n_blocks. Throw ResourceError out of memory.
     void solve_lower(std::vector<double>& x);
     void solve_upper(std::vector<double>& x);

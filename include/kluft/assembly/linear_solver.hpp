@@ -57,6 +57,8 @@ public:
     /// Numeric factorization; false if the matrix is singular or, for `cholesky`, not positive definite.
     /// Throws ResourceError out of memory.
     [[nodiscard]] bool factorize(const BlockMatrix& matrix, Factorization kind);
+    /// The same, and the values of the matrix are gone before the factor takes its memory.
+    [[nodiscard]] bool factorize(BlockMatrix&& matrix, Factorization kind);
 
     /// Puts low-rank changes on top of a Cholesky factor: the complete list of what has changed since `factorize`.
     /// False, and the factor should be renewed, if their rank exceeds max_rank() or the changed matrix is singular.

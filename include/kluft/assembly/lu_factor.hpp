@@ -19,8 +19,10 @@ public:
 
     /// The symbolic analysis is left to the first factorization.
     void analyze(const BlockPattern& pattern, const std::vector<int>& position);
-    /// False if the matrix is singular. Throws ResourceError out of memory.
-    [[nodiscard]] bool factorize(const BlockMatrix& matrix);
+    /// Copies what the next `factorize` reads.
+    void gather(const BlockMatrix& matrix);
+    /// False if the gathered matrix is singular. Throws ResourceError out of memory.
+    [[nodiscard]] bool factorize();
     /// x = K^-1 b, sizes 6 n_blocks.
     void solve(std::vector<double>& b, std::vector<double>& x);
     /// Gives the memory back; the next factorization needs `analyze` no more than before.

@@ -1,6 +1,8 @@
 // What the program holds of the system's memory.
 #pragma once
 
+#include <cstddef>
+
 namespace kluft {
 
 /// Gives back to the system what the program has freed and its allocator still keeps, as after a job of many small
@@ -10,5 +12,9 @@ void return_freed_memory();
 /// From now on pieces of a megabyte and more go back as soon as they are freed. The GNU allocator would otherwise raise
 /// that limit to the largest piece freed so far, and keep up to twice as much. Does nothing elsewhere.
 void return_large_pieces();
+
+/// Asks for huge pages in a large piece of memory that is not in use yet. Does nothing for a small one and where the
+/// system has no call for it.
+void prefer_huge_pages(void* begin, std::size_t size);
 
 } // namespace kluft
