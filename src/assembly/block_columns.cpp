@@ -132,16 +132,15 @@ BlockColumns::BlockColumns(const BlockPattern& pattern, const std::vector<int>& 
     }
 }
 
-std::int64_t BlockColumns::size() const {
-    return nu * (static_cast<std::int64_t>(source_starts_.size()) - 1);
-}
+std::int64_t BlockColumns::size() const { return nu * (static_cast<std::int64_t>(source_starts_.size()) - 1); }
 
 void BlockColumns::gather_structure() {
     if (!rows_.empty()) return;
     const int n = static_cast<int>(source_starts_.size()) - 1;
     starts_.reserve(static_cast<std::size_t>(nu) * n + 1);
     starts_.push_back(0);
-    rows_.reserve(sources_.size() * nu * nu - (part_ == Part::all ? 0 : static_cast<std::size_t>(n) * nu * (nu - 1) / 2));
+    rows_.reserve(sources_.size() * nu * nu -
+                  (part_ == Part::all ? 0 : static_cast<std::size_t>(n) * nu * (nu - 1) / 2));
     for (int p = 0; p < n; ++p) {
         for (int j = 0; j < nu; ++j) {
             for (int k = source_starts_[p]; k < source_starts_[p + 1]; ++k) {

@@ -26,10 +26,10 @@ void Gmres::rotate(int column) {
     right_side_[column] *= cosine_[column];
 }
 
-int Gmres::correct(const Operator& matrix, const Operator& precondition, int max_vectors, double bound,
-                   Eigen::VectorXd& r, Eigen::VectorXd& x) {
+int Gmres::correct(const Operator& matrix, const Operator& precondition, int max_vectors, const Bound& bound,
+                   const Eigen::VectorXd& r, Eigen::VectorXd& x) {
     const double norm = r.norm();
-    if (!(norm > bound)) return 0;
+    if (norm == 0.0) return 0;
     cosine_.setZero(max_vectors);
     sine_.setZero(max_vectors);
     right_side_.setZero(max_vectors + 1);
@@ -38,9 +38,11 @@ int Gmres::correct(const Operator& matrix, const Operator& precondition, int max
     v_[0] = r / norm;
     int used = 0;
     bool exhausted = false; // the space is invariant
-    while (used < max_vectors && !exhausted && std::abs(right_side_[used]) > bound) {
+    double least = 0.0;
+    while (used < max_vectors && !exhausted && (used == 0 || std::abs(right_side_[used]) > least)) {
         extend_basis(used + 2);
         precondition(v_[used], z_[used]);
+        if (used == 0) least = bound(norm * z_[0].norm());
         Eigen::VectorXd& w = v_[used + 1];
         matrix(z_[used], w);
         Eigen::VectorXd& h = h_[used];

@@ -104,24 +104,23 @@ SolveReport LinearSolver::solve(const BlockMatrix& matrix, const Eigen::VectorXd
     const auto multiply = [&](const Eigen::VectorXd& v, Eigen::VectorXd& y) { matrix.multiply(v, y); };
     const auto precondition = [&](const Eigen::VectorXd& v, Eigen::VectorXd& y) { k.solve(v, y); };
     double matrix_norm = -1.0; // when first needed
-    const auto bound = [&] {
+    const auto bound = [&](double x_norm) {
         if (goal.backward_error <= 0.0) return goal.residual;
         if (matrix_norm < 0.0) matrix_norm = frobenius_norm(matrix);
-        return std::max(goal.residual, goal.backward_error * (matrix_norm * x.norm() + b.norm()));
-    };
-    const auto accepted = [&] {
-        matrix.multiply(x, k.product);
-        k.residual = b - k.product;
-        const double error = k.residual.norm();
-        return error <= goal.residual || error <= bound();
+        return std::max(goal.residual, goal.backward_error * (matrix_norm * x_norm + b.norm()));
     };
     SolveReport report;
-    k.solve(b, x);
-    report.accepted = accepted();
+    x.setZero(b.size());
+    k.residual = b;
     for (int i = 0; i < max_corrections && !report.accepted && report.refinements < max_refinements; ++i) {
-        report.refinements += k.gmres.correct(multiply, precondition, max_refinements - report.refinements,
-                                              safe_share * bound(), k.residual, x);
-        report.accepted = accepted();
+        const double x_norm = x.norm();
+        report.refinements += k.gmres.correct(
+            multiply, precondition, max_refinements - report.refinements,
+            [&](double correction) { return safe_share * bound(std::max(x_norm, correction)); }, k.residual, x);
+        multiply(x, k.product);
+        k.residual = b - k.product;
+        const double error = k.residual.norm();
+        report.accepted = error <= goal.residual || error <= bound(x.norm());
     }
     k.statistics.refinements += report.refinements;
     return report;

@@ -13,7 +13,8 @@ constexpr int iterations_before_halving = 8; ///< then the norm must fall, or it
 constexpr int max_search_residuals = 8;
 constexpr double accepted_end_slope = 0.3; ///< of |g(0)|: the full step is taken
 constexpr double accepted_root_slope = 0.1;
-constexpr int iterations_of_restless = 4;             ///< at the end of a failed attempt
+constexpr double short_step = 0.1;                    ///< of the increment: this way leads nowhere
+constexpr int max_short_steps = 3;                    ///< in succession
 constexpr double restless_share = 0.2;                ///< of the norm of the residual
 constexpr int max_refinements = 60;                   ///< Krylov vectors of one linear solve
 constexpr int refinements_worth_a_factorization = 25; ///< measured at 500, 5 000 and 50 000 blocks: 29, 31, 25
@@ -42,15 +43,22 @@ int largest_block(const Eigen::VectorXd& forces) {
     return worst;
 }
 
-/// Adds the blocks that have a large part of the forces, or that limited the increment.
-void append_restless(const Eigen::VectorXd& forces, const std::vector<int>& limited, std::vector<int>& restless) {
-    restless.insert(restless.end(), limited.begin(), limited.end());
+/// The blocks that have a large part of the forces, or that limited the increment.
+std::vector<int> restless_blocks(const Eigen::VectorXd& forces, const std::vector<int>& limited) {
+    std::vector<int> restless = limited;
     const double least = restless_share * forces.norm();
     for (int b = 0; b < forces.size() / n_block_unknowns; ++b) {
         if (forces.segment<n_block_unknowns>(n_block_unknowns * b).norm() >= least) restless.push_back(b);
     }
-    std::ranges::sort(restless);
-    restless.erase(std::unique(restless.begin(), restless.end()), restless.end());
+    return restless;
+}
+
+template <class Lists> std::vector<int> union_of(const Lists& lists) {
+    std::vector<int> all;
+    for (const auto& list : lists) all.insert(all.end(), list.begin(), list.end());
+    std::ranges::sort(all);
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    return all;
 }
 
 } // namespace
@@ -255,6 +263,8 @@ OpenCloseSummary OpenCloseSolver::solve(const EquilibriumProblem& problem, const
     EquilibriumEvaluator evaluator(problem, pattern);
     OpenCloseSummary summary;
     full_step_forces_.resize(0);
+    for (auto& blocks : restless_) blocks.clear();
+    int short_steps = 0; // in succession
     double previous_norm = -1.0;
     if (problem.platen_force) travel_ = problem.constraints.travel_motion(q.size());
     Eigen::VectorXd free_forces;
@@ -273,7 +283,10 @@ OpenCloseSummary OpenCloseSolver::solve(const EquilibriumProblem& problem, const
             return summary;
         }
         summary.worst_block = largest_block(free_forces);
-        if (summary.iterations >= options_.max_iterations) return summary;
+        if (summary.iterations >= options_.max_iterations || short_steps >= max_short_steps) {
+            summary.restless = union_of(restless_);
+            return summary;
+        }
         const bool first = summary.iterations == 0;
         if (held) prescribed_.setZero();
         if (!find_increment(problem, evaluator, q, first && unloaded ? TangentKind::touching : options_.tangent)) {
@@ -289,9 +302,8 @@ OpenCloseSummary OpenCloseSolver::solve(const EquilibriumProblem& problem, const
             s = slope < 0.0 && !stalls ? step_along_root(problem, evaluator, q, slope)
                                        : step_by_halving(problem, evaluator, q, norm);
         }
-        if (summary.iterations + iterations_of_restless > options_.max_iterations) {
-            append_restless(full_step_forces_, limited_, summary.restless);
-        }
+        restless_[summary.iterations % restless_.size()] = restless_blocks(full_step_forces_, limited_);
+        short_steps = s < short_step ? short_steps + 1 : 0;
         q += s * increment_;
         previous_norm = norm;
     }

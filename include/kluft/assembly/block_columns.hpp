@@ -27,7 +27,7 @@ public:
     BlockColumns() = default;
     BlockColumns(const BlockPattern& pattern, const std::vector<int>& position, Part part);
 
-    [[nodiscard]] std::int64_t size() const; ///< number of columns, 6 n_blocks
+    [[nodiscard]] std::int64_t size() const;                              ///< number of columns, 6 n_blocks
     [[nodiscard]] std::vector<std::int64_t>& starts() { return starts_; } ///< per column and one past the last
     [[nodiscard]] std::vector<std::int64_t>& rows() { return rows_; }     ///< per nonzero
     [[nodiscard]] std::vector<double>& values() { return values_; }       ///< per nonzero

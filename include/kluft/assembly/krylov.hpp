@@ -12,11 +12,12 @@ namespace kluft {
 class Gmres {
 public:
     using Operator = std::function<void(const Eigen::VectorXd& x, Eigen::VectorXd& y)>; ///< y = A x
+    using Bound = std::function<double(double correction)>; ///< of |r|, from an estimate of the correction's norm
 
-    /// Adds to x the correction for the residual r = b - A x and leaves in r what remains by the recurrence. Stops at
-    /// |r| <= bound or after `max_vectors`. Returns the number of applications of the preconditioner.
-    int correct(const Operator& matrix, const Operator& precondition, int max_vectors, double bound, Eigen::VectorXd& r,
-                Eigen::VectorXd& x);
+    /// Adds to x the correction for the residual r = b - A x. Stops where |r| by the recurrence is within the bound or
+    /// after `max_vectors`. Returns the number of applications of the preconditioner.
+    int correct(const Operator& matrix, const Operator& precondition, int max_vectors, const Bound& bound,
+                const Eigen::VectorXd& r, Eigen::VectorXd& x);
 
 private:
     void extend_basis(int n);

@@ -39,7 +39,7 @@ struct SolveGoal {
 
 struct SolveReport {
     bool accepted = false;
-    int refinements = 0; ///< Krylov vectors
+    int refinements = 0; ///< Krylov vectors, each a solution with the factor; the first is the plain solution
 };
 
 /// The four verbs of a backend: analyze, factorize, update, solve. The symbolic analysis is repeated only when
@@ -69,7 +69,7 @@ public:
     /// x = K^-1 b with the last factor and its changes alone; sizes 6 n_blocks.
     void solve(const Eigen::VectorXd& b, Eigen::VectorXd& x);
 
-    /// The same, refined against `matrix` until the goal is reached or `max_refinements` are used up.
+    /// The same, refined against `matrix` until the goal is reached or `max_refinements` Krylov vectors are used up.
     SolveReport solve(const BlockMatrix& matrix, const Eigen::VectorXd& b, const SolveGoal& goal, int max_refinements,
                       Eigen::VectorXd& x);
 

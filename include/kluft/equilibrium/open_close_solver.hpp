@@ -1,6 +1,8 @@
 // Open-close iteration: Newton's method on the one residual, with contact states following from the displacements.
 #pragma once
 
+#include <array>
+
 #include <Eigen/Core>
 
 #include "kluft/assembly/block_matrix.hpp"
@@ -87,6 +89,7 @@ private:
     Eigen::VectorXd prescribed_, right_side_, increment_, position_, scratch_;
     Eigen::VectorXd travel_;                                ///< motion for unit travel of a platen under a given force
     Eigen::VectorXd travel_column_, travel_row_, response_; ///< its column and row of the stiffness
+    std::array<std::vector<int>, 4> restless_;              ///< blocks, of each of the last iterations
     std::vector<int> limited_;                              ///< blocks whose motion limited the last increment
     Eigen::VectorXd full_step_forces_;                      ///< residual at the end of the last full increment
 };
