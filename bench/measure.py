@@ -318,7 +318,8 @@ def job_rows(jobs):
 
 def shares_table(summary, shares):
     small = {"detection", "set_up", "assembly", "crack_check", "output"}
-    rows = [[name.replace("_", " "), judged(100.0 * share, 5.0 if name in small else None)]
+    target = 5.0 if summary["blocks"] >= 50000 else None
+    rows = [[name.replace("_", " "), judged(100.0 * share, target if name in small else None)]
             for name, share in sorted(shares.items(), key=lambda item: -item[1])]
     head = f"part of a load step, {grouped(summary['blocks'])} blocks, {summary['open_close_iterations']} iterations"
     return table([head, "%"], rows)
