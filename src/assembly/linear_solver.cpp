@@ -75,7 +75,7 @@ LinearSolver::LinearSolver() : backend_(std::make_unique<Backend>()) {}
 LinearSolver::~LinearSolver() = default;
 
 void LinearSolver::analyze(const BlockPattern& pattern) {
-    take_blas_work_space();
+    prepare_blas();
     Backend& k = *backend_;
     const Stopwatch watch(k.statistics.analyze_seconds);
     k.position = elimination_order(pattern);

@@ -9,11 +9,11 @@ void solve_lower_triangle(int n, int width, const double* l, int ldl, double* x,
 /// C := A B; A is m x k, B is k x n.
 void multiply(int m, int n, int k, const double* a, int lda, const double* b, int ldb, double* c, int ldc);
 
-/// The BLAS maps its work space at its first use and tries for ever where the system refuses it: takes it now.
-/// Throws ResourceError out of memory.
-void take_blas_work_space();
+/// To be called before the first use. The BLAS maps its work space then and tries for ever where the system refuses it:
+/// takes it now. Leaves all threads to the BLAS. Throws ResourceError out of memory.
+void prepare_blas();
 
-/// Number of threads of the BLAS (OpenBLAS) and of CHOLMOD for the whole process.
+/// Number of threads of the BLAS (OpenBLAS) for the whole process.
 void set_blas_threads(int n_threads);
 
 } // namespace kluft
