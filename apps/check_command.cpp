@@ -67,19 +67,29 @@ void print_stiffness(const Scene& scene, const Model& model) {
     }
 }
 
-/// Measured, see "Memory" in docs/theory.md.
-void print_memory(const Scene& scene, const BlockSystem& system) {
-    constexpr double program_bytes = 26e6;
-    constexpr double bytes_per_block = 22e3;
-    constexpr double pictures_bytes = 45e6; // the program and its pictures, which are drawn when the factor is gone
+/// Largest memory of a run with a factor of so many bytes, fitted to measured ones: "Memory" in docs/theory.md.
+double estimated_memory(const Scene& scene, const Model& model, double factor) {
+    constexpr double program = 28e6;
+    constexpr double per_block = 7.4e3;
+    constexpr double per_fracture = 2.2e3; // interface that is no bond
+    constexpr double pictures = 48e6;      // with the program; they are drawn when the factor is gone
+    constexpr double pictures_per_block = 2.6e3;
+    const BlockSystem& system = model.system;
+    const auto n_fractures = std::ranges::count_if(
+        system.interfaces, [&](const Interface& interface) { return model.bonds[interface.interface_type] == 0; });
+    const double run =
+        program + per_block * system.n_blocks() + per_fracture * static_cast<double>(n_fractures) + factor;
+    return scene.output.pictures ? std::max(run, pictures + pictures_per_block * system.n_blocks()) : run;
+}
+
+void print_memory(const Scene& scene, const Model& model) {
     std::vector<std::pair<int, int>> pairs;
-    for (const Interface& interface : system.interfaces) pairs.emplace_back(interface.block_a, interface.block_b);
-    const FactorCost cost = factor_cost(BlockPattern(system.n_blocks(), pairs));
-    const double cholesky_factors = scene.solver.tangent == Tangent::unsymmetric ? 2.35 : 1.0;
-    const double factor = cholesky_factors * cost.bytes;
-    const double run = program_bytes + bytes_per_block * system.n_blocks() + factor;
+    for (const Interface& interface : model.system.interfaces) pairs.emplace_back(interface.block_a, interface.block_b);
+    const FactorCost cost = factor_cost(BlockPattern(model.system.n_blocks(), pairs));
+    const bool unsymmetric_factors = scene.solver.tangent == Tangent::unsymmetric && !scene.solver.reuse;
+    const double factor = (unsymmetric_factors ? 3.0 : 1.0) * cost.bytes;
     fmt::print("memory       about {:.3g} MB, of which the factor {:.3g} MB ({:.3g} flops by Cholesky's method)\n",
-               1e-6 * std::max(run, scene.output.pictures ? pictures_bytes : 0.0), 1e-6 * factor, cost.flops);
+               1e-6 * estimated_memory(scene, model, factor), 1e-6 * factor, cost.flops);
 }
 
 /// A laterally loaded body under a platen is most often a cylinder.
@@ -98,7 +108,7 @@ ExitCode check(const CheckArguments& arguments) {
     print_blocks(scene, built);
     print_cut(built.cut);
     print_stiffness(scene, built.model);
-    print_memory(scene, built.model.system);
+    print_memory(scene, built.model);
     for (const Stage& stage : scene.loads.stages) fmt::print("stage        {}: {} steps\n", stage.name, stage.steps);
     for (const auto* warnings : {&scene.warnings, &built.model.warnings}) {
         for (const auto& warning : *warnings) fmt::print("warning: {}\n", warning);

@@ -11,7 +11,7 @@ namespace {
 
 /// Bytes beyond which the last factor is given up before the next one is prepared, so that it is never held together
 /// with two copies of the matrix. Below, fresh pages would cost more than they are worth.
-constexpr double large_factor = 16e6;
+constexpr double large_factor = 8e6;
 
 } // namespace
 
