@@ -74,7 +74,6 @@ void StiffnessReference::take(const EquilibriumProblem& problem, const Eigen::Ve
     collect(problem, q, reference_);
     bonded_.clear();
     for (const Bond& bond : problem.bonds) bonded_.push_back(bond.interface);
-    eta_ = problem.eta;
     numbers_.clear();
 }
 

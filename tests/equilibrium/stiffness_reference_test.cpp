@@ -133,16 +133,5 @@ TEST(StiffnessReference, PatchKeepsItsNumberAsLongAsTheFactorLives) {
     for (std::size_t i = 0; i < first.size(); ++i) EXPECT_EQ(first[i].patch, second[i].patch);
 }
 
-TEST(StiffnessReference, KnowsTheMassLikeTermOfTheFactor) {
-    CutBody body;
-    const Eigen::VectorXd q = body.moved_above({0.0, -1e-4});
-    body.problem.eta.assign(body.system.blocks.size(), 2.0);
-    StiffnessReference reference;
-    reference.take(body.problem, q);
-    EXPECT_TRUE(reference.has_eta_of(body.problem));
-    body.problem.eta[3] = 16.0;
-    EXPECT_FALSE(reference.has_eta_of(body.problem));
-}
-
 } // namespace
 } // namespace kluft

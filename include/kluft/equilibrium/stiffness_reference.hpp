@@ -23,9 +23,6 @@ public:
     void forget() { taken_ = false; }
     [[nodiscard]] bool taken() const { return taken_; }
 
-    /// True if the mass-like term is that of the factor.
-    [[nodiscard]] bool has_eta_of(const EquilibriumProblem& problem) const { return eta_ == problem.eta; }
-
     /// Changes of the symmetric tangent at q against the factor. Small ones are left out: those of rotations, of the
     /// elastic tangent and of sliding along a contact are for the refinement.
     const std::vector<StiffnessChange>& changes(const EquilibriumProblem& problem, const Eigen::VectorXd& q);
@@ -45,8 +42,7 @@ private:
     bool taken_ = false;
     std::vector<Patch> reference_; ///< sorted by key
     std::vector<int> bonded_;      ///< interfaces that were bonds, ascending
-    std::vector<double> eta_;
-    std::map<Key, long> numbers_; ///< of patches that have changed
+    std::map<Key, long> numbers_;  ///< of patches that have changed
     std::vector<Patch> now_;
     std::vector<StiffnessChange> changes_;
 };
