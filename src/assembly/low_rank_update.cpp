@@ -181,7 +181,7 @@ void LowRankUpdate::extend_gram(const Batch& batch) {
             i += n;
             j += n;
         }
-        gram_.block(batch.first, other.first, width, other.w.cols()) = product.transpose();
+        if (&other != &batch) gram_.block(batch.first, other.first, width, other.w.cols()) = product.transpose();
     }
 }
 

@@ -291,7 +291,8 @@ OpenCloseSummary OpenCloseSolver::solve(const EquilibriumProblem& problem, const
         }
         const bool first = summary.iterations == 0;
         if (held) prescribed_.setZero();
-        if (!find_increment(problem, evaluator, q, first && unloaded ? TangentKind::touching : options_.tangent)) {
+        const bool touching = first && unloaded && !problem.contacts.empty(); // a bonded body has its stiffness
+        if (!find_increment(problem, evaluator, q, touching ? TangentKind::touching : options_.tangent)) {
             summary.termination = Termination::singular;
             return summary;
         }
