@@ -65,27 +65,19 @@ bool LowRankUpdate::set(const std::vector<StiffnessChange>& changes) {
 
     d_.setZero(rank_, rank_);
     changed_ = false;
+    Eigen::MatrixXd small = Eigen::MatrixXd::Identity(rank_, rank_); // I + D G
     for (const StiffnessChange& change : changes) {
         const PatchRows& at = patches_.at(change.patch);
         for (int i = 0; i < change.n_rows; ++i) {
             for (int j = 0; j < change.n_rows; ++j) {
                 if (change.stiffness(i, j) == 0.0) continue;
                 d_(at[i], at[j]) = change.stiffness(i, j);
+                small.row(at[i]).noalias() += change.stiffness(i, j) * gram_.row(at[j]).head(rank_);
                 changed_ = true;
             }
         }
     }
     if (!changed_) return true;
-    Eigen::MatrixXd small = Eigen::MatrixXd::Identity(rank_, rank_);
-    for (const StiffnessChange& change : changes) {
-        const PatchRows& at = patches_.at(change.patch);
-        for (int i = 0; i < change.n_rows; ++i) {
-            for (int j = 0; j < change.n_rows; ++j) {
-                if (change.stiffness(i, j) == 0.0) continue;
-                small.row(at[i]).noalias() += change.stiffness(i, j) * gram_.row(at[j]).head(rank_);
-            }
-        }
-    }
     small_.compute(small);
     const auto pivots = small_.matrixLU().diagonal().cwiseAbs();
     return pivots.allFinite() && pivots.minCoeff() > least_pivot_ratio * pivots.maxCoeff();

@@ -3,12 +3,6 @@
 #include <cmath>
 namespace kluft {
 
-namespace {
-
-const std::array<double, n_bond_points> gauss_positions{0.5 - 0.5 / std::sqrt(3.0), 0.5 + 0.5 / std::sqrt(3.0)};
-
-} // namespace
-
 Bond bond_at(const BlockSystem& system, int i, const Eigen::VectorXd& q, const double* shear) {
     const Interface& interface = system.interfaces[i];
     const Block& block_a = system.blocks[interface.block_a];

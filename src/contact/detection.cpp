@@ -25,7 +25,6 @@ constexpr double same_point = 1e-12;
 constexpr double vertex_weight = 0.2;
 
 /// Gauss-Lobatto: exact for a linear gap on a closed overlap, with points at both corners.
-constexpr std::array<double, 3> lobatto_positions{0.0, 0.5, 1.0};
 constexpr std::array<double, 3> lobatto_weights{1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0};
 
 /// An edge that can touch another block, in its current position.
@@ -123,7 +122,7 @@ public:
         : system_(system), surfaces_(surfaces), q_(q), reach_(reach) {}
 
     /// Makes room for the points of so many overlaps.
-    void expect(std::size_t n_overlaps) { points_.reserve(lobatto_positions.size() * n_overlaps); }
+    void expect(std::size_t n_overlaps) { points_.reserve(overlap_positions.size() * n_overlaps); }
 
     void run(int a, std::span<const CurrentEdge> edges_a, int b, std::span<const CurrentEdge> edges_b) {
         bonded_pair_ = bonded(a, b);
@@ -231,7 +230,7 @@ private:
 
         overlapping_.emplace_back(edge_a.edge, edge_b.edge);
         for (int k = 0; k < 3; ++k) {
-            const double tau = low + lobatto_positions[k] * overlap;
+            const double tau = low + overlap_positions[k] * overlap;
             ContactPoint point = point_between(a, edge_a, tau / extent_a, b, edge_b, 1.0 - (tau - start_b) / extent_b);
             point.weight = lobatto_weights[k] * overlap;
             point.key.point = k;

@@ -209,7 +209,11 @@ bool OpenCloseSolver::update_factor(const EquilibriumProblem& problem, const Eig
 
 bool OpenCloseSolver::renew_factor(const EquilibriumProblem& problem, EquilibriumEvaluator& evaluator,
                                    const Eigen::VectorXd& q) {
-    assemble(problem, evaluator, q, TangentKind::symmetric);
+    {
+        const Stopwatch watch(assembly_seconds_);
+        evaluator.tangent(q, TangentKind::symmetric, matrix_);
+        problem.constraints.project(matrix_, typical_diagonal(matrix_));
+    }
     reference_.forget();
     if (!linear_solver_.factorize(std::move(matrix_), Factorization::cholesky)) return false;
     reference_.take(problem, q);

@@ -12,7 +12,6 @@ namespace kluft {
 namespace {
 
 constexpr double least_change = 0.02; ///< of the largest stiffness of the patch
-constexpr std::array<double, 3> place_in_overlap{0.0, 0.5, 1.0};
 
 void set_rows(const ContactPoint& point, const Constraints& constraints, int first, StiffnessChange& change) {
     const std::array<Vec2, 2> directions{point.normal, point.tangent};
@@ -36,8 +35,7 @@ void add_at(double s, const Mat2& stiffness, Eigen::Matrix4d& ends) {
 
 } // namespace
 
-StiffnessReference::Key StiffnessReference::key_of(const ContactPoint& point) {
-    const ContactKey& k = point.key;
+StiffnessReference::Key StiffnessReference::key_of(const ContactKey& k) {
     return {k.block_a, k.edge_a, k.block_b, k.edge_b, k.point < 0 ? 1 : 0};
 }
 
@@ -47,7 +45,7 @@ void StiffnessReference::collect(const EquilibriumProblem& problem, const Eigen:
     patches.clear();
     for (int i = 0; i < static_cast<int>(problem.contacts.size()); ++i) {
         const ContactPoint& point = problem.contacts[i];
-        const Key key = key_of(point);
+        const Key key = key_of(point.key);
         if (patches.empty() || patches.back().key != key) {
             Patch patch;
             patch.key = key;
@@ -65,7 +63,7 @@ void StiffnessReference::collect(const EquilibriumProblem& problem, const Eigen:
             continue;
         }
         if (point.key.point != 1) set_rows(point, problem.constraints, point.key.point, patch.change);
-        add_at(place_in_overlap[point.key.point], stiffness, patch.change.stiffness);
+        add_at(overlap_positions[point.key.point], stiffness, patch.change.stiffness);
     }
 }
 
@@ -90,14 +88,10 @@ void StiffnessReference::add_broken_bonds(const EquilibriumProblem& problem) {
         const Edge& edge = problem.system->blocks[interface.block_a].edges[interface.edge_a];
         const double length = (edge_end(*problem.system, edge) - edge_start(*problem.system, edge)).norm();
         Patch patch;
-        patch.key = interface.block_a < interface.block_b
-                        ? Key{interface.block_a, interface.edge_a, interface.block_b, interface.edge_b, 0}
-                        : Key{interface.block_b, interface.edge_b, interface.block_a, interface.edge_a, 0};
+        patch.key = key_of(key_of_own_edges(interface, 0));
         patch.scale = length * law.normal_stiffness;
-        const Mat2 stiffness = length * Eigen::Vector2d(law.normal_stiffness, law.shear_stiffness).asDiagonal();
-        for (const double s : {0.5 - 0.5 / std::sqrt(3.0), 0.5 + 0.5 / std::sqrt(3.0)}) {
-            add_at(s, 0.5 * stiffness, patch.change.stiffness);
-        }
+        const Mat2 stiffness = length * bond_traction(law, 0.0, 0.0, 0.0).tangent;
+        for (const double s : gauss_positions) add_at(s, stiffness / n_bond_points, patch.change.stiffness);
         reference_.push_back(patch);
     }
     bonded_ = std::move(bonded);

@@ -246,7 +246,7 @@ template <class Members, class Visit> void visit_members(Members& state, Visit&&
     visit("unbalanced_ratio", state.unbalanced_ratio);
     visit("unbalanced_in_succession", state.unbalanced_in_succession);
     visit("displacement_rate", state.displacement_rate);
-    visit("calming", state.calming);
+    visit("viscosity_factor", state.viscosity_factor);
     visit("near_pairs", state.near_pairs);
     visit("costs", state.costs);
 }

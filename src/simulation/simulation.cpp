@@ -313,7 +313,8 @@ private:
         const bool needs_mass = separated || !is_held(model_.system, bonded_, problem_.constraints);
         if (needs_mass && options_.viscosity > 0.0) {
             problem_.eta.assign(model_.system.blocks.size(), eta_of(options_.viscosity));
-            for (std::size_t b = 0; b < work_.calming.size(); ++b) problem_.eta[b] *= work_.calming[b];
+            for (std::size_t b = 0; b < work_.viscosity_factor.size(); ++b)
+                problem_.eta[b] *= work_.viscosity_factor[b];
         }
     }
 
@@ -372,7 +373,7 @@ private:
         report_.costs.open_close_iterations += trial.summary.iterations;
         last_worst_block_ = trial.summary.worst_block;
         if (trial.converged()) balance(trial);
-        if (trial.balanced && trial.summary.iterations <= easy_iterations) decay(work_.calming);
+        if (trial.balanced && trial.summary.iterations <= easy_iterations) decay(work_.viscosity_factor);
         notify_progress(load_factor);
         return trial;
     }
@@ -403,7 +404,7 @@ private:
     /// that stop the iteration and falls again as they come to rest.
     Trial relax(double load_factor, const std::vector<int>& restless) {
         ++report_.costs.relaxations;
-        std::vector<double> factor = work_.calming;
+        std::vector<double> factor = work_.viscosity_factor;
         factor.resize(model_.system.blocks.size(), 1.0);
         (void)grow_eta(restless, factor);
         Trial last; // that converged
@@ -432,7 +433,7 @@ private:
             if (!trial.converged()) trial.viscous_share += trial.summary.residual_ratio;
             trial.balanced = trial.viscous_share <= options_.balance;
             if (trial.balanced) {
-                work_.calming = factor;
+                work_.viscosity_factor = factor;
                 return trial;
             }
             commit(trial, work_.load_factor);
@@ -589,12 +590,10 @@ private:
         const bool tension = candidate.index.tension_governs;
         work_.interfaces[i] = tension ? InterfaceStatus::tension_crack : InterfaceStatus::shear_crack;
         const bool ordered = interface.block_a < interface.block_b;
-        for (int point = 0; point < 3; ++point) {
-            const double along_a = 0.5 * point;
+        for (int point = 0; point < static_cast<int>(overlap_positions.size()); ++point) {
+            const double along_a = overlap_positions[point];
             ContactMemory memory;
-            memory.key =
-                ordered ? ContactKey{interface.block_a, interface.edge_a, interface.block_b, interface.edge_b, point}
-                        : ContactKey{interface.block_b, interface.edge_b, interface.block_a, interface.edge_a, point};
+            memory.key = key_of_own_edges(interface, point);
             memory.history.shear_trial =
                 bond_shear_at(&work_.bond_shear[n_bond_points * i], ordered ? along_a : 1.0 - along_a);
             work_.contacts.push_back(memory);

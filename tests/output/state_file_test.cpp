@@ -35,7 +35,7 @@ State state_of(int n_blocks) {
     state.unbalanced_ratio = 3e-4;
     state.unbalanced_in_succession = 2;
     state.displacement_rate = 3.0 * state.displacement;
-    state.calming.assign(static_cast<std::size_t>(n_blocks), 16.0);
+    state.viscosity_factor.assign(static_cast<std::size_t>(n_blocks), 16.0);
     state.near_pairs = {{0, 3}, {2, 1}};
     state.costs = {179, 180, 2, 150, 40, 2000, 3, 5, 12.5, {1, 2, 3, 4, 5, 6, 7, 8, 9}};
     return state;
@@ -63,7 +63,7 @@ void expect_same(const State& a, const State& b) {
     EXPECT_EQ(a.unbalanced_ratio, b.unbalanced_ratio);
     EXPECT_EQ(a.unbalanced_in_succession, b.unbalanced_in_succession);
     EXPECT_EQ(a.displacement_rate, b.displacement_rate);
-    EXPECT_EQ(a.calming, b.calming);
+    EXPECT_EQ(a.viscosity_factor, b.viscosity_factor);
     EXPECT_EQ(a.near_pairs, b.near_pairs);
     EXPECT_EQ(a.costs.open_close_iterations, b.costs.open_close_iterations);
     EXPECT_EQ(a.costs.factorizations, b.costs.factorizations);

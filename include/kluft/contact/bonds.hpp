@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 
 #include <Eigen/Core>
 
@@ -13,6 +14,7 @@
 namespace kluft {
 
 inline constexpr int n_bond_points = 2; ///< Gauss points per bonded edge
+inline const std::array<double, n_bond_points> gauss_positions{0.5 - 0.5 / std::sqrt(3.0), 0.5 + 0.5 / std::sqrt(3.0)};
 
 /// A bonded interface: its two Gauss points in one frame that stays fixed during a solve, so that its traction is linear
 /// in the unknowns.

@@ -1,10 +1,12 @@
 // Identity, frame and memory of contact points.
 #pragma once
 
+#include <array>
 #include <compare>
 
 #include <Eigen/Core>
 
+#include "kluft/blocks/block_system.hpp"
 #include "kluft/constitutive/interface_law.hpp"
 #include "kluft/core/vector.hpp"
 #include "kluft/kinematics/affine.hpp"
@@ -22,6 +24,15 @@ struct ContactKey {
 
     auto operator<=>(const ContactKey&) const = default;
 };
+
+/// Where the points 0, 1, 2 stand in an overlap: Lobatto's rule.
+inline constexpr std::array<double, 3> overlap_positions{0.0, 0.5, 1.0};
+
+/// Key of a point of an interface's own two edges, the lower block first.
+[[nodiscard]] inline ContactKey key_of_own_edges(const Interface& i, int point) {
+    return i.block_a < i.block_b ? ContactKey{i.block_a, i.edge_a, i.block_b, i.edge_b, point}
+                                 : ContactKey{i.block_b, i.edge_b, i.block_a, i.edge_a, point};
+}
 
 struct ContactMemory {
     ContactKey key;

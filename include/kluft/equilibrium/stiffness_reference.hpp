@@ -35,7 +35,7 @@ private:
         StiffnessChange change;
     };
 
-    static Key key_of(const ContactPoint& point);
+    static Key key_of(const ContactKey& k);
     static void collect(const EquilibriumProblem& problem, const Eigen::VectorXd& q, std::vector<Patch>& patches);
     void add_broken_bonds(const EquilibriumProblem& problem);
 

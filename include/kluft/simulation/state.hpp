@@ -39,7 +39,7 @@ struct State {
     int unbalanced_in_succession = 0;
     Eigen::VectorXd displacement_rate; ///< per unit of load factor, of a smooth last step; empty without one
     std::vector<double>
-        calming; ///< factor of the mass-like term per block since the last relaxation; empty: 1 everywhere
+        viscosity_factor; ///< factor of the mass-like term per block since the last relaxation; empty: 1 everywhere
     std::vector<std::pair<int, int>>
         near_pairs; ///< blocks that the matrix was ordered for, besides those at interfaces
     RunCosts costs; ///< so far
