@@ -215,7 +215,7 @@ bool OpenCloseSolver::renew_factor(const EquilibriumProblem& problem, Equilibriu
         problem.constraints.project(matrix_, typical_diagonal(matrix_));
     }
     reference_.forget();
-    if (!linear_solver_.factorize(std::move(matrix_), Factorization::cholesky)) return false;
+    if (!linear_solver_.factorize(std::move(matrix_), Factorization::rounded_cholesky)) return false;
     reference_.take(problem, q);
     analysis_of_factor_ = linear_solver_.statistics().analyses;
     fresh_refinements_ = -1;
