@@ -214,9 +214,11 @@ bool OpenCloseSolver::renew_factor(const EquilibriumProblem& problem, Equilibriu
         evaluator.tangent(q, TangentKind::symmetric, matrix_);
         problem.constraints.project(matrix_, typical_diagonal(matrix_));
     }
-    reference_.forget();
-    if (!linear_solver_.factorize(std::move(matrix_), Factorization::rounded_cholesky)) return false;
-    reference_.take(problem, q);
+    reference_.take(problem, q, matrix_);
+    if (!linear_solver_.factorize(std::move(matrix_), Factorization::rounded_cholesky)) {
+        reference_.forget();
+        return false;
+    }
     analysis_of_factor_ = linear_solver_.statistics().analyses;
     fresh_refinements_ = -1;
     excess_refinements_ = 0;
