@@ -135,7 +135,7 @@ void CholeskyFactor::analyze(const BlockPattern& pattern, const std::vector<int>
 }
 
 void CholeskyFactor::gather(const BlockMatrix& matrix) {
-    if (cost().bytes >= large_factor) forget();
+    if (is_large()) forget();
     columns_.gather(matrix);
 }
 
@@ -205,6 +205,8 @@ const double* CholeskyFactor::values(const Supernode& supernode, std::vector<dou
     room.assign(first, first + static_cast<std::ptrdiff_t>(supernode.n_rows) * supernode.n_columns);
     return room.data();
 }
+
+bool CholeskyFactor::is_large() const { return cost().bytes >= large_factor; }
 
 FactorCost CholeskyFactor::cost() const {
     const cholmod_common& common = cholmod_->common;

@@ -45,6 +45,7 @@ struct LinearSolver::Backend {
             lu.gather(matrix);
         } else {
             lu.forget();
+            if (cholesky.is_large()) gmres.release();
             cholesky.gather(matrix);
         }
     }

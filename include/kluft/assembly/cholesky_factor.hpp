@@ -55,6 +55,8 @@ public:
     void solve_upper(std::vector<double>& x);
 
     [[nodiscard]] FactorCost cost() const;
+    /// Whether the factor is so large that memory is given up for it, rather than taken anew afterwards.
+    [[nodiscard]] bool is_large() const;
 
     [[nodiscard]] int n_supernodes() const { return static_cast<int>(parent_.size()); }
     [[nodiscard]] Supernode supernode(int k) const;
