@@ -15,6 +15,8 @@ void dtrsm_(const char* side, const char* uplo, const char* trans, const char* d
 void dgemm_(const char* trans_a, const char* trans_b, const int* m, const int* n, const int* k, const double* alpha,
             const double* a, const int* lda, const double* b, const int* ldb, const double* beta, double* c,
             const int* ldc);
+void dgemv_(const char* trans, const int* m, const int* n, const double* alpha, const double* a, const int* lda,
+            const double* x, const int* incx, const double* beta, double* y, const int* incy);
 }
 // NOLINTEND(readability-identifier-naming)
 
@@ -29,6 +31,20 @@ void multiply(int m, int n, int k, const double* a, int lda, const double* b, in
     const double one = 1.0;
     const double zero = 0.0;
     dgemm_("N", "N", &m, &n, &k, &one, a, &lda, b, &ldb, &zero, c, &ldc);
+}
+
+void multiply_transposed(int m, int n, const double* a, int lda, const double* x, double* y) {
+    const double one = 1.0;
+    const double zero = 0.0;
+    const int next = 1;
+    dgemv_("T", &m, &n, &one, a, &lda, x, &next, &zero, y, &next);
+}
+
+void multiply(int m, int n, const double* a, int lda, const double* x, double* y) {
+    const double one = 1.0;
+    const double zero = 0.0;
+    const int next = 1;
+    dgemv_("N", &m, &n, &one, a, &lda, x, &next, &zero, y, &next);
 }
 
 void prepare_blas() {

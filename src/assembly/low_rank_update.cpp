@@ -180,25 +180,27 @@ void LowRankUpdate::extend_gram(const Batch& batch) {
 
 void LowRankUpdate::apply(std::vector<double>& z) {
     if (!changed_) return;
-    t_.setZero(rank_);
+    t_.resize(rank_);
     for (const Batch& batch : batches_) {
-        auto t = t_.segment(batch.first, batch.w.cols());
+        const int length = static_cast<int>(batch.w.rows());
+        packed_.resize(length);
         for (std::size_t s = 0; s < batch.supernodes.size(); ++s) {
-            const int length = batch.offsets[s + 1] - batch.offsets[s];
-            const auto first = factor_->supernode(batch.supernodes[s]).first_column;
-            t.noalias() += batch.w.middleRows(batch.offsets[s], length).transpose() *
-                           Eigen::Map<const Eigen::VectorXd>(z.data() + first, length);
+            std::copy_n(z.data() + factor_->supernode(batch.supernodes[s]).first_column,
+                        batch.offsets[s + 1] - batch.offsets[s], packed_.begin() + batch.offsets[s]);
         }
+        multiply_transposed(length, static_cast<int>(batch.w.cols()), batch.w.data(), length, packed_.data(),
+                            t_.data() + batch.first);
     }
     y_.noalias() = d_ * t_;
     y_ = small_.solve(y_);
     for (const Batch& batch : batches_) {
-        const auto y = y_.segment(batch.first, batch.w.cols());
+        const int length = static_cast<int>(batch.w.rows());
+        packed_.resize(length);
+        multiply(length, static_cast<int>(batch.w.cols()), batch.w.data(), length, y_.data() + batch.first,
+                 packed_.data());
         for (std::size_t s = 0; s < batch.supernodes.size(); ++s) {
-            const int length = batch.offsets[s + 1] - batch.offsets[s];
-            const auto first = factor_->supernode(batch.supernodes[s]).first_column;
-            Eigen::Map<Eigen::VectorXd>(z.data() + first, length).noalias() -=
-                batch.w.middleRows(batch.offsets[s], length) * y;
+            double* const at = z.data() + factor_->supernode(batch.supernodes[s]).first_column;
+            for (int i = batch.offsets[s]; i < batch.offsets[s + 1]; ++i) at[i - batch.offsets[s]] -= packed_[i];
         }
     }
 }

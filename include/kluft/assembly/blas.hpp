@@ -9,6 +9,10 @@ void solve_lower_triangle(int n, int width, const double* l, int ldl, double* x,
 /// C := A B; A is m x k, B is k x n.
 void multiply(int m, int n, int k, const double* a, int lda, const double* b, int ldb, double* c, int ldc);
 
+/// y := A' x and y := A x; A is m x n.
+void multiply_transposed(int m, int n, const double* a, int lda, const double* x, double* y);
+void multiply(int m, int n, const double* a, int lda, const double* x, double* y);
+
 /// To be called before the first use. The BLAS maps its work space then and tries for ever where the system refuses it:
 /// takes it now. Leaves all threads to the BLAS. Throws ResourceError out of memory.
 void prepare_blas();

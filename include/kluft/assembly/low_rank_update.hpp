@@ -78,6 +78,7 @@ private:
     std::vector<int> packed_of_; ///< per supernode of the batch in work
     Eigen::MatrixXd below_;
     std::vector<double> values_; ///< of one supernode
+    std::vector<double> packed_; ///< along the path of a batch
 };
 
 } // namespace kluft
