@@ -167,7 +167,7 @@ void OpenCloseSolver::assemble(const EquilibriumProblem& problem, EquilibriumEva
         right_side_ -= scratch_;
     }
     problem.constraints.project(right_side_);
-    problem.constraints.project(matrix_, typical_diagonal(matrix_));
+    project(problem.constraints, matrix_, typical_diagonal(matrix_));
 }
 
 /// increment_ and response_ by a factorization of the assembled matrix.
@@ -212,7 +212,7 @@ bool OpenCloseSolver::renew_factor(const EquilibriumProblem& problem, Equilibriu
     {
         const Stopwatch watch(assembly_seconds_);
         evaluator.tangent(q, TangentKind::symmetric, matrix_);
-        problem.constraints.project(matrix_, typical_diagonal(matrix_));
+        project(problem.constraints, matrix_, typical_diagonal(matrix_));
     }
     reference_.forget();
     if (!linear_solver_.factorize(std::move(matrix_), Factorization::cholesky)) return false;

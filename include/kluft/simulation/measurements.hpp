@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "kluft/equilibrium/equilibrium_problem.hpp"
+#include "kluft/loading/loaded_body.hpp"
 #include "kluft/fracture/crack_check.hpp"
 #include "kluft/simulation/model.hpp"
 #include "kluft/simulation/state.hpp"
@@ -34,7 +34,7 @@ struct Strains {
 
 /// Mean normal stress on a boundary: its pressure, or the support's reaction over the current length (Pa).
 /// `residual` = internal - external forces without the supports'.
-[[nodiscard]] double boundary_stress(const EquilibriumProblem& problem, const Eigen::VectorXd& residual, int boundary,
+[[nodiscard]] double boundary_stress(const LoadedBody& body, const Eigen::VectorXd& residual, int boundary,
                                      bool held, double current_length, const Vec2& normal);
 
 /// Contact states by interface and further touching pairs, each counted once by its worst point.
@@ -43,13 +43,13 @@ struct ContactCounts {
     int sliding = 0;
     int locked = 0;
 };
-[[nodiscard]] ContactCounts count_contacts(const Model& model, const State& state, const EquilibriumProblem& problem,
+[[nodiscard]] ContactCounts count_contacts(const Model& model, const State& state, const LoadedBody& body,
                                            const Eigen::VectorXd& q);
 
 /// Tractions of the bonded interfaces, mean of their points (Pa); zero for the others.
-[[nodiscard]] std::vector<InterfaceTraction> bond_tractions(const Model& model, const EquilibriumProblem& problem,
+[[nodiscard]] std::vector<InterfaceTraction> bond_tractions(const Model& model, const LoadedBody& body,
                                                             const Eigen::VectorXd& q);
 
-[[nodiscard]] FieldRecord field_record(const Model& model, const State& state, const EquilibriumProblem& problem);
+[[nodiscard]] FieldRecord field_record(const Model& model, const State& state, const LoadedBody& body);
 
 } // namespace kluft

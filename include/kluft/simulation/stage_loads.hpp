@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "kluft/equilibrium/boundary_terms.hpp"
+#include "kluft/loading/boundary_loads.hpp"
 #include "kluft/simulation/model.hpp"
 #include "kluft/simulation/state.hpp"
 
