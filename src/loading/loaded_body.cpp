@@ -32,8 +32,7 @@ public:
             if (!body.densities.empty()) {
                 const Vec2 weight = body.densities[block.material] * block.area * body.gravity;
                 result_.forces.segment<2>(n_block_unknowns * b) -= weight;
-                if constexpr (with_magnitudes)
-                    result_.magnitudes.segment<2>(n_block_unknowns * b) += weight.cwiseAbs();
+                if constexpr (with_magnitudes) result_.magnitudes.segment<2>(n_block_unknowns * b) += weight.cwiseAbs();
             }
         }
     }

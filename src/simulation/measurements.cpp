@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "kluft/kinematics/affine.hpp"
-#include "kluft/simulation/stage_loads.hpp"
 
 namespace kluft {
 
@@ -77,14 +76,7 @@ Strains measure_strains(const Model& model, const Gauges& gauges, const Eigen::V
     return strains;
 }
 
-double boundary_stress(const LoadedBody& body, const Eigen::VectorXd& residual, int boundary, bool held,
-                       double current_length, const Vec2& normal) {
-    if (!held) return body.pressures[boundary];
-    return -normal.dot(body.constraints.reaction(residual, boundary)) / current_length;
-}
-
-ContactCounts count_contacts(const Model& model, const State& state, const LoadedBody& body,
-                             const Eigen::VectorXd& q) {
+ContactCounts count_contacts(const Model& model, const State& state, const LoadedBody& body, const Eigen::VectorXd& q) {
     ContactCounts counts;
     const auto add = [&](ContactState worst) {
         ++(worst == ContactState::open ? counts.open : worst == ContactState::sliding ? counts.sliding : counts.locked);
@@ -118,8 +110,7 @@ ContactCounts count_contacts(const Model& model, const State& state, const Loade
     return counts;
 }
 
-std::vector<InterfaceTraction> bond_tractions(const Model& model, const LoadedBody& body,
-                                              const Eigen::VectorXd& q) {
+std::vector<InterfaceTraction> bond_tractions(const Model& model, const LoadedBody& body, const Eigen::VectorXd& q) {
     std::vector<InterfaceTraction> tractions(model.system.interfaces.size());
     for (const Bond& bond : body.bonds) {
         for (int k = 0; k < n_bond_points; ++k) {
@@ -129,6 +120,38 @@ std::vector<InterfaceTraction> bond_tractions(const Model& model, const LoadedBo
         }
     }
     return tractions;
+}
+
+StepRecord measure_step(const Model& model, const Gauges& gauges, const State& state, const LoadedBody& body,
+                        const StageLoads& loads, const Eigen::VectorXd& q, const Eigen::VectorXd& forces) {
+    StepRecord record;
+    record.step = state.step + 1;
+    record.stage = state.stage;
+    record.load_factor = state.load_factor;
+    const Strains strains = measure_strains(model, gauges, q, state.reference_displacement);
+    const Strains total = measure_strains(model, gauges, q, Eigen::VectorXd());
+    record.axial_strain = strains.axial;
+    record.lateral_strain = strains.lateral;
+    record.volumetric_strain = strains.axial + strains.lateral;
+    const auto stress_on = [&](int boundary, double length, const Vec2& normal) {
+        return boundary_stress(body, forces, boundary, loads.is_held(boundary), length, normal);
+    };
+    if (gauges.moved >= 0) {
+        const double width = gauges.width * (1.0 - total.lateral);
+        record.axial_stress = stress_on(gauges.moved, width, gauges.axial_normal);
+    }
+    for (const int side : gauges.lateral) {
+        const double height = gauges.length * (1.0 - total.axial);
+        record.lateral_stress += 0.5 * stress_on(side, height, boundary_frame(model.system, side).normal);
+    }
+    record.differential_stress = record.axial_stress - record.lateral_stress;
+    record.cracks_tension = static_cast<int>(std::ranges::count(state.interfaces, InterfaceStatus::tension_crack));
+    record.cracks_shear = static_cast<int>(std::ranges::count(state.interfaces, InterfaceStatus::shear_crack));
+    const auto counts = count_contacts(model, state, body, q);
+    record.open = counts.open;
+    record.sliding = counts.sliding;
+    record.locked = counts.locked;
+    return record;
 }
 
 FieldRecord field_record(const Model& model, const State& state, const LoadedBody& body) {
