@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "kluft/reference/explicit_simulation.hpp"
 #include "kluft/scene/scene_model.hpp"
 #include "kluft/scene/scene_reader.hpp"
 #include "kluft/simulation/simulation.hpp"
@@ -43,6 +44,11 @@ inline SceneRun run_scene(const std::string& text, const std::vector<std::string
     run.state = initial_state(run.model);
     RecordingObserver observer(run);
     const std::atomic<bool> stop{false};
+    if (run.scene.integrator == Integrator::explicit_) {
+        run.report = run_explicit(run.model, run.scene.cracks, run.scene.solver, run.scene.explicit_options, run.state,
+                                  observer, stop);
+        return run;
+    }
     run.report = run_simulation(run.model, run.scene.cracks, run.scene.solver, run.state, observer, stop);
     return run;
 }
