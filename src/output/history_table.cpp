@@ -51,6 +51,7 @@ void visit_columns(Record& record, Visit&& visit) {
     visit("friction_energy", record.friction_energy);
     visit("damping_energy", record.damping_energy);
     visit("crack_energy", record.crack_energy);
+    visit("detection_energy", record.detection_energy);
     visit("energy_error", record.energy_error);
 }
 

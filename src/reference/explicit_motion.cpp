@@ -46,10 +46,13 @@ auto of_block(const Eigen::VectorXd& v, int block) { return v.segment<n_block_un
 } // namespace
 
 double EnergyBalance::error() const {
-    const double become = strain_energy() + kinetic_energy + friction_energy + damping_energy + crack_energy;
+    double become = 0.0;
     double largest = std::abs(external_work);
-    for (const double term : {strain_energy(), kinetic_energy, friction_energy, damping_energy, crack_energy})
+    for (const double term : {block_energy, spring_energy, kinetic_energy, friction_energy, damping_energy,
+                              crack_energy, detection_energy}) {
+        become += term;
         largest = std::max(largest, std::abs(term));
+    }
     return largest > 0.0 ? (external_work - become) / largest : 0.0;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <new>
 #include <optional>
 #include <utility>
@@ -27,7 +28,8 @@ constexpr double crossings_per_step = 10.0; ///< of the body by a wave, while th
 constexpr double crossings_per_stage = 100.0;
 constexpr double longest_wait = 20.0;     ///< of the time in which the load moves
 constexpr double slowest_load = 0.02;     ///< of its usual rate
-constexpr double tolerated_force = 3.0;   ///< of `balance`: unbalanced force at which the load slows down
+constexpr double reference_balance = 0.1; ///< of `balance`: what a load step waits for, so as to be a reference
+constexpr double tolerated_force = 0.3;   ///< of `balance`: unbalanced force at which the load slows down
 constexpr double detection_motion = 5e-3; ///< of a block between two detections, in lattice spacings
 constexpr double wildest_motion = 0.1;    ///< of a block in one time step, in lattice spacings
 constexpr double collapse_motion = 0.5;   ///< of a block in one load step that is loaded by stress, in lattice spacings
@@ -109,7 +111,7 @@ private:
             loads_.emplace(enter_stage(model_, work_));
             motion_.body().constraints = loads_->constraints();
             motion_.body().pressure_edges = loads_->edges();
-            detect();
+            motion_.add_detection_energy(detect());
             if (work_.step == 0 && work_.stage == 0) report_initial_state();
             while (work_.step_in_stage < stage.steps) load_step();
         }
@@ -221,9 +223,10 @@ private:
     }
 
     void wait(double longest) {
+        const double balance = reference_balance * solver_.balance;
         for (double passed = 0.0; passed < longest; passed += motion_.time_step()) {
             advance();
-            if (time_steps_ % watch_interval == 0 && force_ratio() <= solver_.balance && is_at_rest()) return;
+            if (time_steps_ % watch_interval == 0 && force_ratio() <= balance && is_at_rest(balance)) return;
         }
     }
 
@@ -240,8 +243,8 @@ private:
 
     [[nodiscard]] double force_ratio() const { return motion_.unbalanced_force() / std::max(force_scale_, 1e-300); }
 
-    /// Kinetic energy is that of an oscillation whose forces are `balance` of the elastic ones, or less.
-    [[nodiscard]] bool is_at_rest() { return kinetic_ratio(motion_.energies()) <= solver_.balance * solver_.balance; }
+    /// Kinetic energy is that of an oscillation whose forces are this part of the elastic ones, or less.
+    [[nodiscard]] bool is_at_rest(double balance) { return kinetic_ratio(motion_.energies()) <= balance * balance; }
 
     static double kinetic_ratio(const EnergyBalance& energy) {
         return energy.kinetic_energy / std::max(energy.strain_energy(), 1e-300);
@@ -249,8 +252,7 @@ private:
 
     void watch_motion() {
         if (stop_) throw Interrupted{};
-        force_scale_ = std::max(force_scale_, 1e-300);
-        if (time_steps_ % (10 * watch_interval) == 0 || force_scale_ <= 1e-300)
+        if (time_steps_ % (10 * watch_interval) == 0 || force_scale_ == 0.0)
             force_scale_ = motion_.evaluate().magnitudes.norm();
         load_rate_ = std::clamp(tolerated_force * solver_.balance / std::max(force_ratio(), 1e-300), slowest_load, 1.0);
         const double spacing = model_.system.spacing;
@@ -262,7 +264,7 @@ private:
             throw Failure{"the body falls or flows", true};
         if (largest_motion(motion_.displacement() - detected_at_) > detection_motion * spacing) {
             keep_state();
-            detect();
+            motion_.add_detection_energy(detect());
         }
     }
 
@@ -296,15 +298,17 @@ private:
         }
     }
 
-    /// Contacts and frames of the work state.
-    void detect() {
+    /// Contacts and frames of the work state. Returns the elastic energy that the springs lost by that (J/m).
+    double detect() {
         const Stopwatch watch(report_.costs.seconds.detection);
+        const double before = motion_.springs_energy();
         bonded_ = bonded_interfaces(work_);
         place_bonds(model_, work_, motion_.body().bonds);
         motion_.body().contacts = state_contacts(model_, work_).points;
         motion_.restart();
         detected_at_ = motion_.displacement();
         ++report_.detections;
+        return before - motion_.springs_energy();
     }
 
     // ---- cracks ----------------------------------------------------------------------------------------------
@@ -337,9 +341,10 @@ private:
             observer_.crack(record);
         }
         std::ranges::sort(work_.contacts, {}, &ContactMemory::key);
-        detect();
+        const double lost = detect();
         energy -= energy_of_interfaces(broken);
         motion_.add_crack_energy(energy);
+        motion_.add_detection_energy(lost - energy);
     }
 
     /// Elastic energy of the springs of these interfaces, bonded or not.
@@ -375,6 +380,7 @@ private:
         motion.friction_energy = energy.friction_energy;
         motion.damping_energy = energy.damping_energy;
         motion.crack_energy = energy.crack_energy;
+        motion.detection_energy = energy.detection_energy;
         motion.energy_error = energy.error();
         worst_energy_error_ = std::max(worst_energy_error_, std::abs(motion.energy_error));
         record.motion = motion;

@@ -19,7 +19,8 @@ struct EnergyBalance {
     double kinetic_energy = 0.0;
     double friction_energy = 0.0; ///< lost by slip and dilation
     double damping_energy = 0.0;
-    double crack_energy = 0.0; ///< lost when bonds broke
+    double crack_energy = 0.0;     ///< lost when bonds broke
+    double detection_energy = 0.0; ///< lost by springs (gained where negative) when contacts were detected anew
 
     [[nodiscard]] double strain_energy() const { return block_energy + spring_energy; }
     /// External work less all that it has become, over the largest of the terms.
@@ -40,6 +41,10 @@ public:
     void restart();
     /// A bond broke: `energy` is what its springs lost (J/m).
     void add_crack_energy(double energy) { spent_.crack_energy += energy; }
+    /// Springs lost `energy` when contacts were detected anew: overlaps changed, pairs came and went (J/m).
+    void add_detection_energy(double energy) { spent_.detection_energy += energy; }
+    /// Elastic energy of bonds and contacts at the displacements reached (J/m).
+    [[nodiscard]] double springs_energy() const;
 
     /// One time step with the loads of the body.
     void advance();
@@ -74,7 +79,6 @@ private:
     void set_external_forces();
     void accelerate_free_blocks(double interval);
     void accelerate_held_blocks(double interval);
-    [[nodiscard]] double springs_energy() const;
 
     LoadedBody body_;
     std::vector<Mat6> masses_, inverse_masses_;

@@ -12,7 +12,8 @@
 namespace kluft {
 
 /// What an explicit run says of its own quality: further columns of its rows. Energies per metre of thickness (J/m),
-/// summed since the start of the run: external_work = strain + kinetic + friction + damping + crack energy.
+/// summed since the start of the run: external_work = strain + kinetic + friction + damping + crack + detection
+/// energy.
 struct MotionRecord {
     double time_steps = 0.0;       ///< so far
     double kinetic_ratio = 0.0;    ///< kinetic over strain energy
@@ -20,10 +21,11 @@ struct MotionRecord {
     double external_work = 0.0;    ///< of pressures, platens, supports and weight
     double strain_energy = 0.0;    ///< elastic, of blocks and interfaces
     double kinetic_energy = 0.0;
-    double friction_energy = 0.0; ///< lost by slip, dilation included
-    double damping_energy = 0.0;  ///< lost by local damping
-    double crack_energy = 0.0;    ///< lost when potential cracks broke
-    double energy_error = 0.0;    ///< what is missing in the balance over the largest of its terms
+    double friction_energy = 0.0;  ///< lost by slip, dilation included
+    double damping_energy = 0.0;   ///< lost by local damping
+    double crack_energy = 0.0;     ///< lost when potential cracks broke
+    double detection_energy = 0.0; ///< lost (gained: negative) by contacts whose overlap or partner changed
+    double energy_error = 0.0;     ///< what is missing in the balance over the largest of its terms
 };
 
 /// A row of history.csv or equilibria.csv; the members are its columns, in order. Pa and fractions.
