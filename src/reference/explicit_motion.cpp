@@ -13,14 +13,12 @@ namespace kluft {
 
 namespace {
 
-/// Directions in which a held block is free have more than this part of its largest inertia.
-constexpr double least_free_inertia = 1e-12;
-
-/// Pseudo-inverse of P M P.
+/// Pseudo-inverse of P M P, whose eigenvalues in free directions are no less than the smallest of M.
 Mat6 free_mobility(const Mat6& projector, const Mat6& mass) {
     const Mat6 reduced = projector * mass * projector;
     const Eigen::SelfAdjointEigenSolver<Mat6> eigen(0.5 * (reduced + reduced.transpose()));
-    const double least = least_free_inertia * eigen.eigenvalues()[5];
+    const double least =
+        0.5 * Eigen::SelfAdjointEigenSolver<Mat6>(mass, Eigen::EigenvaluesOnly).eigenvalues().minCoeff();
     Mat6 mobility = Mat6::Zero();
     for (int i = 0; i < 6; ++i) {
         const double inertia = eigen.eigenvalues()[i];

@@ -26,10 +26,10 @@ namespace {
 
 constexpr double crossings_per_step = 10.0; ///< of the body by a wave, while the load of a load step moves
 constexpr double crossings_per_stage = 100.0;
-constexpr double longest_wait = 20.0;     ///< of the time in which the load moves
-constexpr double slowest_load = 0.02;     ///< of its usual rate
-constexpr double reference_balance = 0.1; ///< of `balance`: what a load step waits for, so as to be a reference
-constexpr double tolerated_force = 0.3;   ///< of `balance`: unbalanced force at which the load slows down
+constexpr double longest_wait = 20.0; ///< of the time in which the load moves
+constexpr double slowest_load = 0.02; ///< of its usual rate
+constexpr double reference_balance =
+    0.1; ///< of `balance`: a load step slows down above it and waits for it, to be a reference
 constexpr double detection_motion = 5e-3; ///< of a block between two detections, in lattice spacings
 constexpr double wildest_motion = 0.1;    ///< of a block in one time step, in lattice spacings
 constexpr double collapse_motion = 0.5;   ///< of a block in one load step that is loaded by stress, in lattice spacings
@@ -254,7 +254,8 @@ private:
         if (stop_) throw Interrupted{};
         if (time_steps_ % (10 * watch_interval) == 0 || force_scale_ == 0.0)
             force_scale_ = motion_.evaluate().magnitudes.norm();
-        load_rate_ = std::clamp(tolerated_force * solver_.balance / std::max(force_ratio(), 1e-300), slowest_load, 1.0);
+        load_rate_ =
+            std::clamp(reference_balance * solver_.balance / std::max(force_ratio(), 1e-300), slowest_load, 1.0);
         const double spacing = model_.system.spacing;
         const double fastest = largest_motion(motion_.velocity()) * motion_.time_step();
         if (!std::isfinite(motion_.unbalanced_force()) || !(fastest < wildest_motion * spacing))
@@ -424,7 +425,7 @@ private:
         progress.axial_strain = last_record_.axial_strain;
         progress.axial_stress = last_record_.axial_stress;
         progress.cracks = last_record_.cracks_tension + last_record_.cracks_shear;
-        progress.open_close_iterations = 0;
+        progress.open_close_iterations = static_cast<int>(time_steps_); // the work done so far
         observer_.progress(progress);
     }
 
