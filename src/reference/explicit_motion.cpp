@@ -28,12 +28,14 @@ Mat6 free_mobility(const Mat6& projector, const Mat6& mass) {
     return mobility;
 }
 
+/// -1, 0 or 1.
+double sign_of(double x) { return static_cast<double>((x > 0.0) - (x < 0.0)); }
+
 /// -alpha |f| sign(v), component by component.
 Vec6 local_damping(double alpha, const Vec6& force, const Vec6& velocity) {
     Vec6 damping;
     for (int i = 0; i < 6; ++i) {
-        const double sign = velocity[i] > 0.0 ? 1.0 : velocity[i] < 0.0 ? -1.0 : 0.0;
-        damping[i] = -alpha * std::abs(force[i]) * sign;
+        damping[i] = -alpha * std::abs(force[i]) * sign_of(velocity[i]);
     }
     return damping;
 }
@@ -177,8 +179,8 @@ void ExplicitMotion::accelerate_held_blocks(double interval) {
     }
     if (travel_mass_ == 0.0) return;
     unbalanced_ += on_travel * on_travel;
-    const double sign = travel_velocity_ > 0.0 ? 1.0 : travel_velocity_ < 0.0 ? -1.0 : 0.0;
-    travel_velocity_ += interval * (on_travel - damping_ * std::abs(on_travel) * sign) / travel_mass_;
+    const double damping = damping_ * std::abs(on_travel) * sign_of(travel_velocity_);
+    travel_velocity_ += interval * (on_travel - damping) / travel_mass_;
     for (const HeldBlock& hold : holds_) of_block(increment_, hold.block) += travel_velocity_ * hold.travel;
 }
 
