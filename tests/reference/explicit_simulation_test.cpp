@@ -1,7 +1,9 @@
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -225,6 +227,30 @@ TEST(ExplicitSimulation, SameSceneTwiceGivesTheSameBits) {
     const auto second = run_scene(hexagons, {by_steps});
     EXPECT_EQ((first.state.displacement - second.state.displacement).norm(), 0.0);
     EXPECT_EQ(first.report.motion->time_steps, second.report.motion->time_steps);
+}
+
+/// Axial stresses within 3 % of the implicit peak at every load step before it, peaks within 5 %.
+void expect_triaxial_agreement(const std::string& model, std::vector<std::string> overrides) {
+    const std::string file = std::string(KLUFT_SOURCE_DIR) + "/models/triaxial/" + model + ".yaml";
+    const auto reference = run_scene(read_scene(file, overrides));
+    overrides.emplace_back(by_steps);
+    const auto run = run_scene(read_scene(file, overrides));
+    ASSERT_EQ(run.report.status, RunStatus::done) << run.report.diagnosis;
+    ASSERT_EQ(run.history.size(), reference.history.size());
+    const auto by_stress = [](const StepRecord& a, const StepRecord& b) { return a.axial_stress < b.axial_stress; };
+    const auto implicit_peak = std::ranges::max_element(reference.history, by_stress);
+    const double peak = implicit_peak->axial_stress;
+    EXPECT_NEAR(std::ranges::max_element(run.history, by_stress)->axial_stress, peak, 0.05 * peak);
+    const auto n_before = static_cast<std::size_t>(implicit_peak - reference.history.begin());
+    for (std::size_t i = 0; i <= n_before; ++i)
+        EXPECT_NEAR(run.history[i].axial_stress, reference.history[i].axial_stress, 0.03 * peak) << i;
+    expect_closed_energy(run);
+}
+
+TEST(ExplicitSimulation, FracturedSampleFollowsTheImplicitCurve) { expect_triaxial_agreement("case-1", {}); }
+
+TEST(SlowExplicitSimulation, SampleWithPotentialCracksFollowsTheImplicitCurveToItsPeak) {
+    expect_triaxial_agreement("case-3-all", {"stages.1.steps=56", "stages.1.strain.value=0.014"});
 }
 
 } // namespace

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "kluft/reference/explicit_simulation.hpp"
@@ -37,9 +38,9 @@ private:
     SceneRun& run_;
 };
 
-inline SceneRun run_scene(const std::string& text, const std::vector<std::string>& overrides = {}) {
+inline SceneRun run_scene(Scene scene) {
     SceneRun run;
-    run.scene = read_scene_text(text, overrides);
+    run.scene = std::move(scene);
     run.model = build_scene_model(run.scene).model;
     run.state = initial_state(run.model);
     RecordingObserver observer(run);
@@ -51,6 +52,10 @@ inline SceneRun run_scene(const std::string& text, const std::vector<std::string
     }
     run.report = run_simulation(run.model, run.scene.cracks, run.scene.solver, run.state, observer, stop);
     return run;
+}
+
+inline SceneRun run_scene(const std::string& text, const std::vector<std::string>& overrides = {}) {
+    return run_scene(read_scene_text(text, overrides));
 }
 
 } // namespace kluft
