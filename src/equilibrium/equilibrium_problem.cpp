@@ -112,7 +112,7 @@ Mat2 point_tangent(const EquilibriumProblem& problem, const ContactPoint& point,
 }
 
 /// M of a block with at least `least_area` of mass.
-Mat6 mass(const Block& block, double least_area) { return mass_matrix(block, std::max(1.0, least_area / block.area)); }
+Mat6 mass(const Block& block, double least_area) { return area_matrix(block, std::max(1.0, least_area / block.area)); }
 
 } // namespace
 

@@ -47,7 +47,7 @@ double real_mass(const Model& model) {
 
 /// Scaled so that the largest frequency of the block alone is 1 rad/s.
 Mat6 mass_of_unit_frequency(const Block& block, const Mat6& stiffness) {
-    const Mat6 shape = mass_matrix(block, 1.0);
+    const Mat6 shape = area_matrix(block, 1.0);
     const double deformation = largest_eigenvalue(stiffness.block<4, 4>(2, 2), shape.block<4, 4>(2, 2));
     double translation = largest_eigenvalue(stiffness.block<2, 2>(0, 0), shape.block<2, 2>(0, 0));
     if (translation <= 1e-6 * deformation) translation = deformation; // nothing touches the block
@@ -96,7 +96,7 @@ std::vector<Mat6> block_masses(const Model& model, DensityScaling scaling) {
     std::vector<Mat6> masses;
     if (scaling == DensityScaling::none) {
         for (const Block& block : model.system.blocks)
-            masses.push_back(mass_matrix(block, 1.0) * density_of(model, block));
+            masses.push_back(area_matrix(block, 1.0) * density_of(model, block));
         return masses;
     }
     const auto stiffness = initial_stiffness_bounds(model);

@@ -52,7 +52,7 @@ private:
     }
     [[nodiscard]] std::vector<Mat6> masses() const {
         std::vector<Mat6> result;
-        for (const Block& block : system_.blocks) result.push_back(density * mass_matrix(block, 1.0));
+        for (const Block& block : system_.blocks) result.push_back(density * area_matrix(block, 1.0));
         return result;
     }
 

@@ -57,7 +57,7 @@ inline void add_force(Eigen::VectorXd& forces, int b, const Vec2& xi, const Vec2
 }
 
 /// Integral of N^T N over the block, N the displacement of a point by the unknowns, times `factor` (m2).
-[[nodiscard]] inline Mat6 mass_matrix(const Block& block, double factor) {
+[[nodiscard]] inline Mat6 area_matrix(const Block& block, double factor) {
     Mat6 m = Mat6::Zero();
     m.block<2, 2>(0, 0) = factor * block.area * Mat2::Identity();
     const Mat2 second = factor * block.second_moment / (block.size * block.size);
