@@ -1,7 +1,10 @@
 #include "kluft/assembly/cholesky_factor.hpp"
 
+#include <algorithm>
+
 #include <cholmod.h>
 
+#include "kluft/assembly/rounded_supernode.hpp"
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/core/memory.hpp"
 
@@ -12,6 +15,10 @@ namespace {
 /// Bytes beyond which the last factor is given up before the next one is prepared, so that it is never held together
 /// with two copies of the matrix. Below, fresh pages would cost more than they are worth.
 constexpr double large_factor = 8e6;
+
+/// Least share of a diagonal entry that elimination may leave for the factor to be rounded: rounding to 6e-8 of the
+/// diagonal then stays far below it.
+constexpr double roundable_pivot_ratio = 1e-5;
 
 } // namespace
 
@@ -128,25 +135,78 @@ void CholeskyFactor::analyze(const BlockPattern& pattern, const std::vector<int>
 }
 
 void CholeskyFactor::gather(const BlockMatrix& matrix) {
-    if (cost().bytes >= large_factor) forget();
+    if (is_large()) forget();
     columns_.gather(matrix);
 }
 
-bool CholeskyFactor::factorize() {
+bool CholeskyFactor::factorize(Precision precision) {
+    rounded_ = nullptr;
     cholmod_->allocate_factor();
     cholmod_sparse view = lower_triangle(columns_);
     cholmod_l_factorize(&view, cholmod_->factor, &cholmod_->common);
+    const bool regular = cholmod_->common.status == CHOLMOD_OK && cholmod_->factor->minor == cholmod_->factor->n;
+    const bool rounded = regular && precision == Precision::single && least_pivot_ratio() >= roundable_pivot_ratio;
     columns_.release();
     cholmod_l_free_work(&cholmod_->common);
     cholmod_->require_memory();
-    return cholmod_->common.status == CHOLMOD_OK && cholmod_->factor->minor == cholmod_->factor->n;
+    if (rounded) rounded_ = round_in_place(static_cast<double*>(cholmod_->factor->x), cholmod_->factor->xsize);
+    return regular;
 }
 
-void CholeskyFactor::forget() { cholmod_->free_numbers(); }
+/// Of the diagonal entries of K, what elimination has left of them.
+double CholeskyFactor::least_pivot_ratio() {
+    const auto* values = static_cast<const double*>(cholmod_->factor->x);
+    double least = 1.0;
+    for (int k = 0; k < n_supernodes(); ++k) {
+        const Supernode s = supernode(k);
+        for (int j = 0; j < s.n_columns; ++j) {
+            const double pivot = values[s.first_value + static_cast<std::int64_t>(j) * (s.n_rows + 1)];
+            const double diagonal = columns_.values()[columns_.starts()[s.first_column + j]];
+            least = std::min(least, pivot * pivot / diagonal);
+        }
+    }
+    return least;
+}
 
-void CholeskyFactor::solve_lower(std::vector<double>& x) { cholmod_->solve(CHOLMOD_L, x); }
+void CholeskyFactor::forget() {
+    rounded_ = nullptr;
+    cholmod_->free_numbers();
+}
 
-void CholeskyFactor::solve_upper(std::vector<double>& x) { cholmod_->solve(CHOLMOD_Lt, x); }
+void CholeskyFactor::solve_lower(std::vector<double>& x) {
+    if (rounded_ == nullptr) return cholmod_->solve(CHOLMOD_L, x);
+    for (int k = 0; k < n_supernodes(); ++k) {
+        const Supernode s = supernode(k);
+        double* const top = x.data() + s.first_column;
+        work_.assign(s.n_rows + rounded_padding, 0.0);
+        std::copy_n(top, s.n_columns, work_.begin());
+        eliminate_forward(s.n_columns, s.n_rows, rounded_ + s.first_value, work_.data());
+        std::copy_n(work_.begin(), s.n_columns, top);
+        for (int i = s.n_columns; i < s.n_rows; ++i) x[s.rows[i]] += work_[i];
+    }
+}
+
+void CholeskyFactor::solve_upper(std::vector<double>& x) {
+    if (rounded_ == nullptr) return cholmod_->solve(CHOLMOD_Lt, x);
+    for (int k = n_supernodes() - 1; k >= 0; --k) {
+        const Supernode s = supernode(k);
+        double* const top = x.data() + s.first_column;
+        work_.resize(s.n_rows + rounded_padding);
+        std::copy_n(top, s.n_columns, work_.begin());
+        for (int i = s.n_columns; i < s.n_rows; ++i) work_[i] = x[s.rows[i]];
+        substitute_back(s.n_columns, s.n_rows, rounded_ + s.first_value, work_.data());
+        std::copy_n(work_.begin(), s.n_columns, top);
+    }
+}
+
+const double* CholeskyFactor::values(const Supernode& supernode, std::vector<double>& room) const {
+    if (rounded_ == nullptr) return static_cast<const double*>(cholmod_->factor->x) + supernode.first_value;
+    const float* const first = rounded_ + supernode.first_value;
+    room.assign(first, first + static_cast<std::ptrdiff_t>(supernode.n_rows) * supernode.n_columns);
+    return room.data();
+}
+
+bool CholeskyFactor::is_large() const { return cost().bytes >= large_factor; }
 
 FactorCost CholeskyFactor::cost() const {
     const cholmod_common& common = cholmod_->common;
@@ -163,7 +223,7 @@ Supernode CholeskyFactor::supernode(int k) const {
     s.n_columns = static_cast<int>(first[k + 1] - first[k]);
     s.n_rows = static_cast<int>(row_starts[k + 1] - row_starts[k]);
     s.rows = static_cast<const std::int64_t*>(f.s) + row_starts[k];
-    s.values = f.x == nullptr ? nullptr : static_cast<const double*>(f.x) + value_starts[k];
+    s.first_value = value_starts[k];
     return s;
 }
 

@@ -45,6 +45,7 @@ struct LinearSolver::Backend {
             lu.gather(matrix);
         } else {
             lu.forget();
+            if (cholesky.is_large()) gmres.release();
             cholesky.gather(matrix);
         }
     }
@@ -53,7 +54,7 @@ struct LinearSolver::Backend {
         ++statistics.factorizations;
         if (kind == Factorization::lu) return lu.factorize();
         changes.start(cholesky, position);
-        return cholesky.factorize();
+        return cholesky.factorize(kind == Factorization::cholesky ? Precision::full : Precision::single);
     }
 
     void solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) {

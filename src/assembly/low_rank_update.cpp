@@ -131,11 +131,12 @@ void LowRankUpdate::solve_along_path(Batch& batch) {
     for (std::size_t s = 0; s < batch.supernodes.size(); ++s) {
         const Supernode node = factor_->supernode(batch.supernodes[s]);
         double* top = batch.w.data() + batch.offsets[s];
-        solve_lower_triangle(node.n_columns, width, node.values, node.n_rows, top, length);
+        const double* const values = factor_->values(node, values_);
+        solve_lower_triangle(node.n_columns, width, values, node.n_rows, top, length);
         const int n_below = node.n_rows - node.n_columns;
         if (n_below == 0) continue;
         below_.resize(n_below, width);
-        multiply(n_below, width, node.n_columns, node.values + node.n_columns, node.n_rows, top, length, below_.data(),
+        multiply(n_below, width, node.n_columns, values + node.n_columns, node.n_rows, top, length, below_.data(),
                  n_below);
         for (int i = 0; i < n_below;) { // runs of rows in one supernode
             const std::int64_t row = node.rows[node.n_columns + i];

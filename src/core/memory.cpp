@@ -12,6 +12,19 @@
 
 namespace kluft {
 
+namespace {
+
+/// On the whole pages of a large piece of memory.
+[[maybe_unused]] void advise(void* begin, std::size_t size, int advice) {
+    constexpr std::size_t large = 8U << 20U;
+    if (size < large) return;
+    const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
+    const std::uintptr_t skipped = (page - reinterpret_cast<std::uintptr_t>(begin) % page) % page;
+    madvise(static_cast<char*>(begin) + skipped, (size - skipped) / page * page, advice);
+}
+
+} // namespace
+
 void return_freed_memory() {
 #ifdef __GLIBC__
     malloc_trim(0);
@@ -28,11 +41,13 @@ void return_large_pieces() {
 
 void prefer_huge_pages([[maybe_unused]] void* begin, [[maybe_unused]] std::size_t size) {
 #ifdef MADV_HUGEPAGE
-    constexpr std::size_t large = 8U << 20U;
-    if (size < large) return;
-    const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
-    const std::uintptr_t skipped = (page - reinterpret_cast<std::uintptr_t>(begin) % page) % page;
-    madvise(static_cast<char*>(begin) + skipped, size - skipped, MADV_HUGEPAGE);
+    advise(begin, size, MADV_HUGEPAGE);
+#endif
+}
+
+void give_back_pages([[maybe_unused]] void* begin, [[maybe_unused]] std::size_t size) {
+#ifdef MADV_DONTNEED
+    advise(begin, size, MADV_DONTNEED);
 #endif
 }
 

@@ -111,10 +111,11 @@ Mat2 point_tangent(const EquilibriumProblem& problem, const ContactPoint& point,
     return kind == TangentKind::symmetric ? symmetric_tangent(traction) : traction.tangent;
 }
 
-/// M of a block with at least `least_area` of mass.
-Mat6 mass(const Block& block, double least_area) { return area_matrix(block, std::max(1.0, least_area / block.area)); }
-
 } // namespace
+
+Mat6 mass_matrix(const Block& block, double least_area) {
+    return area_matrix(block, std::max(1.0, least_area / block.area));
+}
 
 Mat2 symmetric_tangent(const PointTraction& traction) {
     Mat2 tangent = Mat2::Zero();
@@ -140,7 +141,7 @@ void EquilibriumEvaluator::add_mass_forces(const Eigen::VectorXd& q, Eigen::Vect
         const Vec6 moved = q.segment<n_block_unknowns>(n_block_unknowns * b) -
                            problem_.start.segment<n_block_unknowns>(n_block_unknowns * b);
         forces.segment<n_block_unknowns>(n_block_unknowns * b) +=
-            problem_.eta[b] * (mass(system.blocks[b], problem_.least_mass_area) * moved);
+            problem_.eta[b] * (mass_matrix(system.blocks[b], problem_.least_mass_area) * moved);
     }
 }
 
@@ -163,7 +164,7 @@ void EquilibriumEvaluator::add_block_tangents(const Eigen::VectorXd& q, TangentK
     for (int b = 0; b < system.n_blocks(); ++b) {
         const Block& block = system.blocks[b];
         Mat6& diagonal = matrix.values[pattern_.diagonal(b)];
-        if (!problem_.eta.empty()) diagonal += problem_.eta[b] * mass(block, problem_.least_mass_area);
+        if (!problem_.eta.empty()) diagonal += problem_.eta[b] * mass_matrix(block, problem_.least_mass_area);
         diagonal.block<4, 4>(2, 2) += elastic_tangent(deformation_gradient(q, b, block.size),
                                                       (*problem_.moduli)[block.material], kind != TangentKind::exact);
     }
@@ -199,7 +200,7 @@ double viscous_force(const EquilibriumProblem& problem, const Eigen::VectorXd& q
     for (int b = 0; b < problem.system->n_blocks(); ++b) {
         const Vec6 moved = q.segment<n_block_unknowns>(n_block_unknowns * b) -
                            problem.start.segment<n_block_unknowns>(n_block_unknowns * b);
-        sum += (problem.eta[b] * mass(problem.system->blocks[b], problem.least_mass_area) * moved).squaredNorm();
+        sum += (problem.eta[b] * mass_matrix(problem.system->blocks[b], problem.least_mass_area) * moved).squaredNorm();
     }
     return std::sqrt(sum);
 }

@@ -11,7 +11,8 @@ namespace kluft {
 
 namespace {
 
-constexpr double least_change = 0.02; ///< of the largest stiffness of the patch
+constexpr double least_change = 0.02;     ///< of the largest stiffness of the patch
+constexpr double least_mass_change = 0.2; ///< of the block's stiffness
 
 void set_rows(const ContactPoint& point, const Constraints& constraints, int first, StiffnessChange& change) {
     const std::array<Vec2, 2> directions{point.normal, point.tangent};
@@ -67,8 +68,14 @@ void StiffnessReference::collect(const EquilibriumProblem& problem, const Eigen:
     }
 }
 
-void StiffnessReference::take(const EquilibriumProblem& problem, const Eigen::VectorXd& q) {
+void StiffnessReference::take(const EquilibriumProblem& problem, const Eigen::VectorXd& q, const BlockMatrix& tangent) {
     taken_ = true;
+    eta_ = problem.eta;
+    diagonal_.resize(q.size());
+    for (int b = 0; b < tangent.pattern->n_blocks(); ++b) {
+        diagonal_.segment<n_block_unknowns>(n_block_unknowns * b) =
+            tangent.values[tangent.pattern->diagonal(b)].diagonal();
+    }
     collect(problem, q, reference_);
     bonded_.clear();
     for (const Bond& bond : problem.bonds) bonded_.push_back(bond.interface);
@@ -108,7 +115,7 @@ const std::vector<StiffnessChange>& StiffnessReference::changes(const Equilibriu
         if (change.cwiseAbs().maxCoeff() <= least_change * scale) return;
         changes_.push_back(patch.change);
         changes_.back().stiffness = change;
-        changes_.back().patch = numbers_.try_emplace(patch.key, static_cast<long>(numbers_.size())).first->second;
+        changes_.back().patch = number_of(patch.key);
     };
     auto before = reference_.begin();
     for (const Patch& patch : now_) {
@@ -123,7 +130,34 @@ const std::vector<StiffnessChange>& StiffnessReference::changes(const Equilibriu
         }
     }
     for (; before != reference_.end(); ++before) keep(*before, -before->change.stiffness, before->scale);
+    add_masses(problem);
     return changes_;
+}
+
+/// Relaxation changes eta by powers of four on single blocks. A loose block has no other stiffness.
+void StiffnessReference::add_masses(const EquilibriumProblem& problem) {
+    const auto eta_at = [](const std::vector<double>& eta, int b) { return eta.empty() ? 0.0 : eta[b]; };
+    for (int b = 0; b < problem.system->n_blocks(); ++b) {
+        const double change = eta_at(problem.eta, b) - eta_at(eta_, b);
+        if (change == 0.0) continue;
+        const Mat6 mass = change * mass_matrix(problem.system->blocks[b], problem.least_mass_area);
+        const auto diagonal = diagonal_.segment<n_block_unknowns>(n_block_unknowns * b);
+        for (const auto& [first, n] : {std::pair{0, 2}, std::pair{2, 4}}) { // u and D
+            const auto stiffness = mass.block(first, first, n, n);
+            const auto share = stiffness.diagonal().cwiseQuotient(diagonal.segment(first, n)).cwiseAbs();
+            if (share.maxCoeff() <= least_mass_change) continue;
+            StiffnessChange& added = changes_.emplace_back();
+            added.patch = number_of({b, -1, b, -1, first});
+            added.block_a = added.block_b = b;
+            added.n_rows = n;
+            for (int i = 0; i < n; ++i) {
+                Vec6 row = Vec6::Unit(first + i);
+                problem.constraints.project(b, row);
+                added.rows_a.row(i) = row;
+            }
+            added.stiffness.topLeftCorner(n, n) = stiffness;
+        }
+    }
 }
 
 } // namespace kluft

@@ -33,8 +33,10 @@ constexpr double relaxation_growth = 16.0;     ///< of eta on the blocks that st
 constexpr double relaxation_decay = 4.0;       ///< after a solve in a few iterations, also of later load steps
 constexpr int easy_iterations = 6;
 constexpr double largest_relaxation = 4.0e6;
+constexpr int easy_relaxation = 4;
 constexpr double relaxed_tolerance = 0.1; ///< of `balance`: a residual on the way that does not matter
-constexpr int max_relaxation_attempts = 250;
+constexpr double relaxed_residual = 2.0;  ///< of the mass-like forces: the same
+constexpr int max_relaxation_attempts = 500;
 constexpr double collapse_motion = 0.5; ///< of a block in one load step, in lattice spacings
 constexpr int max_event_trials = 12;
 constexpr double largest_useful_index = 10.0; ///< of f in the search for an event: a strength of zero gives infinity
@@ -380,13 +382,14 @@ private:
     }
 
     /// Pseudo-transient continuation at a load factor from the work state, which moves along: eta grows on the blocks
-    /// that stop the iteration and falls again as they come to rest.
+    /// that stop the iteration and falls again as they come to rest. A step on the way need not be an equilibrium: the
+    /// next one starts where it ends. The last one must be.
     Trial relax(double load_factor, const std::vector<int>& restless) {
         ++report_.costs.relaxations;
         std::vector<double> factor = work_.viscosity_factor;
         factor.resize(model_.system.blocks.size(), 1.0);
         (void)grow_eta(restless, factor);
-        Trial last; // that converged
+        Trial last; // that the state moved to
         for (int attempt = 0; attempt < max_relaxation_attempts; ++attempt) {
             if (stop_) throw Interrupted{};
             prepare();
@@ -396,19 +399,19 @@ private:
             for (double& eta : problem_.eta) eta *= relaxation_eta();
             Trial trial;
             trial.q = work_.displacement;
-            trial.summary = open_close_.solve(problem_, pattern_, trial.q, work_.contacts.empty());
+            trial.summary = open_close_.solve(problem_, pattern_, trial.q, work_.contacts.empty(), Aim::relaxation);
             report_.costs.open_close_iterations += trial.summary.iterations;
             last_worst_block_ = trial.summary.worst_block;
             notify_progress(load_factor);
-            const bool close =
-                trial.converged() || trial.summary.residual_ratio <= relaxed_tolerance * options_.balance;
-            if (!close) {
+            trial.viscous_share = viscous_share(trial);
+            const double harmless =
+                std::max(relaxed_tolerance * options_.balance, relaxed_residual * trial.viscous_share);
+            if (!trial.converged() && trial.summary.residual_ratio > harmless) {
                 if (!grow_eta(trial.summary.restless, factor)) {
                     throw NoEquilibrium{trial.summary.worst_block, trial.summary.residual_ratio};
                 }
                 continue;
             }
-            trial.viscous_share = viscous_share(trial);
             if (!trial.converged()) trial.viscous_share += trial.summary.residual_ratio;
             trial.balanced = trial.viscous_share <= options_.balance;
             if (trial.balanced) {
@@ -417,7 +420,7 @@ private:
             }
             commit(trial, work_.load_factor);
             if (is_falling()) throw NoEquilibrium{trial.summary.worst_block, trial.viscous_share, nothing_holds()};
-            if (trial.summary.iterations <= easy_iterations) decay(factor);
+            if (trial.summary.iterations <= easy_relaxation) decay(factor);
             last = std::move(trial);
         }
         if (last.q.size() == 0) throw NoEquilibrium{last_worst_block_, last.summary.residual_ratio};

@@ -18,7 +18,7 @@ struct Supernode {
     int n_columns = 0;
     int n_rows = 0;                     ///< those of the diagonal block included
     const std::int64_t* rows = nullptr; ///< ascending; the first n_columns are the columns themselves
-    const double* values = nullptr;     ///< n_rows x n_columns by columns; the upper triangle of the top is not used
+    std::int64_t first_value = 0; ///< of n_rows x n_columns, by columns; the upper triangle of the top is not used
 };
 
 /// Nonzeros of L, flops of one factorization and bytes of the stored factor, by the symbolic count.
@@ -26,6 +26,12 @@ struct FactorCost {
     double nonzeros = 0.0;
     double flops = 0.0;
     double bytes = 0.0;
+};
+
+/// Precision in which a factor is kept.
+enum class Precision {
+    full,  ///< double
+    single ///< rounded, but where the matrix is too ill-conditioned for it; for solutions that are refined
 };
 
 /// Vectors here are in elimination order.
@@ -41,7 +47,7 @@ public:
     /// Copies what the next `factorize` reads; there is no factor until then.
     void gather(const BlockMatrix& matrix);
     /// False if the gathered matrix is not positive definite. Throws ResourceError out of memory.
-    [[nodiscard]] bool factorize();
+    [[nodiscard]] bool factorize(Precision precision);
     /// Gives the memory of the factor back; the analysis stays.
     void forget();
     /// x := L^-1 x and x := L'^-1 x, size 6 n_blocks. Throw ResourceError out of memory.
@@ -49,9 +55,13 @@ public:
     void solve_upper(std::vector<double>& x);
 
     [[nodiscard]] FactorCost cost() const;
+    /// Whether the factor is so large that memory is given up for it, rather than taken anew afterwards.
+    [[nodiscard]] bool is_large() const;
 
     [[nodiscard]] int n_supernodes() const { return static_cast<int>(parent_.size()); }
     [[nodiscard]] Supernode supernode(int k) const;
+    /// The numbers of a supernode, n_rows x n_columns by columns; `room` holds them if they are kept rounded.
+    const double* values(const Supernode& supernode, std::vector<double>& room) const;
     [[nodiscard]] int supernode_of_column(std::int64_t column) const { return of_column_[column]; }
     /// The next supernode on the path to the root, -1 at the root.
     [[nodiscard]] int parent(int k) const { return parent_[k]; }
@@ -59,7 +69,11 @@ public:
 private:
     struct Cholmod;
     std::unique_ptr<Cholmod> cholmod_;
+    [[nodiscard]] double least_pivot_ratio();
+
     BlockColumns columns_;
+    const float* rounded_ = nullptr; ///< the numbers of the factor, if it is kept in single precision
+    std::vector<double> work_;       ///< for one supernode
     std::vector<int> parent_;
     std::vector<int> of_column_;
 };

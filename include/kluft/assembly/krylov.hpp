@@ -19,6 +19,9 @@ public:
     int correct(const Operator& matrix, const Operator& precondition, int max_vectors, const Bound& bound,
                 const Eigen::VectorXd& r, Eigen::VectorXd& x);
 
+    /// Gives the memory of the basis back.
+    void release() { v_ = z_ = {}; }
+
 private:
     void extend_basis(int n);
     void rotate(int column);

@@ -15,8 +15,9 @@
 namespace kluft {
 
 enum class Factorization {
-    cholesky, ///< supernodal LL' of the lower triangle; fails on an indefinite matrix
-    lu        ///< with pivoting inside fronts
+    cholesky,         ///< supernodal LL' of the lower triangle; fails on an indefinite matrix
+    rounded_cholesky, ///< the same, kept in single precision unless the matrix is too ill-conditioned: to be refined
+    lu                ///< with pivoting inside fronts
 };
 
 struct LinearSolverStatistics {

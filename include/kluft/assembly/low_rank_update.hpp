@@ -77,6 +77,7 @@ private:
     Eigen::VectorXd t_, y_;
     std::vector<int> packed_of_; ///< per supernode of the batch in work
     Eigen::MatrixXd below_;
+    std::vector<double> values_; ///< of one supernode
 };
 
 } // namespace kluft

@@ -17,4 +17,8 @@ void return_large_pieces();
 /// system has no call for it.
 void prefer_huge_pages(void* begin, std::size_t size);
 
+/// The contents of a piece of memory are not needed any more: whole pages of a large one go back to the system until
+/// they are written again. Does nothing where the system has no call for it.
+void give_back_pages(void* begin, std::size_t size);
+
 } // namespace kluft

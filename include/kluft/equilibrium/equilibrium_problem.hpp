@@ -54,6 +54,9 @@ private:
     BodyForces body_forces_;
 };
 
+/// M of a block: the integral of N' N over its area (m2), or over `least_area` if that is more.
+[[nodiscard]] Mat6 mass_matrix(const Block& block, double least_area);
+
 /// The norm of eta M (q - q_start) (N/m).
 [[nodiscard]] double viscous_force(const EquilibriumProblem& problem, const Eigen::VectorXd& q);
 

@@ -20,8 +20,14 @@ struct OpenCloseOptions {
     double motion_limit = 0.04; ///< largest change of a block's u or D per iteration, relative to the lattice spacing
 };
 
+enum class Aim {
+    equilibrium, ///< to the tolerance
+    relaxation   ///< a step on the way: a residual well below the mass-like forces is enough, and few iterations
+};
+
 enum class Termination {
     converged,      ///< q is an equilibrium
+    relaxed,        ///< q is near enough to one for a relaxation
     max_iterations, ///< q is the last iterate, no equilibrium
     singular        ///< the stiffness could not be factorized: nothing holds a part of the body
 };
@@ -45,7 +51,7 @@ public:
     /// have analysed `pattern`. From an `unloaded` body, whose contacts carry no force yet and therefore have no
     /// stiffness, the first increment takes the touching ones as closed.
     OpenCloseSummary solve(const EquilibriumProblem& problem, const BlockPattern& pattern, Eigen::VectorXd& q,
-                           bool unloaded = false);
+                           bool unloaded = false, Aim aim = Aim::equilibrium);
 
     /// The next linear solve makes a new factor: what follows does not depend on what was solved before.
     void forget_factor() { reference_.forget(); }

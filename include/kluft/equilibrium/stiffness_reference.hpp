@@ -1,5 +1,5 @@
 // What the factor in use was made of, and the low-rank changes since: contacts that closed, opened, began or ceased to
-// slide, and bonds that broke.
+// slide, bonds that broke, and blocks whose mass-like term has changed.
 #pragma once
 
 #include <array>
@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include "kluft/assembly/block_matrix.hpp"
 #include "kluft/assembly/low_rank_update.hpp"
 #include "kluft/equilibrium/equilibrium_problem.hpp"
 
@@ -17,8 +18,8 @@ namespace kluft {
 /// gap and slip at its two ends, between which both are linear, so that three points have rank four.
 class StiffnessReference {
 public:
-    /// The factor is that of the symmetric tangent of the problem at q.
-    void take(const EquilibriumProblem& problem, const Eigen::VectorXd& q);
+    /// The factor is that of the symmetric tangent of the problem at q, with the prescribed motions taken out.
+    void take(const EquilibriumProblem& problem, const Eigen::VectorXd& q, const BlockMatrix& tangent);
     /// There is no factor.
     void forget() { taken_ = false; }
     [[nodiscard]] bool taken() const { return taken_; }
@@ -38,10 +39,16 @@ private:
     static Key key_of(const ContactKey& k);
     static void collect(const EquilibriumProblem& problem, const Eigen::VectorXd& q, std::vector<Patch>& patches);
     void add_broken_bonds(const EquilibriumProblem& problem);
+    void add_masses(const EquilibriumProblem& problem);
+    long number_of(const Key& key) {
+        return numbers_.try_emplace(key, static_cast<long>(numbers_.size())).first->second;
+    }
 
     bool taken_ = false;
     std::vector<Patch> reference_; ///< sorted by key
     std::vector<int> bonded_;      ///< interfaces that were bonds, ascending
+    std::vector<double> eta_;      ///< per block, or empty
+    Eigen::VectorXd diagonal_;     ///< of the tangent
     std::map<Key, long> numbers_;  ///< of patches that have changed
     std::vector<Patch> now_;
     std::vector<StiffnessChange> changes_;
