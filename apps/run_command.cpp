@@ -18,6 +18,7 @@
 #include "kluft/output/run_log.hpp"
 #include "kluft/output/run_writer.hpp"
 #include "kluft/output/state_file.hpp"
+#include "kluft/reference/explicit_simulation.hpp"
 #include "kluft/scene/scene_model.hpp"
 #include "kluft/scene/scene_reader.hpp"
 #include "kluft/simulation/measurements.hpp"
@@ -73,6 +74,7 @@ RunWriterOptions writer_options(const Scene& scene, const Model& model) {
     const int platen_stage = make_gauges(model).first_platen_stage;
     if (platen_stage >= 0) options.platen_stage = platen_stage;
     options.plane = scene.plane;
+    options.motion = scene.integrator == Integrator::explicit_;
     for (const Material& material : scene.materials) options.material_names.push_back(material.name);
     return options;
 }
@@ -82,6 +84,7 @@ RunOutcome outcome_of(const RunReport& report, const Model& model) {
     RunOutcome outcome;
     outcome.status = report.status;
     outcome.message = report.diagnosis;
+    outcome.motion = report.motion;
     outcome.open_close_iterations = report.costs.open_close_iterations;
     outcome.counts = {{"factorizations", report.costs.factorizations},
                       {"analyses", report.costs.analyses},
@@ -127,19 +130,27 @@ std::string closing_line(const RunReport& report, const RunSummary& summary, con
                             100.0 * summary.numbers.peak_strain.value_or(0.0),
                             summary.numbers.peak_reached ? "" : " (still rising)");
     }
-    text += fmt::format(", {} tension and {} shear cracks, {} solves, {:.1f} s; results in {}",
-                        summary.numbers.cracks_tension, summary.numbers.cracks_shear,
-                        summary.numbers.open_close_iterations, summary.elapsed_s, directory.string());
+    const std::string work = report.motion ? fmt::format("{} time steps", report.motion->time_steps)
+                                           : fmt::format("{} solves", summary.numbers.open_close_iterations);
+    text += fmt::format(", {} tension and {} shear cracks, {}, {:.1f} s; results in {}", summary.numbers.cracks_tension,
+                        summary.numbers.cracks_shear, work, summary.elapsed_s, directory.string());
     if (summary.numbers.unbalanced_steps > 0)
         text += fmt::format("; {} steps unbalanced", summary.numbers.unbalanced_steps);
     return text;
+}
+
+RunReport integrate(const Model& model, const Scene& scene, State& state, StepObserver& observer) {
+    if (scene.integrator == Integrator::explicit_) {
+        return run_explicit(model, scene.cracks, scene.solver, scene.explicit_options, state, observer, stop_requested);
+    }
+    return run_simulation(model, scene.cracks, scene.solver, state, observer, stop_requested);
 }
 
 /// The run itself; whatever happens, the last committed state and the tables reach the disk if the disk allows it.
 ExitCode simulate(const Model& model, const Scene& scene, State& state, RunWriter& writer, RunLog& log,
                   const fs::path& directory, bool quiet) {
     RunObserver observer(writer, quiet);
-    const RunReport report = run_simulation(model, scene.cracks, scene.solver, state, observer, stop_requested);
+    const RunReport report = integrate(model, scene, state, observer);
     observer.clear();
     if (!report.diagnosis.empty()) {
         log.error(report.diagnosis);
@@ -168,6 +179,9 @@ ExitCode run(const RunArguments& arguments) {
         arguments.directory.empty() ? fs::path("results") / scene.name : fs::path(arguments.directory);
     if (fs::exists(directory) && !fs::is_directory(directory))
         throw InputError(directory.string() + ": expected a directory for the results, found a file");
+    if (arguments.resume && scene.integrator == Integrator::explicit_)
+        throw InputError("--resume: expected analysis.integrator: implicit, found explicit; a saved state has no "
+                         "velocities to go on with");
     const SceneModel built = build_scene_model(scene);
     const Model& model = built.model;
     const int unknowns = n_block_unknowns * model.system.n_blocks();

@@ -72,7 +72,7 @@ Body::Body(const Model& model, Joining joining) : model_(&model), displacement_(
 
 void Body::stiffness(EquilibriumEvaluator& evaluator, BlockMatrix& matrix) const {
     evaluator.tangent(displacement_, TangentKind::symmetric, matrix);
-    problem_.constraints.project(matrix, mean_diagonal(matrix));
+    project(problem_.constraints, matrix, mean_diagonal(matrix));
 }
 
 Eigen::VectorXd Body::load() const {

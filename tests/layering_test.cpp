@@ -137,6 +137,35 @@ TEST(Layering, HasNoUpwardInclude) {
     EXPECT_THAT(upward, testing::IsEmpty());
 }
 
+/// All headers of the project that a file includes, directly or through others.
+std::set<std::string> reached_from(const fs::path& file) {
+    std::set<std::string> reached;
+    std::vector<fs::path> waiting{file};
+    while (!waiting.empty()) {
+        const fs::path next = waiting.back();
+        waiting.pop_back();
+        for (const Include& include : includes_of(next))
+            if (include.name.starts_with("kluft/") && reached.insert(include.name).second)
+                waiting.push_back(root / "include" / include.name);
+    }
+    return reached;
+}
+
+// An agreement of both integrators means something only if they share nothing but the body, its laws and its loads.
+TEST(Layering, ExplicitReferenceSeesNothingOfAssemblyAndEquilibriumNotEvenThroughOthers) {
+    std::vector<std::string> seen;
+    int n_files = 0;
+    for (const fs::path& file : all_sources()) {
+        if (layer_of_file(file) != "reference") continue;
+        ++n_files;
+        for (const std::string& name : reached_from(file))
+            if (name.starts_with("kluft/assembly/") || name.starts_with("kluft/equilibrium/"))
+                seen.push_back(file.filename().string() + " reaches " + name);
+    }
+    EXPECT_THAT(seen, testing::IsEmpty());
+    EXPECT_GT(n_files, 0);
+}
+
 TEST(Layering, KeepsEveryLibraryInTheLayerThatHidesIt) {
     std::vector<std::string> leaks;
     for (const fs::path& file : all_sources())

@@ -54,6 +54,14 @@ ContactPressure contact_pressure(const InterfaceLaw& law, double gap) {
     return {law.normal_stiffness * gap * gap / (4.0 * g0), law.normal_stiffness * gap / (2.0 * g0)};
 }
 
+double contact_energy(const InterfaceLaw& law, double gap) {
+    if (gap >= 0.0) return 0.0;
+    const double k = law.normal_stiffness;
+    const double g0 = law.contact_rounding / k;
+    if (gap > -2.0 * g0) return -k * gap * gap * gap / (12.0 * g0);
+    return 0.5 * k * (gap + g0) * (gap + g0) + k * g0 * g0 / 6.0;
+}
+
 ShearLimit shear_limit(const InterfaceLaw& law, double pressure) {
     if (pressure <= 0.0) return {0.0, 0.0};
     if (pressure >= law.cohesion_onset) return {law.cohesion + pressure * law.tan_friction, law.tan_friction};

@@ -100,28 +100,13 @@ Mat2 full_stiffness(const InterfaceLaw& law) {
     return Eigen::Vector2d(law.normal_stiffness, law.shear_stiffness).asDiagonal();
 }
 
-struct GapAndSlip {
-    double gap;
-    double slip;
-};
-
-GapAndSlip gap_and_slip(const ContactPoint& point, const Eigen::VectorXd& q) {
-    const Vec2 relative = relative_position(point, q);
-    return {point.normal.dot(relative), point.tangent.dot(relative) - point.slip_start};
-}
-
-PointTraction traction_of(const std::vector<InterfaceLaw>& laws, const ContactPoint& point, const Eigen::VectorXd& q) {
-    const auto [gap, slip] = gap_and_slip(point, q);
-    return fracture_traction(laws[point.law], point.history, gap, slip);
-}
-
 Mat2 point_tangent(const EquilibriumProblem& problem, const ContactPoint& point, const Eigen::VectorXd& q,
                    TangentKind kind) {
     if (kind == TangentKind::touching) {
         const bool touches = gap_and_slip(point, q).gap <= touching_gap * problem.system->spacing;
         return touches ? full_stiffness((*problem.laws)[point.law]) : Mat2(Mat2::Zero());
     }
-    const PointTraction traction = traction_of(*problem.laws, point, q);
+    const PointTraction traction = contact_traction(*problem.laws, point, q);
     if (traction.state == ContactState::open) return Mat2::Zero();
     return kind == TangentKind::symmetric ? symmetric_tangent(traction) : traction.tangent;
 }
@@ -129,14 +114,7 @@ Mat2 point_tangent(const EquilibriumProblem& problem, const ContactPoint& point,
 } // namespace
 
 Mat6 mass_matrix(const Block& block, double least_area) {
-    const double factor = std::max(1.0, least_area / block.area);
-    Mat6 m = Mat6::Zero();
-    m.block<2, 2>(0, 0) = factor * block.area * Mat2::Identity();
-    const Mat2 second = factor * block.second_moment / (block.size * block.size);
-    for (int i = 0; i < 2; ++i) {
-        for (int j = 0; j < 2; ++j) m.block<2, 2>(2 + 2 * i, 2 + 2 * j) = second(i, j) * Mat2::Identity();
-    }
-    return m;
+    return area_matrix(block, std::max(1.0, least_area / block.area));
 }
 
 Mat2 symmetric_tangent(const PointTraction& traction) {
@@ -146,90 +124,15 @@ Mat2 symmetric_tangent(const PointTraction& traction) {
     return tangent;
 }
 
-PointTraction contact_traction(const EquilibriumProblem& problem, int i, const Eigen::VectorXd& q) {
-    return traction_of(*problem.laws, problem.contacts[i], q);
-}
-
-PointTraction bond_traction(const EquilibriumProblem& problem, int i, int point, const Eigen::VectorXd& q) {
-    const Bond& bond = problem.bonds[i];
-    return bond_traction((*problem.laws)[bond.law], bond, point, q);
-}
-
 // ---- the residual ------------------------------------------------------------------------------------------------------
 
-/// The sums that R and F_ref are made of, size 6 n_blocks.
-struct EquilibriumEvaluator::Sums {
-    Eigen::VectorXd& forces;
-    Eigen::VectorXd& magnitudes;
-    double stiffest = 0.0; ///< of the springs and blocks met so far (Pa)
-
-    void add(int block, const Vec2& xi, const Vec2& force) {
-        add_force(forces, block, xi, force);
-        add_force(magnitudes, block, xi.cwiseAbs(), force.cwiseAbs());
-    }
-};
-
 void EquilibriumEvaluator::residual(const Eigen::VectorXd& q, Residual& result) {
-    result.forces.setZero(q.size());
-    magnitudes_.setZero(q.size());
-    Sums sums{result.forces, magnitudes_};
-    add_block_forces(q, sums);
-    add_bond_forces(q, sums);
-    add_contact_forces(q, sums);
-    add_pressures(q, sums);
+    body_forces(problem_, q, body_forces_);
+    result.forces.swap(body_forces_.forces);
     if (!problem_.eta.empty()) add_mass_forces(q, result.forces);
-    result.force_scale = magnitudes_.norm();
-    result.roundoff = 64.0 * std::numeric_limits<double>::epsilon() * sums.stiffest * q.lpNorm<Eigen::Infinity>() *
-                      std::sqrt(static_cast<double>(q.size()));
-}
-
-void EquilibriumEvaluator::add_block_forces(const Eigen::VectorXd& q, Sums& sums) const {
-    const BlockSystem& system = *problem_.system;
-    for (int b = 0; b < system.n_blocks(); ++b) {
-        const Block& block = system.blocks[b];
-        const ElasticModuli& moduli = (*problem_.moduli)[block.material];
-        const Mat2 force = block.size * stress_of_gradient(displacement_gradient(q, b, block.size), moduli);
-        const Eigen::Map<const Eigen::Vector4d> columns(force.data());
-        sums.forces.segment<4>(n_block_unknowns * b + 2) += columns;
-        sums.magnitudes.segment<4>(n_block_unknowns * b + 2) += columns.cwiseAbs();
-        sums.stiffest = std::max(sums.stiffest, 2.0 * moduli.mu + moduli.lambda);
-        if (!problem_.densities.empty()) {
-            const Vec2 weight = problem_.densities[block.material] * block.area * problem_.gravity;
-            sums.forces.segment<2>(n_block_unknowns * b) -= weight;
-            sums.magnitudes.segment<2>(n_block_unknowns * b) += weight.cwiseAbs();
-        }
-    }
-}
-
-/// Interface forces are internal: R gets +f on b where f is what b's opening stretches.
-void EquilibriumEvaluator::add_bond_forces(const Eigen::VectorXd& q, Sums& sums) const {
-    for (const Bond& bond : problem_.bonds) {
-        const InterfaceLaw& law = (*problem_.laws)[bond.law];
-        for (int k = 0; k < n_bond_points; ++k) {
-            const auto traction = bond_traction(law, bond, k, q);
-            const Vec2 force = bond.weight * (traction.normal * bond.normal() + traction.shear * bond.tangent);
-            sums.add(bond.block_b, bond.xi_b[k], force);
-            sums.add(bond.block_a, bond.xi_a[k], -force);
-        }
-        sums.stiffest = std::max(sums.stiffest, bond.weight * law.normal_stiffness);
-    }
-}
-
-void EquilibriumEvaluator::add_contact_forces(const Eigen::VectorXd& q, Sums& sums) const {
-    for (const ContactPoint& point : problem_.contacts) {
-        const auto traction = traction_of(*problem_.laws, point, q);
-        const Vec2 force = point.weight * (traction.normal * point.normal + traction.shear * point.tangent);
-        sums.add(point.block_b, point.xi_b, force);
-        sums.add(point.block_a, point.xi_a, -force);
-        sums.stiffest = std::max(sums.stiffest, point.weight * (*problem_.laws)[point.law].normal_stiffness);
-    }
-}
-
-void EquilibriumEvaluator::add_pressures(const Eigen::VectorXd& q, Sums& sums) const {
-    for (const PressureEdge& edge : problem_.pressure_edges) {
-        const double pressure = problem_.pressures[edge.boundary];
-        if (pressure != 0.0) sums.add(edge.block, edge.xi_middle, -pressure_force(edge, pressure, q));
-    }
+    result.force_scale = body_forces_.magnitudes.norm();
+    result.roundoff = 64.0 * std::numeric_limits<double>::epsilon() * body_forces_.stiffest *
+                      q.lpNorm<Eigen::Infinity>() * std::sqrt(static_cast<double>(q.size()));
 }
 
 void EquilibriumEvaluator::add_mass_forces(const Eigen::VectorXd& q, Eigen::VectorXd& forces) const {
@@ -300,17 +203,6 @@ double viscous_force(const EquilibriumProblem& problem, const Eigen::VectorXd& q
         sum += (problem.eta[b] * mass_matrix(problem.system->blocks[b], problem.least_mass_area) * moved).squaredNorm();
     }
     return std::sqrt(sum);
-}
-
-std::vector<Mat2> block_stresses(const BlockSystem& system, const std::vector<ElasticModuli>& moduli,
-                                 const Eigen::VectorXd& q) {
-    std::vector<Mat2> stresses;
-    stresses.reserve(system.blocks.size());
-    for (int b = 0; b < system.n_blocks(); ++b) {
-        const Block& block = system.blocks[b];
-        stresses.push_back(cauchy_stress(deformation_gradient(q, b, block.size), moduli[block.material]));
-    }
-    return stresses;
 }
 
 } // namespace kluft

@@ -169,7 +169,7 @@ void OpenCloseSolver::assemble(const EquilibriumProblem& problem, EquilibriumEva
         right_side_ -= scratch_;
     }
     problem.constraints.project(right_side_);
-    problem.constraints.project(matrix_, typical_diagonal(matrix_));
+    project(problem.constraints, matrix_, typical_diagonal(matrix_));
 }
 
 /// increment_ and response_ by a factorization of the assembled matrix.
@@ -214,7 +214,7 @@ bool OpenCloseSolver::renew_factor(const EquilibriumProblem& problem, Equilibriu
     {
         const Stopwatch watch(assembly_seconds_);
         evaluator.tangent(q, TangentKind::symmetric, matrix_);
-        problem.constraints.project(matrix_, typical_diagonal(matrix_));
+        project(problem.constraints, matrix_, typical_diagonal(matrix_));
     }
     reference_.take(problem, q, matrix_);
     if (!linear_solver_.factorize(std::move(matrix_), Factorization::rounded_cholesky)) {

@@ -40,6 +40,22 @@ void visit_columns(Record& record, Visit&& visit) {
 }
 
 template <class Record, class Visit>
+requires std::is_same_v<std::remove_const_t<Record>, MotionRecord>
+void visit_columns(Record& record, Visit&& visit) {
+    visit("time_steps", record.time_steps);
+    visit("kinetic_ratio", record.kinetic_ratio);
+    visit("platen_imbalance", record.platen_imbalance);
+    visit("external_work", record.external_work);
+    visit("strain_energy", record.strain_energy);
+    visit("kinetic_energy", record.kinetic_energy);
+    visit("friction_energy", record.friction_energy);
+    visit("damping_energy", record.damping_energy);
+    visit("crack_energy", record.crack_energy);
+    visit("detection_energy", record.detection_energy);
+    visit("energy_error", record.energy_error);
+}
+
+template <class Record, class Visit>
 requires std::is_same_v<std::remove_const_t<Record>, CrackRecord>
 void visit_columns(Record& crack, Visit&& visit) {
     visit("step", crack.step);
@@ -151,8 +167,11 @@ template <class Record> std::vector<Record> read_table(const std::filesystem::pa
 } // namespace
 
 std::string history_header() { return header_of<StepRecord>(); }
+std::string motion_header() { return header_of<MotionRecord>(); }
 std::string cracks_header() { return header_of<CrackRecord>(); }
-std::string table_row(const StepRecord& record) { return row_of(record); }
+std::string table_row(const StepRecord& record) {
+    return record.motion ? row_of(record) + ',' + row_of(*record.motion) : row_of(record);
+}
 std::string table_row(const CrackRecord& crack) { return row_of(crack); }
 std::vector<StepRecord> read_history(const std::filesystem::path& path) { return read_table<StepRecord>(path); }
 std::vector<CrackRecord> read_cracks(const std::filesystem::path& path) { return read_table<CrackRecord>(path); }

@@ -96,11 +96,12 @@ RunWriter::RunWriter(fs::path directory, const BlockSystem& system, RunWriterOpt
     const fs::path history = directory_ / "history.csv";
     const fs::path equilibria = directory_ / "equilibria.csv";
     const fs::path cracks = directory_ / "cracks.csv";
+    const std::string header = options_.motion ? history_header() + ',' + motion_header() : history_header();
     if (options_.resumed_step) {
         const int last = *options_.resumed_step;
         remove_results_but_tables_and_state(directory_);
-        tables_ = std::make_unique<Tables>(Tables{PatientTable(AppendTable::resume(history, history_header(), last)),
-                                                  PatientTable(AppendTable::resume(equilibria, history_header(), last)),
+        tables_ = std::make_unique<Tables>(Tables{PatientTable(AppendTable::resume(history, header, last)),
+                                                  PatientTable(AppendTable::resume(equilibria, header, last)),
                                                   PatientTable(AppendTable::resume(cracks, cracks_header(), last)),
                                                   {}});
         history_ = read_history(history);
@@ -110,8 +111,8 @@ RunWriter::RunWriter(fs::path directory, const BlockSystem& system, RunWriterOpt
         if (options_.fields) tables_->fields = FieldSeries::resume(directory_, last);
     } else {
         remove_results(directory_);
-        tables_ = std::make_unique<Tables>(Tables{PatientTable(AppendTable::create(history, history_header())),
-                                                  PatientTable(AppendTable::create(equilibria, history_header())),
+        tables_ = std::make_unique<Tables>(Tables{PatientTable(AppendTable::create(history, header)),
+                                                  PatientTable(AppendTable::create(equilibria, header)),
                                                   PatientTable(AppendTable::create(cracks, cracks_header())),
                                                   {}});
         if (options_.fields) tables_->fields = FieldSeries::create(directory_);
@@ -182,6 +183,7 @@ RunSummary RunWriter::summary_of(const RunOutcome& outcome) const {
     summary.version = outcome.version;
     summary.seconds = outcome.seconds;
     summary.message = outcome.message;
+    summary.motion = outcome.motion;
     return summary;
 }
 

@@ -189,6 +189,11 @@ RunSummary summary_in(const Json& json) {
     for (const auto& [stage, seconds] : json.at("seconds").items())
         summary.seconds[stage] = seconds.is_null() ? 0.0 : seconds.get<double>();
     json.at("message").get_to(summary.message);
+    if (json.value("integrator", "implicit") == "explicit") {
+        summary.motion =
+            MotionReport{json.at("time_steps").get<long>(), optional_number(json, "time_step").value_or(0.0),
+                         optional_number(json, "energy_error").value_or(0.0)};
+    }
     return summary;
 }
 
@@ -257,6 +262,12 @@ std::string summary_json(const RunSummary& summary) {
     for (const char* name : count_names) {
         const auto count = summary.counts.find(name);
         json[name] = count == summary.counts.end() ? 0 : count->second;
+    }
+    json["integrator"] = summary.motion ? "explicit" : "implicit";
+    if (summary.motion) {
+        json["time_steps"] = summary.motion->time_steps;
+        json["time_step"] = number(summary.motion->time_step);
+        json["energy_error"] = number(summary.motion->energy_error);
     }
     json["elapsed_s"] = number(summary.elapsed_s);
     json["peak_memory_bytes"] = summary.peak_memory_bytes;

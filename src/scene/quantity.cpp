@@ -67,6 +67,8 @@ Dimension dimension_of(Measure measure) {
         return {-2, 1, -2, 0};
     case Measure::density:
         return {-3, 1, 0, 0};
+    case Measure::velocity:
+        return {1, 0, -1, 0};
     case Measure::acceleration:
         return {1, 0, -2, 0};
     case Measure::angle:
@@ -79,7 +81,7 @@ Dimension dimension_of(Measure measure) {
 std::string dimension_name(const Dimension& dimension) {
     if (dimension == none) return "no unit but a plain number";
     for (const Measure measure : {Measure::length, Measure::stress, Measure::stiffness, Measure::density,
-                                  Measure::acceleration, Measure::angle})
+                                  Measure::velocity, Measure::acceleration, Measure::angle})
         if (dimension_of(measure) == dimension) return std::string(unit_name(measure));
     constexpr std::array<std::string_view, 4> symbols{"m", "kg", "s", "rad"};
     std::string name;
@@ -226,6 +228,8 @@ std::string_view unit_name(Measure measure) {
         return "Pa/m";
     case Measure::density:
         return "kg/m3";
+    case Measure::velocity:
+        return "m/s";
     case Measure::acceleration:
         return "m/s2";
     case Measure::angle:

@@ -1,5 +1,6 @@
 #include "kluft/scene/scene_reader.hpp"
 
+#include <array>
 #include <cstddef>
 #include <set>
 #include <utility>
@@ -32,6 +33,29 @@ void read_analysis(const SceneSection& root, Scene& scene) {
         const double downwards = read_quantity(gravity->text, Measure::acceleration).value.value_or(0.0);
         scene.gravity_y = downwards == 0.0 ? 0.0 : -downwards;
     }
+}
+
+constexpr std::array explicit_keys{"damping", "density_scaling", "loading_rate", "crack_check_interval"};
+
+void read_integrator(const SceneSection& root, Scene& scene, ReadingContext& context) {
+    const auto analysis = root.section("analysis");
+    scene.integrator = static_cast<Integrator>(analysis.choice("integrator"));
+    if (scene.integrator == Integrator::implicit) {
+        for (const auto* key : explicit_keys)
+            if (analysis.has(key))
+                context.fail(analysis, key, "expected integrator: explicit beside it, found integrator: implicit");
+        return;
+    }
+    ExplicitOptions& options = scene.explicit_options;
+    options.damping = analysis.number("damping");
+    options.density_scaling = static_cast<DensityScaling>(analysis.choice("density_scaling"));
+    options.loading_rate = analysis.given_number("loading_rate").value_or(0.0);
+    options.crack_check_interval = analysis.count("crack_check_interval");
+    if (options.density_scaling != DensityScaling::none) return;
+    for (const auto& section : root.sections("materials"))
+        if (!(section.given_number("density").value_or(0.0) > 0.0))
+            context.fail(section, "density",
+                         "expected a number > 0 in kg/m3 because of density_scaling: none, found none");
 }
 
 CrackOptions read_crack_options(const SceneSection& section) {
@@ -114,6 +138,7 @@ Scene convert(const SceneSection& root, ReadingContext& context) {
     Scene scene;
     scene.title = root.given_text("title").value_or("");
     read_analysis(root, scene);
+    read_integrator(root, scene, context);
     scene.materials = read_materials(root, context);
     scene.interface_types = read_interface_types(root, context);
     scene.geometry = read_geometry(root, names_of(scene.materials), names_of(scene.interface_types), context);

@@ -30,10 +30,38 @@ std::vector<KeyRule> analysis_rules() {
          .doc = "Plane strain (a slice of a long body) or plane stress (a thin plate)."},
         {.path = "analysis.integrator",
          .type = KeyType::choice,
-         .choices = {"implicit"},
-         .unavailable = {"explicit"},
+         .choices = {"implicit", "explicit"},
          .fallback = "implicit",
-         .doc = "How the body moves from one state to the next. Only `implicit` in this version."},
+         .doc = "How the body moves from one state to the next: `implicit` finds equilibrium in every load step, "
+                "`explicit` follows the damped motion in small time steps, as a reference for the other. Of `solver` "
+                "it uses `balance` and `max_unbalanced_steps` only."},
+        {.path = "analysis.damping",
+         .type = KeyType::number,
+         .range = {.least = 0.0, .most = 1.0, .open_above = true},
+         .fallback = "0.8",
+         .doc = "`explicit` only. Local damping: this part of the unbalanced force acts against the velocity of each "
+                "unknown."},
+        {.path = "analysis.density_scaling",
+         .type = KeyType::choice,
+         .choices = {"uniform_step", "none"},
+         .fallback = "uniform_step",
+         .doc = "`explicit` only. `uniform_step` gives every block the inertia with which its own stable time step is "
+                "that of all others (weights stay those of the densities, the body keeps its mass); `none` takes the "
+                "inertia from the densities."},
+        {.path = "analysis.loading_rate",
+         .type = KeyType::number,
+         .measure = Measure::velocity,
+         .range = positive,
+         .fallback_note = "at least 10 crossings of the body by an elastic wave per load step, 100 per stage; slower "
+                          "while the body is not in balance, and waiting at the end of each load step until it is",
+         .doc = "`explicit` only. Constant velocity of platens that are moved by `displacement` or `strain`, in the "
+                "time in which the inertia of the blocks counts."},
+        {.path = "analysis.crack_check_interval",
+         .type = KeyType::integer,
+         .range = positive_integer,
+         .fallback = "10",
+         .doc = "`explicit` only. Time steps between two checks of the potential cracks; `cracks.every` has no "
+                "effect."},
         {.path = "analysis.kinematics",
          .type = KeyType::choice,
          .choices = {"affine"},

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "kluft/kinematics/affine.hpp"
-#include "kluft/simulation/stage_loads.hpp"
 
 namespace kluft {
 
@@ -77,26 +76,19 @@ Strains measure_strains(const Model& model, const Gauges& gauges, const Eigen::V
     return strains;
 }
 
-double boundary_stress(const EquilibriumProblem& problem, const Eigen::VectorXd& residual, int boundary, bool held,
-                       double current_length, const Vec2& normal) {
-    if (!held) return problem.pressures[boundary];
-    return -normal.dot(problem.constraints.reaction(residual, boundary)) / current_length;
-}
-
-ContactCounts count_contacts(const Model& model, const State& state, const EquilibriumProblem& problem,
-                             const Eigen::VectorXd& q) {
+ContactCounts count_contacts(const Model& model, const State& state, const LoadedBody& body, const Eigen::VectorXd& q) {
     ContactCounts counts;
     const auto add = [&](ContactState worst) {
         ++(worst == ContactState::open ? counts.open : worst == ContactState::sliding ? counts.sliding : counts.locked);
     };
     std::vector<char> seen(model.system.interfaces.size(), 0);
-    for (int first = 0; first < static_cast<int>(problem.contacts.size());) {
+    for (int first = 0; first < static_cast<int>(body.contacts.size());) {
         int last = first;
         ContactState worst = ContactState::open;
-        const ContactPoint& head = problem.contacts[first];
-        while (last < static_cast<int>(problem.contacts.size()) &&
-               edges_of(problem.contacts[last].key) == edges_of(head.key)) {
-            const ContactState s = contact_traction(problem, last, q).state;
+        const ContactPoint& head = body.contacts[first];
+        while (last < static_cast<int>(body.contacts.size()) &&
+               edges_of(body.contacts[last].key) == edges_of(head.key)) {
+            const ContactState s = contact_traction(body, last, q).state;
             if (severity(s) > severity(worst)) worst = s;
             ++last;
         }
@@ -118,12 +110,11 @@ ContactCounts count_contacts(const Model& model, const State& state, const Equil
     return counts;
 }
 
-std::vector<InterfaceTraction> bond_tractions(const Model& model, const EquilibriumProblem& problem,
-                                              const Eigen::VectorXd& q) {
+std::vector<InterfaceTraction> bond_tractions(const Model& model, const LoadedBody& body, const Eigen::VectorXd& q) {
     std::vector<InterfaceTraction> tractions(model.system.interfaces.size());
-    for (const Bond& bond : problem.bonds) {
+    for (const Bond& bond : body.bonds) {
         for (int k = 0; k < n_bond_points; ++k) {
-            const auto traction = bond_traction((*problem.laws)[bond.law], bond, k, q);
+            const auto traction = bond_traction((*body.laws)[bond.law], bond, k, q);
             tractions[bond.interface].normal += 0.5 * traction.normal;
             tractions[bond.interface].shear += 0.5 * traction.shear;
         }
@@ -131,7 +122,39 @@ std::vector<InterfaceTraction> bond_tractions(const Model& model, const Equilibr
     return tractions;
 }
 
-FieldRecord field_record(const Model& model, const State& state, const EquilibriumProblem& problem) {
+StepRecord measure_step(const Model& model, const Gauges& gauges, const State& state, const LoadedBody& body,
+                        const StageLoads& loads, const Eigen::VectorXd& q, const Eigen::VectorXd& forces) {
+    StepRecord record;
+    record.step = state.step + 1;
+    record.stage = state.stage;
+    record.load_factor = state.load_factor;
+    const Strains strains = measure_strains(model, gauges, q, state.reference_displacement);
+    const Strains total = measure_strains(model, gauges, q, Eigen::VectorXd());
+    record.axial_strain = strains.axial;
+    record.lateral_strain = strains.lateral;
+    record.volumetric_strain = strains.axial + strains.lateral;
+    const auto stress_on = [&](int boundary, double length, const Vec2& normal) {
+        return boundary_stress(body, forces, boundary, loads.is_held(boundary), length, normal);
+    };
+    if (gauges.moved >= 0) {
+        const double width = gauges.width * (1.0 - total.lateral);
+        record.axial_stress = stress_on(gauges.moved, width, gauges.axial_normal);
+    }
+    for (const int side : gauges.lateral) {
+        const double height = gauges.length * (1.0 - total.axial);
+        record.lateral_stress += 0.5 * stress_on(side, height, boundary_frame(model.system, side).normal);
+    }
+    record.differential_stress = record.axial_stress - record.lateral_stress;
+    record.cracks_tension = static_cast<int>(std::ranges::count(state.interfaces, InterfaceStatus::tension_crack));
+    record.cracks_shear = static_cast<int>(std::ranges::count(state.interfaces, InterfaceStatus::shear_crack));
+    const auto counts = count_contacts(model, state, body, q);
+    record.open = counts.open;
+    record.sliding = counts.sliding;
+    record.locked = counts.locked;
+    return record;
+}
+
+FieldRecord field_record(const Model& model, const State& state, const LoadedBody& body) {
     const BlockSystem& system = model.system;
     const Eigen::VectorXd& q = state.displacement;
     FieldRecord fields;
@@ -161,17 +184,17 @@ FieldRecord field_record(const Model& model, const State& state, const Equilibri
         record.gap = right_normal(along).dot(relative);
         record.slip = along.dot(relative);
     }
-    const auto bonds = bond_tractions(model, problem, q);
+    const auto bonds = bond_tractions(model, body, q);
     for (int i = 0; i < system.n_interfaces(); ++i) {
         if (!fields.interfaces[i].bonded) continue;
         fields.interfaces[i].normal_traction = bonds[i].normal;
         fields.interfaces[i].shear_traction = bonds[i].shear;
     }
     std::vector<double> lengths(system.interfaces.size(), 0.0);
-    for (int i = 0; i < static_cast<int>(problem.contacts.size()); ++i) {
-        const ContactPoint& point = problem.contacts[i];
+    for (int i = 0; i < static_cast<int>(body.contacts.size()); ++i) {
+        const ContactPoint& point = body.contacts[i];
         if (point.interface < 0) continue;
-        const auto traction = contact_traction(problem, i, q);
+        const auto traction = contact_traction(body, i, q);
         auto& record = fields.interfaces[point.interface];
         if (severity(traction.state) > severity(record.state)) record.state = traction.state;
         record.normal_traction += point.weight * traction.normal;

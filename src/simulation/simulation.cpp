@@ -21,6 +21,7 @@
 #include "kluft/simulation/measurements.hpp"
 #include "kluft/simulation/stage_loads.hpp"
 #include "kluft/simulation/state_points.hpp"
+#include "kluft/simulation/weakening.hpp"
 
 namespace kluft {
 
@@ -39,7 +40,6 @@ constexpr int max_relaxation_attempts = 500;
 constexpr double collapse_motion = 0.5; ///< of a block in one load step, in lattice spacings
 constexpr int max_event_trials = 12;
 constexpr double largest_useful_index = 10.0; ///< of f in the search for an event: a strength of zero gives infinity
-constexpr double critical_share = 0.95;       ///< of f_max in `critical_first`
 
 struct Interrupted {};
 struct NoEquilibrium {
@@ -168,7 +168,7 @@ private:
         bool initial = work_.step == 0 && work_.stage == 0 && work_.step_in_stage == 0;
         for (; work_.stage < static_cast<int>(stages.size()); next_stage()) {
             const Stage& stage = stages[work_.stage];
-            begin_stage(stage);
+            begin_stage();
             if (initial) report_initial_state();
             initial = false;
             while (work_.step_in_stage < stage.steps) {
@@ -178,29 +178,13 @@ private:
         }
     }
 
-    void begin_stage(const Stage& stage) {
-        if (work_.step_in_stage == 0) {
-            work_.stage_start_displacement = work_.displacement;
-            if (stage.motion && !work_.reference_set) {
-                work_.reference_displacement = work_.displacement;
-                work_.reference_set = true;
-            }
-            work_.displacement_rate.resize(0);
-        }
-        State start;
-        start.displacement = work_.stage_start_displacement;
-        start.boundary_pressure = work_.boundary_pressure;
-        loads_.emplace(model_, start, stage);
+    void begin_stage() {
+        if (work_.step_in_stage == 0) work_.displacement_rate.resize(0);
+        loads_.emplace(enter_stage(model_, work_));
     }
 
     void next_stage() {
-        const auto end = loads_->pressures(1.0);
-        for (std::size_t i = 0; i < end.size(); ++i) {
-            work_.boundary_pressure[i] = loads_->is_held(static_cast<int>(i)) ? stress_on(static_cast<int>(i)) : end[i];
-        }
-        ++work_.stage;
-        work_.step_in_stage = 0;
-        work_.load_factor = 0.0;
+        leave_stage(model_, *loads_, problem_, last_residual_.forces, work_);
         if (work_.stage < static_cast<int>(model_.loads.stages.size())) accept();
     }
 
@@ -353,12 +337,7 @@ private:
         linear_.analyze(pattern_);
     }
 
-    void set_load(double load_factor) {
-        problem_.pressures = loads_->pressures(load_factor);
-        problem_.platen_force = loads_->platen_force(load_factor);
-        loads_->set_targets(problem_.constraints, load_factor);
-        problem_.gravity = work_.stage == 0 ? Vec2(load_factor * model_.gravity) : model_.gravity;
-    }
+    void set_load(double load_factor) { apply_load(model_, *loads_, work_.stage, load_factor, problem_); }
 
     [[nodiscard]] Eigen::VectorXd predicted(double load_factor) const {
         if (work_.displacement_rate.size() == 0) return work_.displacement;
@@ -547,29 +526,12 @@ private:
         return high;
     }
 
-    [[nodiscard]] double failure_threshold(double largest) const {
-        switch (cracks_.update) {
-        case CrackUpdate::event:
-            return largest - cracks_.event_tolerance;
-        case CrackUpdate::critical_first:
-            return std::max(1.0, critical_share * largest);
-        case CrackUpdate::all:
-            return 1.0;
-        case CrackUpdate::single:
-            return largest;
-        }
-        return 1.0;
-    }
-
     /// Fails potential cracks and finds equilibrium again at the same load, until nothing fails. True if any failed.
     bool break_bonds(double load_factor) {
         bool any = false;
         for (;;) {
-            const auto candidates = check_cracks(work_.displacement);
-            const double largest = largest_index(candidates);
-            if (largest < 1.0) return any;
-            auto broken = failing(candidates, failure_threshold(largest));
-            if (cracks_.update == CrackUpdate::single) broken.resize(1);
+            const auto broken = chosen_to_fail(cracks_, check_cracks(work_.displacement));
+            if (broken.empty()) return any;
             any = true;
             ++passes_;
             ++report_.costs.events;
@@ -586,73 +548,18 @@ private:
         }
     }
 
-    /// A bond becomes a fracture; its shear traction stays.
     void break_bond(const CrackCandidate& candidate) {
-        const int i = candidate.interface;
-        const Interface& interface = model_.system.interfaces[i];
-        const bool tension = candidate.index.tension_governs;
-        work_.interfaces[i] = tension ? InterfaceStatus::tension_crack : InterfaceStatus::shear_crack;
-        const bool ordered = interface.block_a < interface.block_b;
-        for (int point = 0; point < static_cast<int>(overlap_positions.size()); ++point) {
-            const double along_a = overlap_positions[point];
-            ContactMemory memory;
-            memory.key = key_of_own_edges(interface, point);
-            memory.history.shear_trial =
-                bond_shear_at(&work_.bond_shear[n_bond_points * i], ordered ? along_a : 1.0 - along_a);
-            work_.contacts.push_back(memory);
-        }
-        const Edge& edge = model_.system.blocks[interface.block_a].edges[interface.edge_a];
-        const Vec2 middle =
-            model_.system.origin + 0.5 * (edge_start(model_.system, edge) + edge_end(model_.system, edge));
-        CrackRecord record;
-        record.step = work_.step + 1;
+        CrackRecord record = weaken(model_, candidate, work_);
         record.pass = passes_;
-        record.interface = i;
-        record.x = middle.x();
-        record.y = middle.y();
-        record.mode = tension ? CrackMode::tension : CrackMode::shear;
-        record.p1 = candidate.stress.p1;
-        record.p3 = candidate.stress.p3;
         record.axial_strain = last_record_.axial_strain;
         observer_.crack(record);
     }
 
     // ---- measurements and messages ---------------------------------------------------------------------------
 
-    double stress_on(int boundary) {
-        const auto frame = boundary_frame(model_.system, boundary);
-        return boundary_stress(problem_, last_residual_.forces, boundary, loads_->is_held(boundary), frame.length,
-                               frame.normal);
-    }
-
     StepRecord measure(const Eigen::VectorXd& q, double share) {
         EquilibriumEvaluator(problem_, pattern_).residual(q, last_residual_);
-        StepRecord record;
-        record.step = work_.step + 1;
-        record.stage = work_.stage;
-        record.load_factor = work_.load_factor;
-        const Strains strains = measure_strains(model_, gauges_, q, work_.reference_displacement);
-        const Strains total = measure_strains(model_, gauges_, q, Eigen::VectorXd());
-        record.axial_strain = strains.axial;
-        record.lateral_strain = strains.lateral;
-        record.volumetric_strain = strains.axial + strains.lateral;
-        if (gauges_.moved >= 0) {
-            const double width = gauges_.width * (1.0 - total.lateral);
-            record.axial_stress = boundary_stress(problem_, last_residual_.forces, gauges_.moved,
-                                                  loads_->is_held(gauges_.moved), width, gauges_.axial_normal);
-        }
-        for (const int side : gauges_.lateral) {
-            const double height = gauges_.length * (1.0 - total.axial);
-            record.lateral_stress += 0.5 * boundary_stress(problem_, last_residual_.forces, side, loads_->is_held(side),
-                                                           height, boundary_frame(model_.system, side).normal);
-        }
-        record.differential_stress = record.axial_stress - record.lateral_stress;
-        record.cracks_tension = static_cast<int>(std::ranges::count(work_.interfaces, InterfaceStatus::tension_crack));
-        record.cracks_shear = static_cast<int>(std::ranges::count(work_.interfaces, InterfaceStatus::shear_crack));
-        const auto counts = count_contacts(model_, work_, problem_, q);
-        record.open = counts.open;
-        record.sliding = counts.sliding;
-        record.locked = counts.locked;
+        StepRecord record = measure_step(model_, gauges_, work_, problem_, *loads_, q, last_residual_.forces);
         record.open_close_iterations = report_.costs.open_close_iterations - iterations_at_start_;
         record.crack_passes = passes_;
         record.unbalanced_ratio = share;

@@ -215,4 +215,45 @@ void StageLoads::set_targets(Constraints& constraints, double load_factor) const
     }
 }
 
+StageLoads enter_stage(const Model& model, State& state) {
+    const Stage& stage = model.loads.stages[state.stage];
+    if (state.step_in_stage == 0) {
+        state.stage_start_displacement = state.displacement;
+        if (stage.motion && !state.reference_set) {
+            state.reference_displacement = state.displacement;
+            state.reference_set = true;
+        }
+    }
+    State start;
+    start.displacement = state.stage_start_displacement;
+    start.boundary_pressure = state.boundary_pressure;
+    return {model, start, stage};
+}
+
+void leave_stage(const Model& model, const StageLoads& loads, const LoadedBody& body, const Eigen::VectorXd& forces,
+                 State& state) {
+    const auto end = loads.pressures(1.0);
+    for (int i = 0; i < static_cast<int>(end.size()); ++i) {
+        const auto frame = boundary_frame(model.system, i);
+        state.boundary_pressure[i] =
+            loads.is_held(i) ? boundary_stress(body, forces, i, true, frame.length, frame.normal) : end[i];
+    }
+    ++state.stage;
+    state.step_in_stage = 0;
+    state.load_factor = 0.0;
+}
+
+void apply_load(const Model& model, const StageLoads& loads, int stage, double load_factor, LoadedBody& body) {
+    body.pressures = loads.pressures(load_factor);
+    body.platen_force = loads.platen_force(load_factor);
+    loads.set_targets(body.constraints, load_factor);
+    body.gravity = stage == 0 ? Vec2(load_factor * model.gravity) : model.gravity;
+}
+
+double boundary_stress(const LoadedBody& body, const Eigen::VectorXd& forces, int boundary, bool held,
+                       double current_length, const Vec2& normal) {
+    if (!held) return body.pressures[boundary];
+    return -normal.dot(body.constraints.reaction(forces, boundary)) / current_length;
+}
+
 } // namespace kluft

@@ -4,7 +4,7 @@
 
 #include "kluft/contact/bonds.hpp"
 #include "kluft/contact/detection.hpp"
-#include "kluft/equilibrium/equilibrium_problem.hpp"
+#include "kluft/loading/loaded_body.hpp"
 #include "kluft/simulation/measurements.hpp"
 
 namespace kluft {
@@ -48,13 +48,13 @@ StateContacts state_contacts(const Model& model, const State& state) {
 }
 
 FieldRecord fields_of_state(const Model& model, const State& state) {
-    EquilibriumProblem problem;
-    problem.system = &model.system;
-    problem.moduli = &model.moduli;
-    problem.laws = &model.laws;
-    place_bonds(model, state, problem.bonds);
-    problem.contacts = state_contacts(model, state).points;
-    return field_record(model, state, problem);
+    LoadedBody body;
+    body.system = &model.system;
+    body.moduli = &model.moduli;
+    body.laws = &model.laws;
+    place_bonds(model, state, body.bonds);
+    body.contacts = state_contacts(model, state).points;
+    return field_record(model, state, body);
 }
 
 } // namespace kluft

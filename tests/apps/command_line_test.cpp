@@ -512,6 +512,18 @@ TEST_F(CommandLine, FinishedRunIsResumedWithoutChange) {
     EXPECT_EQ(summary("r")["factorizations"], factorizations);
 }
 
+TEST_F(CommandLine, ExplicitRunWritesTheSameFilesAndItsOwnQuality) {
+    write("tiny.yaml", tiny_scene);
+    const std::vector<std::string> words{"run", "tiny.yaml", "-o", "r", "--set", "analysis.integrator=explicit"};
+    ASSERT_EQ(kluft(words).code, 0);
+    expect_all_files(path("r"));
+    EXPECT_EQ(summary("r")["integrator"], "explicit");
+    EXPECT_GT(summary("r")["time_steps"], 100);
+    EXPECT_LT(summary("r")["energy_error"], 0.01);
+    EXPECT_THAT(content_of(path("r/history.csv")), HasSubstr("elapsed_s,time_steps,kinetic_ratio,platen_imbalance"));
+    expect_refused(with(words, {"--resume"}), HasSubstr("--resume: expected analysis.integrator: implicit"));
+}
+
 TEST_F(CommandLine, ResumingIsRefusedWithoutASavedStateOrWithAnotherScene) {
     write("tiny.yaml", tiny_scene);
     expect_refused({"run", "tiny.yaml", "-o", "absent", "--resume"}, HasSubstr("absent/state.h5"));

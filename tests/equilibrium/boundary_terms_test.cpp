@@ -234,7 +234,7 @@ TEST(Constraints, ProjectionOfAMatrixIsThatOfItsRowsAndColumns) {
         projector * dense(matrix) * projector + 7.0 * (Eigen::MatrixXd::Identity(n, n) - projector);
     EXPECT_NEAR(projector.trace(), static_cast<double>(n) - 5.0,
                 1e-12); // one, two and, of three collinear points, two rows
-    constraints.project(matrix, 7.0);
+    project(constraints, matrix, 7.0);
     EXPECT_LT((dense(matrix) - expected).cwiseAbs().maxCoeff(), 1e-14);
 }
 

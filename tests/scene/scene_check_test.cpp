@@ -116,8 +116,12 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"solver.repeatable='true'", "solver.repeatable: expected true or false, found 'true'"},
         Refusal{"analysis.plane=strian",
                 "analysis.plane: expected one of strain, stress, found 'strian'; did you mean 'strain'?"},
-        Refusal{"analysis.integrator=explicit",
-                "analysis.integrator: expected implicit, found 'explicit', which is not available in this version"},
+        Refusal{"analysis.integrator=explict",
+                "analysis.integrator: expected one of implicit, explicit, found 'explict'; did you mean 'explicit'?"},
+        Refusal{"analysis.damping=0.5",
+                "analysis.damping: expected integrator: explicit beside it, found integrator: implicit"},
+        Refusal{"analysis.loading_rate=1 mm/s",
+                "analysis.loading_rate: expected integrator: explicit beside it, found integrator: implicit"},
         Refusal{"analysis.kinematics=rigid",
                 "analysis.kinematics: expected affine, found 'rigid', which is not available in this version"},
         Refusal{"analysis.gravity=down",
@@ -303,6 +307,9 @@ TEST(SceneErrors, GravityNeedsDensities) {
                 ElementsAre(HasSubstr("materials.rock.density: expected a number > 0 in kg/m3 because there is "
                                       "gravity, found nothing")));
     EXPECT_THAT(errors_in(test::short_scene, {"analysis.gravity=9.81"}), testing::SizeIs(1));
+    EXPECT_THAT(errors_in(test::short_scene, {"analysis.integrator=explicit"}), testing::IsEmpty());
+    EXPECT_THAT(errors_in(test::short_scene, {"analysis={integrator: explicit, density_scaling: none}"}),
+                testing::SizeIs(1)); // inertia needs densities too
 }
 
 TEST(SceneErrors, AStageNeedsALoadOrGravity) {

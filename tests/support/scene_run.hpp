@@ -3,8 +3,10 @@
 
 #include <atomic>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "kluft/reference/explicit_simulation.hpp"
 #include "kluft/scene/scene_model.hpp"
 #include "kluft/scene/scene_reader.hpp"
 #include "kluft/simulation/simulation.hpp"
@@ -36,15 +38,24 @@ private:
     SceneRun& run_;
 };
 
-inline SceneRun run_scene(const std::string& text, const std::vector<std::string>& overrides = {}) {
+inline SceneRun run_scene(Scene scene) {
     SceneRun run;
-    run.scene = read_scene_text(text, overrides);
+    run.scene = std::move(scene);
     run.model = build_scene_model(run.scene).model;
     run.state = initial_state(run.model);
     RecordingObserver observer(run);
     const std::atomic<bool> stop{false};
+    if (run.scene.integrator == Integrator::explicit_) {
+        run.report = run_explicit(run.model, run.scene.cracks, run.scene.solver, run.scene.explicit_options, run.state,
+                                  observer, stop);
+        return run;
+    }
     run.report = run_simulation(run.model, run.scene.cracks, run.scene.solver, run.state, observer, stop);
     return run;
+}
+
+inline SceneRun run_scene(const std::string& text, const std::vector<std::string>& overrides = {}) {
+    return run_scene(read_scene_text(text, overrides));
 }
 
 } // namespace kluft

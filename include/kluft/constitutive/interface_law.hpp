@@ -43,6 +43,9 @@ struct ContactPressure {
 };
 [[nodiscard]] ContactPressure contact_pressure(const InterfaceLaw& law, double gap);
 
+/// Elastic energy of the contact pressure at a gap: the integral of p from there to zero (J/m2).
+[[nodiscard]] double contact_energy(const InterfaceLaw& law, double gap);
+
 /// Coulomb's limit c min(1, p/t_r) + p tan(phi) and its derivative with respect to p.
 struct ShearLimit {
     double value = 0.0;

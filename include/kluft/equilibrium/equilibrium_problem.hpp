@@ -2,37 +2,21 @@
 // R(q) = internal + interface - external + eta M (q - q_start) that defines it.
 #pragma once
 
-#include <optional>
-#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "kluft/assembly/block_matrix.hpp"
-#include "kluft/blocks/block_system.hpp"
-#include "kluft/constitutive/block_elasticity.hpp"
-#include "kluft/constitutive/interface_law.hpp"
-#include "kluft/contact/bonds.hpp"
-#include "kluft/contact/contact.hpp"
 #include "kluft/equilibrium/boundary_terms.hpp"
+#include "kluft/loading/loaded_body.hpp"
 
 namespace kluft {
 
-struct EquilibriumProblem {
-    const BlockSystem* system = nullptr;
-    const std::vector<ElasticModuli>* moduli = nullptr; ///< per material
-    const std::vector<InterfaceLaw>* laws = nullptr;
-    std::vector<Bond> bonds;
-    std::vector<ContactPoint> contacts;
-    std::vector<PressureEdge> pressure_edges;
-    std::vector<double> pressures; ///< per boundary (Pa)
-    std::vector<double> densities; ///< per material (kg/m3); empty without gravity
-    Vec2 gravity = Vec2::Zero();   ///< m/s2
-    Constraints constraints;
-    std::optional<PlatenForce> platen_force; ///< on the platen whose travel is unknown
-    std::vector<double> eta;                 ///< per block, of the mass-like term (Pa/m2); empty switches it off
-    double least_mass_area = 0.0;            ///< a block counts with at least this area in M (m2)
-    Eigen::VectorXd start;                   ///< q_start of the mass-like term
+/// A loaded body with the mass-like term that leads to its equilibrium.
+struct EquilibriumProblem : LoadedBody {
+    std::vector<double> eta;      ///< per block, of the mass-like term (Pa/m2); empty switches it off
+    double least_mass_area = 0.0; ///< a block counts with at least this area in M (m2)
+    Eigen::VectorXd start;        ///< q_start of the mass-like term
 };
 
 enum class TangentKind {
@@ -60,11 +44,6 @@ public:
     void tangent(const Eigen::VectorXd& q, TangentKind kind, BlockMatrix& matrix) const;
 
 private:
-    struct Sums;
-    void add_block_forces(const Eigen::VectorXd& q, Sums& sums) const;
-    void add_bond_forces(const Eigen::VectorXd& q, Sums& sums) const;
-    void add_contact_forces(const Eigen::VectorXd& q, Sums& sums) const;
-    void add_pressures(const Eigen::VectorXd& q, Sums& sums) const;
     void add_mass_forces(const Eigen::VectorXd& q, Eigen::VectorXd& forces) const;
     void set_bond_tangents(BlockMatrix& matrix) const;
     void add_block_tangents(const Eigen::VectorXd& q, TangentKind kind, BlockMatrix& matrix) const;
@@ -72,7 +51,7 @@ private:
 
     const EquilibriumProblem& problem_;
     const BlockPattern& pattern_;
-    Eigen::VectorXd magnitudes_; ///< size 6 n_blocks
+    BodyForces body_forces_;
 };
 
 /// M of a block: the integral of N' N over its area (m2), or over `least_area` if that is more.
@@ -81,16 +60,7 @@ private:
 /// The norm of eta M (q - q_start) (N/m).
 [[nodiscard]] double viscous_force(const EquilibriumProblem& problem, const Eigen::VectorXd& q);
 
-/// The traction at q of a contact point, or of a point (0 or 1) of a bond; `i` indexes problem.contacts or .bonds.
-[[nodiscard]] PointTraction contact_traction(const EquilibriumProblem& problem, int i, const Eigen::VectorXd& q);
-[[nodiscard]] PointTraction bond_traction(const EquilibriumProblem& problem, int i, int point,
-                                          const Eigen::VectorXd& q);
-
 /// The positive definite part of a contact point's tangent: a sliding point has no shear stiffness.
 [[nodiscard]] Mat2 symmetric_tangent(const PointTraction& traction);
-
-/// Cauchy stress of each block at q (Pa, positive in tension).
-[[nodiscard]] std::vector<Mat2> block_stresses(const BlockSystem& system, const std::vector<ElasticModuli>& moduli,
-                                               const Eigen::VectorXd& q);
 
 } // namespace kluft

@@ -56,6 +56,17 @@ inline void add_force(Eigen::VectorXd& forces, int b, const Vec2& xi, const Vec2
     v[5] += xi.y() * f.y();
 }
 
+/// Integral of N^T N over the block, N the displacement of a point by the unknowns, times `factor` (m2).
+[[nodiscard]] inline Mat6 area_matrix(const Block& block, double factor) {
+    Mat6 m = Mat6::Zero();
+    m.block<2, 2>(0, 0) = factor * block.area * Mat2::Identity();
+    const Mat2 second = factor * block.second_moment / (block.size * block.size);
+    for (int i = 0; i < 2; ++i) {
+        for (int j = 0; j < 2; ++j) m.block<2, 2>(2 + 2 * i, 2 + 2 * j) = second(i, j) * Mat2::Identity();
+    }
+    return m;
+}
+
 /// Current position of a vertex as a corner of a block, local coordinates (m).
 [[nodiscard]] inline Vec2 current_position(const BlockSystem& system, const Eigen::VectorXd& q, int b, int vertex) {
     const Vec2& x = system.vertices[vertex];

@@ -12,6 +12,8 @@ namespace kluft {
 /// Column names of history.csv and equilibria.csv, separated by commas: the members of StepRecord in order.
 /// Stresses (Pa) and strains (fractions) are positive in compression.
 [[nodiscard]] std::string history_header();
+/// Names of the further columns that the rows of an explicit run have: the members of MotionRecord in order.
+[[nodiscard]] std::string motion_header();
 /// Column names of cracks.csv: the members of CrackRecord in order; `mode` is `tension` or `shear`.
 [[nodiscard]] std::string cracks_header();
 

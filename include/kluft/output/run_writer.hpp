@@ -29,6 +29,7 @@ struct RunWriterOptions {
     std::optional<int> platen_stage; ///< the first stage that moves a platen
     Plane plane = Plane::strain;
     std::vector<std::string> material_names;
+    bool motion = false; ///< the rows have the columns of an explicit run
 };
 
 /// How a run ended and what it cost.
@@ -41,6 +42,7 @@ struct RunOutcome {
     double elapsed_s = 0.0;
     std::map<std::string, double> seconds; ///< by stage of the computation
     std::string version;
+    std::optional<MotionReport> motion; ///< of an explicit run
 };
 
 /// Writes history.csv, equilibria.csv and cracks.csv row by row, field files, state.h5 at checkpoints, and at the end

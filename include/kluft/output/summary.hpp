@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "kluft/constitutive/material.hpp"
+#include "kluft/simulation/run_costs.hpp"
 #include "kluft/simulation/run_status.hpp"
 #include "kluft/simulation/step_record.hpp"
 
@@ -66,6 +67,7 @@ struct RunSummary {
     std::string version;
     std::map<std::string, double> seconds; ///< by stage of the computation
     std::string message;                   ///< why the run ended, if not done
+    std::optional<MotionReport> motion;    ///< of an explicit run
 };
 
 /// The text of summary.json. What is not known or not a finite number is null.

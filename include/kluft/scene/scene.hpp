@@ -31,6 +31,8 @@ struct Scene {
     LoadProgram loads;
     CrackOptions cracks;
     SolverOptions solver;
+    Integrator integrator = Integrator::implicit;
+    ExplicitOptions explicit_options; ///< of use for the explicit integrator only
     OutputOptions output;
     std::vector<std::string> warnings; ///< what the reader noticed and accepted
     std::string text; ///< YAML with all overrides and extended scenes in it; reading it gives the same scene

@@ -3,9 +3,10 @@
 
 #include <vector>
 
-#include "kluft/equilibrium/equilibrium_problem.hpp"
 #include "kluft/fracture/crack_check.hpp"
+#include "kluft/loading/loaded_body.hpp"
 #include "kluft/simulation/model.hpp"
+#include "kluft/simulation/stage_loads.hpp"
 #include "kluft/simulation/state.hpp"
 #include "kluft/simulation/step_record.hpp"
 
@@ -32,24 +33,25 @@ struct Strains {
 [[nodiscard]] Strains measure_strains(const Model& model, const Gauges& gauges, const Eigen::VectorXd& q,
                                       const Eigen::VectorXd& reference);
 
-/// Mean normal stress on a boundary: its pressure, or the support's reaction over the current length (Pa).
-/// `residual` = internal - external forces without the supports'.
-[[nodiscard]] double boundary_stress(const EquilibriumProblem& problem, const Eigen::VectorXd& residual, int boundary,
-                                     bool held, double current_length, const Vec2& normal);
-
 /// Contact states by interface and further touching pairs, each counted once by its worst point.
 struct ContactCounts {
     int open = 0;
     int sliding = 0;
     int locked = 0;
 };
-[[nodiscard]] ContactCounts count_contacts(const Model& model, const State& state, const EquilibriumProblem& problem,
+[[nodiscard]] ContactCounts count_contacts(const Model& model, const State& state, const LoadedBody& body,
                                            const Eigen::VectorXd& q);
 
 /// Tractions of the bonded interfaces, mean of their points (Pa); zero for the others.
-[[nodiscard]] std::vector<InterfaceTraction> bond_tractions(const Model& model, const EquilibriumProblem& problem,
+[[nodiscard]] std::vector<InterfaceTraction> bond_tractions(const Model& model, const LoadedBody& body,
                                                             const Eigen::VectorXd& q);
 
-[[nodiscard]] FieldRecord field_record(const Model& model, const State& state, const EquilibriumProblem& problem);
+/// Strains, stresses, cracks and contact states at displacements q of the load step in progress. `forces` = internal -
+/// external forces without the supports'.
+[[nodiscard]] StepRecord measure_step(const Model& model, const Gauges& gauges, const State& state,
+                                      const LoadedBody& body, const StageLoads& loads, const Eigen::VectorXd& q,
+                                      const Eigen::VectorXd& forces);
+
+[[nodiscard]] FieldRecord field_record(const Model& model, const State& state, const LoadedBody& body);
 
 } // namespace kluft

@@ -31,4 +31,11 @@ struct RunCosts {
     RunSeconds seconds;
 };
 
+/// What an explicit run did.
+struct MotionReport {
+    long time_steps = 0;
+    double time_step = 0.0;    ///< the last one (s, of the time in which the inertia of the blocks counts)
+    double energy_error = 0.0; ///< the largest of its load steps
+};
+
 } // namespace kluft

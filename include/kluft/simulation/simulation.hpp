@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <optional>
 #include <string>
 
 #include "kluft/simulation/model.hpp"
@@ -20,6 +21,7 @@ struct RunReport {
     int unbalanced_steps = 0;
     int detections = 0;
     int crack_checks = 0;
+    std::optional<MotionReport> motion; ///< of explicit runs
 };
 
 /// The state before any load.

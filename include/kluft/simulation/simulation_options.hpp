@@ -1,4 +1,4 @@
-// Options of a run: how cracks are updated and how a load step is solved.
+// Options of a run: how cracks are updated and how a load step is solved or integrated.
 #pragma once
 
 namespace kluft {
@@ -37,6 +37,23 @@ struct SolverOptions {
     bool reuse = true;       ///< of the factor; false: a factorization in each linear solve
     bool repeatable = false; ///< one BLAS thread and a new factor in each load step: runs are bit-identical for any
                              ///< thread count, and across a resume
+};
+
+enum class Integrator {
+    implicit, ///< equilibrium by open-close iteration
+    explicit_ ///< motion in small time steps with local damping, as a reference for the implicit one
+};
+
+enum class DensityScaling {
+    uniform_step, ///< every block gets the inertia that makes its own stable time step that of all others
+    none          ///< inertia from the densities
+};
+
+struct ExplicitOptions {
+    double damping = 0.8; ///< alpha of local damping: the part of the unbalanced force that acts against the velocity
+    DensityScaling density_scaling = DensityScaling::uniform_step;
+    double loading_rate = 0.0;     ///< velocity of a platen (m/s); 0: from the body's own wave velocity
+    int crack_check_interval = 10; ///< time steps between two checks of the potential cracks
 };
 
 } // namespace kluft

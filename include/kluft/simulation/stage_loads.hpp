@@ -4,7 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "kluft/equilibrium/boundary_terms.hpp"
+#include "kluft/loading/boundary_loads.hpp"
+#include "kluft/loading/loaded_body.hpp"
 #include "kluft/simulation/model.hpp"
 #include "kluft/simulation/state.hpp"
 
@@ -59,5 +60,21 @@ private:
     double start_platen_stress_ = 0.0;
     double end_platen_stress_ = 0.0;
 };
+
+/// The loads of the state's stage. At its start the state remembers the displacements that it started from.
+[[nodiscard]] StageLoads enter_stage(const Model& model, State& state);
+
+/// Goes on to the next stage, with the pressures of the end of this one; on a boundary that was held it is the mean
+/// normal stress. `forces` = internal - external forces without the supports'.
+void leave_stage(const Model& model, const StageLoads& loads, const LoadedBody& body, const Eigen::VectorXd& forces,
+                 State& state);
+
+/// Sets pressures, platens and weight of a load factor; the weight grows in the first stage.
+void apply_load(const Model& model, const StageLoads& loads, int stage, double load_factor, LoadedBody& body);
+
+/// Mean normal stress on a boundary: its pressure, or the support's reaction over the current length (Pa).
+/// `forces` = internal - external forces without the supports'.
+[[nodiscard]] double boundary_stress(const LoadedBody& body, const Eigen::VectorXd& forces, int boundary, bool held,
+                                     double current_length, const Vec2& normal);
 
 } // namespace kluft

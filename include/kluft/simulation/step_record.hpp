@@ -1,6 +1,7 @@
 // What a run reports of an equilibrium. Stresses and strains positive in compression.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -9,6 +10,23 @@
 #include "kluft/core/vector.hpp"
 
 namespace kluft {
+
+/// What an explicit run says of its own quality: further columns of its rows. Energies per metre of thickness (J/m),
+/// summed since the start of the run: external_work = strain + kinetic + friction + damping + crack + detection
+/// energy.
+struct MotionRecord {
+    double time_steps = 0.0;       ///< so far
+    double kinetic_ratio = 0.0;    ///< kinetic over strain energy
+    double platen_imbalance = 0.0; ///< difference of the forces on the two platens over the larger one
+    double external_work = 0.0;    ///< of pressures, platens, supports and weight
+    double strain_energy = 0.0;    ///< elastic, of blocks and interfaces
+    double kinetic_energy = 0.0;
+    double friction_energy = 0.0;  ///< lost by slip, dilation included
+    double damping_energy = 0.0;   ///< lost by local damping
+    double crack_energy = 0.0;     ///< lost when potential cracks broke
+    double detection_energy = 0.0; ///< lost (gained: negative) by contacts whose overlap or partner changed
+    double energy_error = 0.0;     ///< what is missing in the balance over the largest of its terms
+};
 
 /// A row of history.csv or equilibria.csv; the members are its columns, in order. Pa and fractions.
 struct StepRecord {
@@ -31,6 +49,7 @@ struct StepRecord {
     double unbalanced_ratio = 0.0;
     bool balanced = true;
     double elapsed_s = 0.0;
+    std::optional<MotionRecord> motion; ///< of explicit runs
 };
 
 enum class CrackMode { tension, shear };

@@ -1,0 +1,83 @@
+// Loads and prescribed displacements on the outline of the body.
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "kluft/blocks/block_system.hpp"
+#include "kluft/core/vector.hpp"
+#include "kluft/kinematics/affine.hpp"
+
+namespace kluft {
+
+/// A follower pressure on one edge of the outline (Pa, positive inward).
+struct PressureEdge {
+    int block = 0;
+    int boundary = 0;
+    Vec2 xi_middle = Vec2::Zero();
+    Vec2 extent = Vec2::Zero();    ///< X_end - X_start (m)
+    Vec2 xi_extent = Vec2::Zero(); ///< xi_end - xi_start
+};
+
+/// All edges of boundary `i` as pressure edges.
+[[nodiscard]] std::vector<PressureEdge> pressure_edges(const BlockSystem& system, int boundary);
+
+/// Force of the pressure on the edge at displacements q: -pressure times the current outward normal times length (N/m).
+[[nodiscard]] Vec2 pressure_force(const PressureEdge& edge, double pressure, const Eigen::VectorXd& q);
+
+/// direction . displacement(xi) of a block is prescribed to be target + rate * travel (m).
+struct PrescribedDisplacement {
+    int block = 0;
+    Vec2 xi = Vec2::Zero();
+    Vec2 direction = Vec2::Zero();
+    int boundary = 0;
+    double target = 0.0;
+    double rate = 0.0; ///< not zero: moves with a rigid platen whose travel is unknown
+};
+
+/// The force on a rigid platen that its travel follows from: stress times the current width.
+struct PlatenForce {
+    double stress = 0.0;      ///< Pa, positive in compression
+    double width = 0.0;       ///< before loading (m)
+    Eigen::VectorXd widening; ///< derivative of the width by the unknowns
+    [[nodiscard]] double at(const Eigen::VectorXd& q) const { return stress * (width + widening.dot(q)); }
+};
+
+/// The rows of one block.
+struct ConstrainedBlock {
+    int block = 0;
+    std::vector<int> rows;
+    Mat6 projector;                                   ///< onto the null space of the rows
+    Eigen::Matrix<double, 6, Eigen::Dynamic> inverse; ///< pseudo-inverse of the rows
+};
+
+/// Prescribed displacements, block by block. They hold exactly: the unknowns move in the null space of the rows.
+class Constraints {
+public:
+    Constraints() = default;
+    explicit Constraints(std::vector<PrescribedDisplacement> rows);
+
+    [[nodiscard]] const std::vector<PrescribedDisplacement>& rows() const { return rows_; }
+    /// In ascending order.
+    [[nodiscard]] const std::vector<ConstrainedBlock>& blocks() const { return blocks_; }
+    void set_target(int row, double target) { rows_[row].target = target; }
+
+    /// Least-norm change of q that fulfils the rows (zero where they hold), with the travel that is nearest to q. Where
+    /// rows of a block contradict each other it is the least-squares compromise.
+    void correction(const Eigen::VectorXd& q, Eigen::VectorXd& dq) const;
+    /// Least-norm motion of the unknowns (size n) for unit travel; zero without a travelling platen.
+    [[nodiscard]] Eigen::VectorXd travel_motion(Eigen::Index n) const;
+    /// Removes the constrained part of a vector of unknowns or forces.
+    void project(Eigen::VectorXd& v) const;
+    /// The same for a vector of one block.
+    void project(int block, Vec6& v) const;
+    /// Force that the support of `boundary` exerts on the body when `residual` = internal - other external forces.
+    [[nodiscard]] Vec2 reaction(const Eigen::VectorXd& residual, int boundary) const;
+
+private:
+    std::vector<PrescribedDisplacement> rows_;
+    std::vector<ConstrainedBlock> blocks_;
+};
+
+} // namespace kluft

@@ -1,0 +1,64 @@
+// A body with its contacts in frozen frames and its loads, and the one sum of its forces: internal + interface -
+// external. What solves for equilibrium and what integrates the motion both start from it.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "kluft/blocks/block_system.hpp"
+#include "kluft/constitutive/block_elasticity.hpp"
+#include "kluft/constitutive/interface_law.hpp"
+#include "kluft/contact/bonds.hpp"
+#include "kluft/contact/contact.hpp"
+#include "kluft/loading/boundary_loads.hpp"
+
+namespace kluft {
+
+struct LoadedBody {
+    const BlockSystem* system = nullptr;
+    const std::vector<ElasticModuli>* moduli = nullptr; ///< per material
+    const std::vector<InterfaceLaw>* laws = nullptr;
+    std::vector<Bond> bonds;
+    std::vector<ContactPoint> contacts;
+    std::vector<PressureEdge> pressure_edges;
+    std::vector<double> pressures; ///< per boundary (Pa)
+    std::vector<double> densities; ///< per material (kg/m3); empty without gravity
+    Vec2 gravity = Vec2::Zero();   ///< m/s2
+    Constraints constraints;
+    std::optional<PlatenForce> platen_force; ///< on the platen whose travel is unknown
+};
+
+struct BodyForces {
+    Eigen::VectorXd forces;     ///< internal + interface - external, size 6 n_blocks (N/m)
+    Eigen::VectorXd magnitudes; ///< sums of the magnitudes of what `forces` is made of; their norm is F_ref
+    double stiffest = 0.0;      ///< of the springs and blocks (Pa)
+};
+
+/// Sums the forces at q.
+void body_forces(const LoadedBody& body, const Eigen::VectorXd& q, BodyForces& result);
+/// The same without the magnitudes, which it leaves alone. `tractions`: those of the contacts, in their order.
+void body_forces(const LoadedBody& body, const Eigen::VectorXd& q, BodyForces& result,
+                 std::vector<PointTraction>& tractions);
+
+struct GapAndSlip {
+    double gap = 0.0;  ///< total (m)
+    double slip = 0.0; ///< since the history was kept (m)
+};
+[[nodiscard]] inline GapAndSlip gap_and_slip(const ContactPoint& point, const Eigen::VectorXd& q) {
+    const Vec2 relative = relative_position(point, q);
+    return {point.normal.dot(relative), point.tangent.dot(relative) - point.slip_start};
+}
+
+/// The traction at q of a contact point, or of a point (0 or 1) of a bond; `i` indexes body.contacts or .bonds.
+[[nodiscard]] PointTraction contact_traction(const std::vector<InterfaceLaw>& laws, const ContactPoint& point,
+                                             const Eigen::VectorXd& q);
+[[nodiscard]] PointTraction contact_traction(const LoadedBody& body, int i, const Eigen::VectorXd& q);
+[[nodiscard]] PointTraction bond_traction(const LoadedBody& body, int i, int point, const Eigen::VectorXd& q);
+
+/// Cauchy stress of each block at q (Pa, positive in tension).
+[[nodiscard]] std::vector<Mat2> block_stresses(const BlockSystem& system, const std::vector<ElasticModuli>& moduli,
+                                               const Eigen::VectorXd& q);
+
+} // namespace kluft

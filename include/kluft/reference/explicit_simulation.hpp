@@ -1,0 +1,20 @@
+// A run by explicit integration: the same body, laws, detection and loads as the implicit run, and nothing of its
+// solver. It exists so that implicit results can be validated.
+#pragma once
+
+#include <atomic>
+
+#include "kluft/simulation/simulation.hpp"
+
+namespace kluft {
+
+/// Runs the stages from `state` on, at rest, which is left at the last committed load step. A load step moves its load
+/// smoothly from one value to the next over at least 10 crossings of the body by an elastic wave (100 in a stage with
+/// fewer than ten steps), slower while the unbalanced force is above `solver.balance`, and then waits until it is below.
+/// With `loading_rate` a platen moves at that constant velocity instead, and nothing waits. Of `solver` only `balance`
+/// and `max_unbalanced_steps` count. Ends as run_simulation does.
+RunReport run_explicit(const Model& model, const CrackOptions& cracks, const SolverOptions& solver,
+                       const ExplicitOptions& options, State& state, StepObserver& observer,
+                       const std::atomic<bool>& stop);
+
+} // namespace kluft

@@ -1,0 +1,129 @@
+#include "kluft/loading/loaded_body.hpp"
+
+#include <algorithm>
+
+#include "kluft/kinematics/affine.hpp"
+
+namespace kluft {
+
+namespace {
+
+/// Sums the forces and, where they are wanted, their magnitudes.
+template <bool with_magnitudes> class Summation {
+public:
+    explicit Summation(BodyForces& result) : result_(result) {}
+
+    void add(int block, const Vec2& xi, const Vec2& force) {
+        add_force(result_.forces, block, xi, force);
+        if constexpr (with_magnitudes) add_force(result_.magnitudes, block, xi.cwiseAbs(), force.cwiseAbs());
+    }
+
+    void add_blocks(const LoadedBody& body, const Eigen::VectorXd& q) {
+        const BlockSystem& system = *body.system;
+        for (int b = 0; b < system.n_blocks(); ++b) {
+            const Block& block = system.blocks[b];
+            const ElasticModuli& moduli = (*body.moduli)[block.material];
+            const Mat2 force = block.size * stress_of_gradient(displacement_gradient(q, b, block.size), moduli);
+            const Eigen::Map<const Eigen::Vector4d> columns(force.data());
+            result_.forces.segment<4>(n_block_unknowns * b + 2) += columns;
+            if constexpr (with_magnitudes)
+                result_.magnitudes.segment<4>(n_block_unknowns * b + 2) += columns.cwiseAbs();
+            raise_stiffest(2.0 * moduli.mu + moduli.lambda);
+            if (!body.densities.empty()) {
+                const Vec2 weight = body.densities[block.material] * block.area * body.gravity;
+                result_.forces.segment<2>(n_block_unknowns * b) -= weight;
+                if constexpr (with_magnitudes) result_.magnitudes.segment<2>(n_block_unknowns * b) += weight.cwiseAbs();
+            }
+        }
+    }
+
+    /// Interface forces are internal: +f on b where f is what b's opening stretches.
+    void add_bonds(const LoadedBody& body, const Eigen::VectorXd& q) {
+        for (const Bond& bond : body.bonds) {
+            const InterfaceLaw& law = (*body.laws)[bond.law];
+            for (int k = 0; k < n_bond_points; ++k) {
+                const auto traction = bond_traction(law, bond, k, q);
+                const Vec2 force = bond.weight * (traction.normal * bond.normal() + traction.shear * bond.tangent);
+                add(bond.block_b, bond.xi_b[k], force);
+                add(bond.block_a, bond.xi_a[k], -force);
+            }
+            raise_stiffest(bond.weight * law.normal_stiffness);
+        }
+    }
+
+    template <class Keep> void add_contacts(const LoadedBody& body, const Eigen::VectorXd& q, Keep keep) {
+        for (const ContactPoint& point : body.contacts) {
+            const auto traction = contact_traction(*body.laws, point, q);
+            const Vec2 force = point.weight * (traction.normal * point.normal + traction.shear * point.tangent);
+            add(point.block_b, point.xi_b, force);
+            add(point.block_a, point.xi_a, -force);
+            raise_stiffest(point.weight * (*body.laws)[point.law].normal_stiffness);
+            keep(traction);
+        }
+    }
+
+    void add_pressures(const LoadedBody& body, const Eigen::VectorXd& q) {
+        for (const PressureEdge& edge : body.pressure_edges) {
+            const double pressure = body.pressures[edge.boundary];
+            if (pressure != 0.0) add(edge.block, edge.xi_middle, -pressure_force(edge, pressure, q));
+        }
+    }
+
+private:
+    void raise_stiffest(double stiffness) { result_.stiffest = std::max(result_.stiffest, stiffness); }
+
+    BodyForces& result_;
+};
+
+} // namespace
+
+void body_forces(const LoadedBody& body, const Eigen::VectorXd& q, BodyForces& result) {
+    result.forces.setZero(q.size());
+    result.magnitudes.setZero(q.size());
+    result.stiffest = 0.0;
+    Summation<true> sum(result);
+    sum.add_blocks(body, q);
+    sum.add_bonds(body, q);
+    sum.add_contacts(body, q, [](const PointTraction&) {});
+    sum.add_pressures(body, q);
+}
+
+void body_forces(const LoadedBody& body, const Eigen::VectorXd& q, BodyForces& result,
+                 std::vector<PointTraction>& tractions) {
+    result.forces.setZero(q.size());
+    result.stiffest = 0.0;
+    tractions.clear();
+    Summation<false> sum(result);
+    sum.add_blocks(body, q);
+    sum.add_bonds(body, q);
+    sum.add_contacts(body, q, [&](const PointTraction& traction) { tractions.push_back(traction); });
+    sum.add_pressures(body, q);
+}
+
+PointTraction contact_traction(const std::vector<InterfaceLaw>& laws, const ContactPoint& point,
+                               const Eigen::VectorXd& q) {
+    const auto [gap, slip] = gap_and_slip(point, q);
+    return fracture_traction(laws[point.law], point.history, gap, slip);
+}
+
+PointTraction contact_traction(const LoadedBody& body, int i, const Eigen::VectorXd& q) {
+    return contact_traction(*body.laws, body.contacts[i], q);
+}
+
+PointTraction bond_traction(const LoadedBody& body, int i, int point, const Eigen::VectorXd& q) {
+    const Bond& bond = body.bonds[i];
+    return bond_traction((*body.laws)[bond.law], bond, point, q);
+}
+
+std::vector<Mat2> block_stresses(const BlockSystem& system, const std::vector<ElasticModuli>& moduli,
+                                 const Eigen::VectorXd& q) {
+    std::vector<Mat2> stresses;
+    stresses.reserve(system.blocks.size());
+    for (int b = 0; b < system.n_blocks(); ++b) {
+        const Block& block = system.blocks[b];
+        stresses.push_back(cauchy_stress(deformation_gradient(q, b, block.size), moduli[block.material]));
+    }
+    return stresses;
+}
+
+} // namespace kluft

@@ -1,0 +1,65 @@
+#include "kluft/simulation/weakening.hpp"
+
+#include <algorithm>
+
+#include "kluft/contact/bonds.hpp"
+#include "kluft/contact/contact.hpp"
+
+namespace kluft {
+
+namespace {
+
+constexpr double critical_share = 0.95; ///< of f_max in `critical_first`
+
+double failure_threshold(const CrackOptions& options, double largest) {
+    switch (options.update) {
+    case CrackUpdate::event:
+        return largest - options.event_tolerance;
+    case CrackUpdate::critical_first:
+        return std::max(1.0, critical_share * largest);
+    case CrackUpdate::all:
+        return 1.0;
+    case CrackUpdate::single:
+        return largest;
+    }
+    return 1.0;
+}
+
+} // namespace
+
+std::vector<CrackCandidate> chosen_to_fail(const CrackOptions& options, const std::vector<CrackCandidate>& candidates) {
+    const double largest = largest_index(candidates);
+    if (largest < 1.0) return {};
+    auto chosen = failing(candidates, failure_threshold(options, largest));
+    if (options.update == CrackUpdate::single) chosen.resize(1);
+    return chosen;
+}
+
+CrackRecord weaken(const Model& model, const CrackCandidate& candidate, State& state) {
+    const int i = candidate.interface;
+    const Interface& interface = model.system.interfaces[i];
+    const bool tension = candidate.index.tension_governs;
+    state.interfaces[i] = tension ? InterfaceStatus::tension_crack : InterfaceStatus::shear_crack;
+    const bool ordered = interface.block_a < interface.block_b;
+    for (int point = 0; point < static_cast<int>(overlap_positions.size()); ++point) {
+        const double along_a = overlap_positions[point];
+        ContactMemory memory;
+        memory.key = key_of_own_edges(interface, point);
+        memory.history.shear_trial =
+            bond_shear_at(&state.bond_shear[n_bond_points * i], ordered ? along_a : 1.0 - along_a);
+        state.contacts.push_back(memory);
+    }
+    const Edge& edge = model.system.blocks[interface.block_a].edges[interface.edge_a];
+    const Vec2 middle = model.system.origin + 0.5 * (edge_start(model.system, edge) + edge_end(model.system, edge));
+    CrackRecord record;
+    record.step = state.step + 1;
+    record.interface = i;
+    record.x = middle.x();
+    record.y = middle.y();
+    record.mode = tension ? CrackMode::tension : CrackMode::shear;
+    record.p1 = candidate.stress.p1;
+    record.p3 = candidate.stress.p3;
+    return record;
+}
+
+} // namespace kluft

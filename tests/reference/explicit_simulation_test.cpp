@@ -1,0 +1,257 @@
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kluft/reference/explicit_simulation.hpp"
+#include "support/scene_run.hpp"
+
+namespace kluft {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180.0;
+constexpr const char* by_steps = "analysis.integrator=explicit";
+
+void expect_closed_energy(const SceneRun& run) {
+    for (const StepRecord& record : run.history) {
+        ASSERT_TRUE(record.motion);
+        EXPECT_LT(std::abs(record.motion->energy_error), 0.01) << record.step;
+    }
+}
+
+// Plane stress: strain = p/E, here over 2 m of height.
+TEST(ExplicitSimulation, ElasticBlockUnderPressureShortensByItsStressOverE) {
+    const auto run = run_scene(R"(
+kluft: 1
+analysis: {plane: stress, integrator: explicit}
+materials: {rock: {youngs_modulus: 20 GPa, poissons_ratio: 0.25}}
+interfaces: {joint: {kind: fracture, normal_stiffness: 1e12, shear_stiffness: 1e12}}
+geometry: {domain: {rectangle: {width: 1.0, height: 2.0}}, reference_spacing: 1.0}
+boundaries: {bottom: {support: pinned}}
+stages: [{name: pressure, pressure: {top: 2 MPa}, steps: 2}]
+)");
+    ASSERT_EQ(run.report.status, RunStatus::done) << run.report.diagnosis;
+    EXPECT_EQ(run.report.unbalanced_steps, 0);
+    EXPECT_NEAR(run.history.back().axial_strain, 1e-4, 1e-7);
+    EXPECT_NEAR(run.history.back().lateral_strain, -0.25e-4, 1e-7);
+    EXPECT_LT(run.history.back().motion->platen_imbalance, 1e-3);
+    expect_closed_energy(run);
+}
+
+const char* const hexagons = R"(
+kluft: 1
+materials: {rock: {density: 2500, youngs_modulus: 10 GPa, poissons_ratio: 0.25, cohesion: 2 MPa, friction_angle: 40, tensile_strength: 1 MPa}}
+interfaces:
+  joint: {kind: fracture, friction_angle: 30, normal_stiffness_times_spacing: 100 GPa, shear_stiffness_times_spacing: 50 GPa}
+  bond: {kind: potential_crack, fails_to: joint, normal_stiffness_times_spacing: 100 GPa, shear_stiffness_times_spacing: 50 GPa}
+geometry:
+  domain: {rectangle: {width: 0.3, height: 0.5}}
+  fractures: [{trace: [[-0.1, 0.1], [0.4, 0.4]], interface: joint}]
+  tessellation: {hexagons: {spacing: 0.1}, interface: bond}
+boundaries: {bottom: {support: pinned}}
+stages:
+  - {name: pressure, pressure: {left: 1 MPa, right: 1 MPa, top: 1 MPa}, steps: 2}
+  - {name: platen, strain: {boundary: top, value: 4e-4}, steps: 5}
+)";
+
+TEST(ExplicitSimulation, FracturedHexagonsFollowTheImplicitCurve) {
+    const auto reference = run_scene(hexagons);
+    const auto run = run_scene(hexagons, {by_steps});
+    ASSERT_EQ(run.report.status, RunStatus::done) << run.report.diagnosis;
+    ASSERT_EQ(run.history.size(), reference.history.size());
+    const double scale = reference.history.back().axial_stress;
+    for (std::size_t i = 0; i < run.history.size(); ++i) {
+        EXPECT_NEAR(run.history[i].axial_stress, reference.history[i].axial_stress, 5e-3 * scale) << i;
+        EXPECT_NEAR(run.history[i].axial_strain, reference.history[i].axial_strain, 2e-6) << i;
+        EXPECT_NEAR(run.history[i].lateral_strain, reference.history[i].lateral_strain, 5e-6) << i;
+        EXPECT_TRUE(run.history[i].balanced) << i;
+    }
+    EXPECT_GT(run.history.back().motion->friction_energy, 0.0);
+    expect_closed_energy(run);
+}
+
+// An unfractured bonded body is elastic: no friction, so both integrators meet at one state.
+TEST(ExplicitSimulation, BondedHexagonsAreAsStiffAsInTheImplicitRun) {
+    const std::vector<std::string> overrides{"geometry.fractures=[]", "materials.rock.cohesion=1e9",
+                                             "materials.rock.tensile_strength=1e9"};
+    auto explicit_overrides = overrides;
+    explicit_overrides.emplace_back(by_steps);
+    const auto reference = run_scene(hexagons, overrides);
+    const auto run = run_scene(hexagons, explicit_overrides);
+    ASSERT_EQ(run.report.status, RunStatus::done) << run.report.diagnosis;
+    const double expected = reference.history.back().axial_stress;
+    EXPECT_NEAR(run.history.back().axial_stress, expected, 1e-3 * expected);
+    EXPECT_NEAR(run.history.back().lateral_strain, reference.history.back().lateral_strain, 1e-6);
+    EXPECT_EQ(run.history.back().motion->friction_energy, 0.0);
+    EXPECT_EQ(run.history.back().motion->crack_energy, 0.0);
+    expect_closed_energy(run);
+}
+
+TEST(ExplicitSimulation, PotentialCracksFailAtTheStressOfTheImplicitRun) {
+    const std::vector<std::string> overrides{"geometry.fractures=[]", "materials.rock.cohesion=0.5 MPa",
+                                             "materials.rock.friction_angle=30"};
+    auto explicit_overrides = overrides;
+    explicit_overrides.emplace_back(by_steps);
+    const auto reference = run_scene(hexagons, overrides);
+    const auto run = run_scene(hexagons, explicit_overrides);
+    ASSERT_FALSE(reference.cracks.empty());
+    ASSERT_FALSE(run.cracks.empty());
+    EXPECT_EQ(run.cracks.front().interface, reference.cracks.front().interface);
+    EXPECT_EQ(run.cracks.front().step, reference.cracks.front().step);
+    EXPECT_NEAR(run.cracks.front().p1, reference.cracks.front().p1, 0.02 * reference.cracks.front().p1);
+    EXPECT_GT(run.history.back().motion->crack_energy, 0.0);
+    expect_closed_energy(run);
+}
+
+std::string incline(double slope_degrees) {
+    return fmt::format(R"(
+kluft: 1
+analysis: {{plane: stress, integrator: explicit, gravity: [{:.17g}, {:.17g}]}}
+materials: {{rock: {{density: 2500, youngs_modulus: 1 GPa, poissons_ratio: 0.2}}}}
+interfaces: {{joint: {{kind: fracture, normal_stiffness: 1e8, shear_stiffness: 1e8, friction_angle: 30, contact_rounding: 0, friction_rounding: 0}}}}
+geometry:
+  domain: {{rectangle: {{width: 4.0, height: 1.5}}}}
+  fractures: [{{name: plane, trace: [[-1, 0.5], [5, 0.5]], interface: joint}}]
+  reference_spacing: 1.0
+boundaries: {{bottom: {{support: fixed}}}}
+stages: [{{name: weight, steps: 2}}]
+solver: {{max_unbalanced_steps: 1}}
+)",
+                       10.0 * std::sin(slope_degrees * degree), -10.0 * std::cos(slope_degrees * degree));
+}
+
+// Coulomb: phi = 30 degrees.
+TEST(ExplicitSimulation, BlockOnInclineStaysBelowTheFrictionAngleAndSlipsAboveIt) {
+    const auto stays = run_scene(incline(29.5));
+    EXPECT_EQ(stays.report.status, RunStatus::done) << stays.report.diagnosis;
+    EXPECT_EQ(stays.report.unbalanced_steps, 0);
+    const auto slips = run_scene(incline(30.5));
+    EXPECT_TRUE(slips.report.status == RunStatus::collapsed || slips.report.status == RunStatus::no_equilibrium);
+    EXPECT_FALSE(slips.report.diagnosis.empty());
+}
+
+/// A plane with c = 0.1 MPa and phi = 30 degrees at 0.2 MPa lateral pressure; its normal makes 60 degrees with p1.
+std::string plane_of_weakness(const char* platen) {
+    const double rise = 1.4 * std::tan(60 * degree) / 2;
+    return fmt::format(R"(
+kluft: 1
+analysis: {{integrator: explicit}}
+materials: {{rock: {{youngs_modulus: 5 GPa, poissons_ratio: 0.2}}}}
+interfaces: {{joint: {{kind: fracture, normal_stiffness: 1e10, shear_stiffness: 1e10, friction_angle: 30, cohesion: 0.1 MPa, cohesion_onset: 1000, contact_rounding: 0, friction_rounding: 0}}}}
+geometry:
+  domain: {{rectangle: {{width: 1.0, height: 3.0}}}}
+  fractures: [{{name: plane, trace: [[-0.2, {:.17g}], [1.2, {:.17g}]], interface: joint}}]
+  reference_spacing: 1.0
+boundaries: {{bottom: {{support: smooth}}}}
+stages:
+  - {{name: pressure, pressure: {{left: 0.2 MPa, right: 0.2 MPa, top: 0.2 MPa}}, steps: 1}}
+  - {{name: platen, {}, platens: smooth, steps: 10}}
+)",
+                       1.5 - rise, 1.5 + rise, platen);
+}
+
+// Jaeger: p1 - p3 = 2 (c + p3 tan phi)/((1 - tan phi cot beta) sin 2 beta).
+const double jaegers_stress = 2 * (0.1e6 + 0.2e6 * std::tan(30 * degree)) /
+                              ((1 - std::tan(30 * degree) / std::tan(60 * degree)) * std::sin(120 * degree));
+
+TEST(ExplicitSimulation, PlaneOfWeaknessSlipsAtJaegersStress) {
+    const auto run = run_scene(plane_of_weakness("strain: {boundary: top, value: 1e-3}"));
+    ASSERT_EQ(run.report.status, RunStatus::done) << run.report.diagnosis;
+    EXPECT_NEAR(run.history.back().differential_stress, jaegers_stress, 5e-3 * jaegers_stress);
+    expect_closed_energy(run);
+}
+
+TEST(ExplicitSimulation, BodyUnderAGivenStressCollapsesAtTheStepThatPassesJaegersStress) {
+    const auto run = run_scene(plane_of_weakness("stress: {boundary: top, value: 1.1 MPa}"));
+    EXPECT_EQ(run.report.status, RunStatus::collapsed) << run.report.diagnosis;
+    const double step = (1.1e6 - 0.2e6) / 10;
+    EXPECT_LT(run.history.back().differential_stress, 1.001 * jaegers_stress);
+    EXPECT_GT(run.history.back().differential_stress, jaegers_stress - 1.5 * step);
+    EXPECT_TRUE(run.state.displacement.allFinite());
+}
+
+// A platen at constant velocity: slower and slower runs meet the quasi-static one; the waves of a fast one are seen.
+TEST(ExplicitSimulation, PlatenVelocityIsWhatTheSceneSays) {
+    const std::string platen = "strain: {boundary: top, value: 1e-4}";
+    const auto run_at = [&](const char* rate) {
+        return run_scene(plane_of_weakness(platen.c_str()), {fmt::format("analysis.loading_rate={}", rate)});
+    };
+    const auto slow = run_at("1 mm/s");
+    const auto fast = run_at("10 mm/s");
+    ASSERT_EQ(slow.report.status, RunStatus::done);
+    ASSERT_TRUE(slow.report.motion && fast.report.motion);
+    const auto in_platen_stage = [](const SceneRun& run) {
+        return run.history.back().motion->time_steps - run.history[1].motion->time_steps;
+    };
+    EXPECT_NEAR(in_platen_stage(slow), 10 * in_platen_stage(fast), 0.1 * in_platen_stage(slow));
+    EXPECT_LT(slow.history.back().motion->platen_imbalance, fast.history.back().motion->platen_imbalance);
+    EXPECT_LT(slow.history.back().motion->platen_imbalance, 0.02);
+}
+
+TEST(ExplicitSimulation, BodyThatNothingHoldsEndsWithADiagnosisAndFiniteNumbers) {
+    const auto run = run_scene(R"(
+kluft: 1
+analysis: {integrator: explicit, gravity: 10}
+materials: {rock: {density: 2500, youngs_modulus: 1 GPa, poissons_ratio: 0.2}}
+interfaces: {joint: {kind: fracture, normal_stiffness: 1e9, shear_stiffness: 1e9}}
+geometry: {domain: {rectangle: {width: 1.0, height: 1.0}}, reference_spacing: 1.0}
+stages: [{name: weight, steps: 2}]
+)");
+    EXPECT_EQ(run.report.status, RunStatus::no_equilibrium);
+    EXPECT_THAT(run.report.diagnosis, testing::HasSubstr("falls"));
+    EXPECT_TRUE(run.state.displacement.allFinite());
+    for (const StepRecord& record : run.history) EXPECT_TRUE(std::isfinite(record.axial_stress));
+}
+
+TEST(ExplicitSimulation, InterruptedRunKeepsTheLastCommittedStep) {
+    const Scene scene = read_scene_text(hexagons, {by_steps});
+    const Model model = build_scene_model(scene).model;
+    State state = initial_state(model);
+    SceneRun run;
+    RecordingObserver observer(run);
+    const std::atomic<bool> stop{true};
+    const auto report = run_explicit(model, scene.cracks, scene.solver, scene.explicit_options, state, observer, stop);
+    EXPECT_EQ(report.status, RunStatus::interrupted);
+    EXPECT_EQ(state.step, 0);
+    EXPECT_EQ(state.displacement.norm(), 0.0);
+}
+
+TEST(ExplicitSimulation, SameSceneTwiceGivesTheSameBits) {
+    const auto first = run_scene(hexagons, {by_steps});
+    const auto second = run_scene(hexagons, {by_steps});
+    EXPECT_EQ((first.state.displacement - second.state.displacement).norm(), 0.0);
+    EXPECT_EQ(first.report.motion->time_steps, second.report.motion->time_steps);
+}
+
+/// Axial stresses within 3 % of the implicit peak at every load step before it, peaks within 5 %.
+void expect_triaxial_agreement(const std::string& model, std::vector<std::string> overrides) {
+    const std::string file = std::string(KLUFT_SOURCE_DIR) + "/models/triaxial/" + model + ".yaml";
+    const auto reference = run_scene(read_scene(file, overrides));
+    overrides.emplace_back(by_steps);
+    const auto run = run_scene(read_scene(file, overrides));
+    ASSERT_EQ(run.report.status, RunStatus::done) << run.report.diagnosis;
+    ASSERT_EQ(run.history.size(), reference.history.size());
+    const auto by_stress = [](const StepRecord& a, const StepRecord& b) { return a.axial_stress < b.axial_stress; };
+    const auto implicit_peak = std::ranges::max_element(reference.history, by_stress);
+    const double peak = implicit_peak->axial_stress;
+    EXPECT_NEAR(std::ranges::max_element(run.history, by_stress)->axial_stress, peak, 0.05 * peak);
+    const auto n_before = static_cast<std::size_t>(implicit_peak - reference.history.begin());
+    for (std::size_t i = 0; i <= n_before; ++i)
+        EXPECT_NEAR(run.history[i].axial_stress, reference.history[i].axial_stress, 0.03 * peak) << i;
+    expect_closed_energy(run);
+}
+
+TEST(ExplicitSimulation, FracturedSampleFollowsTheImplicitCurve) { expect_triaxial_agreement("case-1", {}); }
+
+TEST(SlowExplicitSimulation, SampleWithPotentialCracksFollowsTheImplicitCurveToItsPeak) {
+    expect_triaxial_agreement("case-3-all", {"stages.1.steps=56", "stages.1.strain.value=0.014"});
+}
+
+} // namespace
+} // namespace kluft
