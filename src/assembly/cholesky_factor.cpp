@@ -149,7 +149,16 @@ bool CholeskyFactor::factorize(Precision precision) {
     columns_.release();
     cholmod_l_free_work(&cholmod_->common);
     cholmod_->require_memory();
-    if (rounded) rounded_ = round_in_place(static_cast<double*>(cholmod_->factor->x), cholmod_->factor->xsize);
+    if (!rounded) return regular;
+    auto* const numbers = static_cast<double*>(cholmod_->factor->x);
+    const std::size_t n = cholmod_->factor->xsize;
+    if (is_large()) {
+        rounded_ = round_in_place(numbers, n);
+    } else { // paths read it in double precision, many times
+        copy_.resize(n + rounded_padding);
+        for (std::size_t i = 0; i < n; ++i) copy_[i] = static_cast<float>(numbers[i]);
+        rounded_ = copy_.data();
+    }
     return regular;
 }
 
@@ -200,9 +209,12 @@ void CholeskyFactor::solve_upper(std::vector<double>& x) {
 }
 
 const double* CholeskyFactor::values(const Supernode& supernode, std::vector<double>& room) const {
-    if (rounded_ == nullptr) return static_cast<const double*>(cholmod_->factor->x) + supernode.first_value;
+    if (rounded_ == nullptr || rounded_ == copy_.data())
+        return static_cast<const double*>(cholmod_->factor->x) + supernode.first_value;
     const float* const first = rounded_ + supernode.first_value;
-    room.assign(first, first + static_cast<std::ptrdiff_t>(supernode.n_rows) * supernode.n_columns);
+    const std::size_t n = static_cast<std::size_t>(supernode.n_rows) * supernode.n_columns;
+    if (room.size() < n) room.resize(n);
+    for (std::size_t i = 0; i < n; ++i) room[i] = first[i];
     return room.data();
 }
 

@@ -73,6 +73,7 @@ private:
 
     BlockColumns columns_;
     const float* rounded_ = nullptr; ///< the numbers of the factor, if it is kept in single precision
+    std::vector<float> copy_;        ///< those of a small one, which is kept in double precision too
     std::vector<double> work_;       ///< for one supernode
     std::vector<int> parent_;
     std::vector<int> of_column_;
