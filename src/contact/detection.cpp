@@ -19,6 +19,8 @@ const double facing_cosine = -std::sqrt(0.5);
 constexpr double shortest_overlap = 1e-6;
 /// Deeper than this part of the smaller block, two edges are not in contact but on opposite sides of a block.
 constexpr double deepest_penetration = 0.25;
+/// Deeper than this part of it, they are in contact only if what overlaps is inside one of the blocks.
+constexpr double doubtful_penetration = 0.01;
 /// Two points of a fracture that were nearer than this part of its edge were one point; what is between is round-off.
 constexpr double same_point = 1e-12;
 /// Length that a vertex stands for, as a part of min(edge, h): decides convergence, not strength (measured).
@@ -126,7 +128,9 @@ public:
 
     void run(int a, std::span<const CurrentEdge> edges_a, int b, std::span<const CurrentEdge> edges_b) {
         bonded_pair_ = bonded(a, b);
-        deepest_ = -deepest_penetration * std::min(system_.blocks[a].size, system_.blocks[b].size);
+        const double smaller = std::min(system_.blocks[a].size, system_.blocks[b].size);
+        deepest_ = -deepest_penetration * smaller;
+        doubtful_ = -doubtful_penetration * smaller;
         overlapping_.clear();
         for (const auto& edge_a : edges_a) {
             for (const auto& edge_b : edges_b) append_overlap(a, edge_a, b, edge_b);
@@ -228,6 +232,13 @@ private:
         const double gap_high = gap_at(high);
         if (std::min(gap_low, gap_high) > reach_ || std::min(gap_low, gap_high) < deepest_) return;
 
+        const double at = low + (gap_low < gap_high ? 0.25 : 0.75) * overlap; // nearer to the deeper end
+        if (gap_at(at) < doubtful_) {
+            const Vec2 on_a = edge_a.start + (at / extent_a) * (edge_a.end - edge_a.start);
+            const Vec2 on_b = edge_b.end + ((at - start_b) / extent_b) * (edge_b.start - edge_b.end);
+            if (!is_inside(a, on_b) && !is_inside(b, on_a)) return;
+        }
+
         overlapping_.emplace_back(edge_a.edge, edge_b.edge);
         for (int k = 0; k < 3; ++k) {
             const double tau = low + overlap_positions[k] * overlap;
@@ -237,6 +248,19 @@ private:
             finish(point, along);
             points_.push_back(point);
         }
+    }
+
+    /// By the number of edges to the right of x.
+    [[nodiscard]] bool is_inside(int block, const Vec2& x) const {
+        bool inside = false;
+        for (const Edge& edge : system_.blocks[block].edges) {
+            const Vec2 p = current_position(system_, q_, block, edge.start) - x;
+            const Vec2 r = current_position(system_, q_, block, edge.end) - x;
+            if ((p.y() > 0.0) != (r.y() > 0.0) && (p.x() * r.y() - r.x() * p.y() > 0.0) == (r.y() > p.y())) {
+                inside = !inside;
+            }
+        }
+        return inside;
     }
 
     [[nodiscard]] bool overlap_covers(int edge_of_vertex, int edge, bool swapped) const {
@@ -258,6 +282,7 @@ private:
         const Vec2 from_edge = leaving.start - edge.start;
         const double gap = outward.dot(from_edge);
         if (gap > reach_ || gap < deepest_) return;
+        if (gap < doubtful_ && !is_inside(target, leaving.start)) return;
         const double s = edge.direction.dot(from_edge) / edge.length;
         if (s < 0.0 || s > 1.0) return;
         if (outward.dot(leaving.end - leaving.start) < 0.0 || outward.dot(leaving.before - leaving.start) < 0.0) return;
@@ -280,6 +305,7 @@ private:
     std::vector<ContactPoint> points_of_higher_; ///< vertices of the higher block
     bool bonded_pair_ = false;
     double deepest_ = 0.0;
+    double doubtful_ = 0.0;
     std::vector<std::pair<int, int>> overlapping_; ///< (edge of a, edge of b) of the present pair
 };
 

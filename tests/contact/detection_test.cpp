@@ -194,6 +194,22 @@ TEST(ContactDetection, NetAtRestHasThePointsOfItsInterfacesOnly) {
     }
 }
 
+// The top of one and the bottom of the next but one face away from each other, 1 to 2 cm apart.
+TEST(ContactDetection, ThinSlabsTouchTheirNeighboursOnly) {
+    std::vector<std::vector<Vec2>> traces;
+    for (int i = 1; i < 5; ++i) traces.push_back({{-1.0, 0.01 * i}, {2.0, 0.01 * i}});
+    CutRectangle slabs(1.0, 0.05, traces);
+    for (const Vec2& u : {Vec2(0.0, 0.0), Vec2(0.0, -1e-5), Vec2(0.02, -2e-3)}) {
+        slabs.q = at_rest(slabs.system);
+        for (int b = 0; b < 5; ++b) slabs.move(b, b * u); // bottom to top
+        for (const ContactPoint& point : slabs.points()) {
+            if (slabs.gap(point) > 0.0) continue; // across a slab, within the reach
+            EXPECT_EQ(point.block_b - point.block_a, 1) << u.transpose();
+            EXPECT_NEAR(slabs.gap(point), u.y(), 1e-12);
+        }
+    }
+}
+
 // ---- bonds ---------------------------------------------------------------------------------------------------------
 
 TEST(ContactDetection, BondedPairsAreNotSearched) {
@@ -321,6 +337,17 @@ TEST(BroadPhase, OfNoBoxesHasNoPairs) { EXPECT_TRUE(meeting_boxes({}, 0.1).empty
 
 using EdgePair = std::tuple<int, int, int, int>;
 
+/// How often the outline of a block turns around x, by the angles under which its edges are seen.
+double turns_around(const BlockSystem& system, const Eigen::VectorXd& q, int block, const Vec2& x) {
+    double angle = 0.0;
+    for (const Edge& edge : system.blocks[block].edges) {
+        const Vec2 from = current_position(system, q, block, edge.start) - x;
+        const Vec2 to = current_position(system, q, block, edge.end) - x;
+        angle += std::atan2(cross(from, to), from.dot(to));
+    }
+    return angle / (2.0 * std::numbers::pi);
+}
+
 /// Overlap of each pair of facing edges of different blocks, along the bisector; from positions, without a broad phase.
 std::map<EdgePair, double> overlaps_of_all_pairs(const BlockSystem& system, const Eigen::VectorXd& q,
                                                  double largest_gap) {
@@ -350,6 +377,15 @@ std::map<EdgePair, double> overlaps_of_all_pairs(const BlockSystem& system, cons
                     const double gap =
                         std::min(across(low, s, v) - across(low, p, u), across(high, s, v) - across(high, p, u));
                     if (gap > largest_gap || gap < -0.25 * std::min(system.blocks[a].size, system.blocks[b].size))
+                        continue;
+                    const bool deeper_at_low =
+                        across(low, s, v) - across(low, p, u) < across(high, s, v) - across(high, p, u);
+                    const double at = low + (deeper_at_low ? 0.25 : 0.75) * (high - low);
+                    const Vec2 on_a = p + u * (at - along.dot(p)) / along.dot(u);
+                    const Vec2 on_b = s + v * (at - along.dot(s)) / along.dot(v);
+                    if (across(at, s, v) - across(at, p, u) <
+                            -0.01 * std::min(system.blocks[a].size, system.blocks[b].size) &&
+                        turns_around(system, q, a, on_b) < 0.5 && turns_around(system, q, b, on_a) < 0.5)
                         continue;
                     overlaps[{a, static_cast<int>(e), b, static_cast<int>(f)}] = high - low;
                 }
