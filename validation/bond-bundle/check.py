@@ -5,16 +5,18 @@ import numpy as np
 from suite import figures
 
 STIFFNESS = 1e12
+BLOCKS = 1.0 / 1e15  # H/E of both blocks, which stretch a little (a block has at most E = 1e15 Pa); width 1 m
 BONDS = [(0.3, 1.5e6), (0.2, 0.5e6), (0.1, 2.0e6), (0.25, 0.8e6), (0.15, 1.1e6)]  # length (m), tensile strength (Pa)
 
 
 def expected_events():
-    """Per event, weakest bond first: displacement, force (N/m) before and after."""
+    """Per event, weakest bond first: displacement, force (N/m) before and after it at the same displacement."""
     events = []
     for _, strength in sorted(BONDS, key=lambda bond: bond[1]):
-        travel = strength / STIFFNESS
         before = sum(length for length, other in BONDS if other >= strength) * strength
-        after = sum(length for length, other in BONDS if other > strength) * strength
+        travel = strength / STIFFNESS + BLOCKS * before
+        left = sum(length for length, other in BONDS if other > strength)
+        after = travel / (BLOCKS + 1 / (STIFFNESS * left)) if left else 0.0
         events.append((travel, before, after))
     return events
 

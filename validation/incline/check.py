@@ -61,8 +61,7 @@ def draw(case, slopes, found, limit, sliding):
     plot.plot(slope, np.minimum(np.sin(radians), np.cos(radians) * math.tan(math.radians(FRICTION))), color=figures.INK, linewidth=1.0)
     plot.plot(slopes, [n for n, _ in found], "o", color=figures.FOUND, label="N/W, at rest")
     plot.plot(slopes, [t for _, t in found], "s", color=figures.SECOND, label="T/W, at rest")
-    moving = {slope: forces(run) for slope, run in sliding.items()}
-    plot.plot(moving, [t for _, t in moving.values()], "s", color=figures.SECOND, markerfacecolor="white", label="T/W, sliding")
+    plot.plot(list(sliding), [0.02] * len(sliding), "x", color=figures.INK, label="no equilibrium")
     plot.axvline(limit, color=figures.PALE, linewidth=0.9, linestyle="--")
     figures.label(plot, (limit + 0.5, 0.1), f"slides at {limit:.3f}°", ha="left")
     plot.set(xlabel="slope (deg)", ylabel="force over weight", ylim=(0, 1.05))

@@ -28,7 +28,7 @@ def measured(run):
     blocks = run.blocks()
     centres, motion = blocks.middles(), blocks.mean_displacements()
     row = D * math.sqrt(3) / 2
-    middle = blocks.nearest((0.3, 2 * row))
+    middle = blocks.nearest((0.9, 2 * row))
     x, y = centres[middle]
     right, left = (blocks.nearest((x + k * D, y)) for k in (1, -1))
     upper = blocks.nearest((x, y + 2 * row))

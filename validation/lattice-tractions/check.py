@@ -8,7 +8,7 @@ from suite import figures
 
 D = 0.03
 ROW = D * math.sqrt(3) / 2
-CENTRE = (0.3075, 2 * ROW)  # of a hexagon in the middle of the strip
+CENTRE = (0.9075, 2 * ROW)  # of a hexagon in the middle of the strip
 
 
 def tractions(ratio, angle):

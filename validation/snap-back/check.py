@@ -19,11 +19,12 @@ def check(case):
         table = case.run(f"length-{length:g}", {
             "geometry.domain.rectangle.height": length, "geometry.fractures.0.trace": [[-0.1, length / 2], [1.1, length / 2]],
             "stages.0.strain.value": -1.3 * limit}).equilibria
-        curves[length] = (-table["axial_strain"] * length, -table["axial_stress"])
+        # The table begins with the first load step; the body as it was cut is at rest.
+        curves[length] = (np.append(0.0, -table["axial_strain"] * length), np.append(0.0, -table["axial_stress"]))
         case.expect_same(f"cracks, L {length:g} m", 1, int(table["cracks_tension"][-1]))
     case.expect_worst("strength", [STRENGTH / 1e6] * 3, [stress.max() / 1e6 for _, stress in curves.values()], 1e-6, "MPa")
     for length, (travel, stress) in curves.items():
-        lost = np.trapezoid(stress, travel) if hasattr(np, "trapezoid") else np.trapz(stress, travel)
+        lost = np.sum(0.5 * (stress[1:] + stress[:-1]) * np.diff(travel))
         case.expect(f"energy lost, L {length:g} m", energy(length), float(lost), 1e-6, "J/m2")
     case.expect_worst("stress after the tear over the strength", [0.0] * 3, [stress[-1] / STRENGTH for _, stress in curves.values()], 1e-6,
                       absolute=True)

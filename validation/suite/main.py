@@ -69,7 +69,8 @@ def run_case(name, output, program):
 
     case = Case(name, CASES / name, output / name, program)
     case.output.mkdir(parents=True, exist_ok=True)
-    (case.output / "figure.png").unlink(missing_ok=True)
+    for stale in ("figure.png", "failure.txt"):
+        (case.output / stale).unlink(missing_ok=True)
     failure = ""
     try:
         spec = importlib.util.spec_from_file_location(f"check_{name.replace('-', '_')}", CASES / name / "check.py")
