@@ -71,10 +71,10 @@ def draw(case, curves):
             angles = np.radians(30 + 60 * np.arange(6))
             figures.block(sketch, np.transpose([x + np.cos(angles) / math.sqrt(3), y + np.sin(angles) / math.sqrt(3)]))
     for x in (0.5, 2.0, 3.5):
-        figures.arrow(sketch, (x, 4.0), (x, 3.25))
+        figures.arrow(sketch, (x, 3.95), (x, 3.25))
         figures.arrow(sketch, (x, -1.4), (x, -0.65))
-    figures.arrow(sketch, (1.0, 0.0), (2.0, 0.0), "d", (0, 0.25), figures.INK, "<|-|>")
-    figures.label(sketch, (4.9, 1.3), "$k_n, k_s$")
+    figures.arrow(sketch, (1.0, 0.0), (2.0, 0.0), "d", (0, 0.3), figures.INK, "<|-|>")
+    figures.label(sketch, (2.0, 4.3), "$k_n, k_s$ on all edges")
     normal = np.logspace(10.7, 13.3, 200)
     colours = (figures.FOUND, figures.SECOND, figures.THIRD, figures.INK)
     for colour, ((plane, ratio), points) in zip(colours, curves.items()):
