@@ -171,9 +171,7 @@ void add_validate_command(CLI::App& app, Command& command) {
     sub->set_help_flag();
     sub->prefix_command(); // all words, also --help, are for the script
     sub->allow_extras();
-    sub->callback([sub, &command] {
-        command = [words = sub->remaining()] { return kluft::validate({words}); };
-    });
+    sub->callback([sub, &command] { command = [words = sub->remaining()] { return kluft::validate({words}); }; });
 }
 
 } // namespace

@@ -37,9 +37,10 @@ fs::path validation_script(const fs::path& program) {
         std::error_code ignored;
         if (fs::is_regular_file(place / script, ignored)) return place / script;
     }
-    throw InputError(fmt::format("kluft validate: expected the validation suite in {} or as scripts/validate in a directory "
-                                 "above {}, found neither; it comes with Kluft's sources",
-                                 places.front().string(), program.parent_path().string()));
+    throw InputError(
+        fmt::format("kluft validate: expected the validation suite in {} or as scripts/validate in a directory "
+                    "above {}, found neither; it comes with Kluft's sources",
+                    places.front().string(), program.parent_path().string()));
 }
 
 } // namespace

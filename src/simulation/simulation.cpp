@@ -38,7 +38,7 @@ constexpr double relaxed_tolerance = 0.1; ///< of `balance`: a residual on the w
 constexpr double relaxed_residual = 2.0;  ///< of the mass-like forces: the same
 constexpr int max_relaxation_attempts = 250;
 constexpr double collapse_motion = 0.5; ///< of a block in one load step, in lattice spacings
-constexpr int quick_event_trials = 12; ///< then the interval is halved: f may have a kink that Illinois creeps up to
+constexpr int quick_event_trials = 12;  ///< then the interval is halved: f may have a kink that Illinois creeps up to
 constexpr int max_event_trials = 60;
 constexpr double largest_useful_index = 10.0; ///< of f in the search for an event: a strength of zero gives infinity
 
