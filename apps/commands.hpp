@@ -59,4 +59,11 @@ struct EnvelopeArguments {
 
 [[nodiscard]] ExitCode envelope(const EnvelopeArguments& arguments);
 
+struct ValidateArguments {
+    std::vector<std::string> words; ///< for scripts/validate
+};
+
+/// Becomes scripts/validate, whose exit code is that of the program; returns only by an InputError.
+[[nodiscard]] ExitCode validate(const ValidateArguments& arguments);
+
 } // namespace kluft

@@ -166,6 +166,14 @@ void add_envelope_command(CLI::App& app, Command& command) {
     sub->callback([arguments, &command] { command = [arguments] { return kluft::envelope(*arguments); }; });
 }
 
+void add_validate_command(CLI::App& app, Command& command) {
+    CLI::App* sub = app.add_subcommand("validate", "Run the validation suite, or some of its cases");
+    sub->set_help_flag();
+    sub->prefix_command(); // all words, also --help, are for the script
+    sub->allow_extras();
+    sub->callback([sub, &command] { command = [words = sub->remaining()] { return kluft::validate({words}); }; });
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
@@ -178,12 +186,14 @@ int main(int argc, char** argv) {
                "  kluft run models/triaxial/case-3-all.yaml -o results/case-3-all\n"
                "  kluft run models/triaxial/case-3-all.yaml --set cracks.update=all --set stages.1.steps=200\n"
                "  kluft draw results/case-3-all -o picture.png\n"
-               "  kluft envelope results/case-5-all results/case-3-all results/case-4-all results/case-6-all");
+               "  kluft envelope results/case-5-all results/case-3-all results/case-4-all results/case-6-all\n"
+               "  kluft validate incline overturning");
     Command command;
     add_run_command(app, command);
     add_check_command(app, command);
     add_draw_command(app, command);
     add_envelope_command(app, command);
+    add_validate_command(app, command);
     const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
     if (const std::string message = unknown_command(app, words); !message.empty()) return bad_input(message);
     try {

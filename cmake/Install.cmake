@@ -13,6 +13,9 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/kluftConfigVersion.cmake 
 install(FILES ${PROJECT_BINARY_DIR}/kluftConfig.cmake ${PROJECT_BINARY_DIR}/kluftConfigVersion.cmake
   cmake/FindSuiteSparse.cmake cmake/FindMETIS.cmake DESTINATION ${KLUFT_CONFIG_DIR})
 install(FILES scripts/completions/kluft.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME kluft)
+install(PROGRAMS scripts/validate DESTINATION ${CMAKE_INSTALL_DATADIR}/kluft/scripts)
+install(DIRECTORY validation DESTINATION ${CMAKE_INSTALL_DATADIR}/kluft
+  PATTERN triaxial EXCLUDE PATTERN __pycache__ EXCLUDE PATTERN "report.*" EXCLUDE)
 install(FILES README.md LICENSE docs/licences.md TYPE DOC)
 
 set(CPACK_GENERATOR DEB)
@@ -22,5 +25,7 @@ set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 # The shared library that BLAS resolves to is chosen at run time; without this the slow reference BLAS would satisfy it.
 set(CPACK_DEBIAN_PACKAGE_DEPENDS libopenblas0-pthread)
+# The suite behind `kluft validate`.
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3, python3-numpy, python3-matplotlib")
 set(CPACK_STRIP_FILES ON)
 include(CPack)

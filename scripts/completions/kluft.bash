@@ -2,7 +2,7 @@
 
 _kluft() {
     local word=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
-    local commands="run check draw envelope"
+    local commands="run check draw envelope validate"
     COMPREPLY=()
 
     local command="" index
@@ -32,6 +32,7 @@ _kluft() {
     check) options+=" --set" ;;
     draw) options+=" -o --output --curve --blocks --mark --limit --title --set" ;;
     envelope) options+=" -o --output --compare --title" ;;
+    validate) options+=" -o --output --jobs --list" ;;
     esac
     if [[ $word == -* ]]; then
         mapfile -t COMPREPLY < <(compgen -W "$options" -- "$word")

@@ -38,7 +38,8 @@ constexpr double relaxed_tolerance = 0.1; ///< of `balance`: a residual on the w
 constexpr double relaxed_residual = 2.0;  ///< of the mass-like forces: the same
 constexpr int max_relaxation_attempts = 250;
 constexpr double collapse_motion = 0.5; ///< of a block in one load step, in lattice spacings
-constexpr int max_event_trials = 12;
+constexpr int quick_event_trials = 12;  ///< then the interval is halved: f may have a kink that Illinois creeps up to
+constexpr int max_event_trials = 60;
 constexpr double largest_useful_index = 10.0; ///< of f in the search for an event: a strength of zero gives infinity
 
 struct Interrupted {};
@@ -501,8 +502,9 @@ private:
         if (g_low >= 0.0) return to;
         for (int i = 0; i < max_event_trials; ++i) {
             const double width = high - low;
-            const double at =
+            const double quick =
                 std::clamp(high - g_high * width / (g_high - g_low), low + 0.01 * width, high - 0.01 * width);
+            const double at = i < quick_event_trials ? quick : low + 0.5 * width;
             const double share = (at - from) / (high - from);
             Trial next = solve(at, work_.displacement + share * (trial.q - work_.displacement));
             if (!next.converged() || !next.balanced) {

@@ -1,0 +1,21 @@
+# cmake -D KLUFT=... -D WORK_DIR=... -P run.cmake: what `kluft validate` answers, and its exit codes.
+function(validate expected_code expected_text)
+  execute_process(COMMAND ${KLUFT} validate ${ARGN} WORKING_DIRECTORY ${WORK_DIR} OUTPUT_VARIABLE output ERROR_VARIABLE output
+                  RESULT_VARIABLE result)
+  if(NOT result EQUAL expected_code OR NOT output MATCHES "${expected_text}")
+    message(FATAL_ERROR "kluft validate ${ARGN}: expected exit code ${expected_code} and '${expected_text}', got ${result}:\n${output}")
+  endif()
+endfunction()
+
+file(REMOVE_RECURSE ${WORK_DIR})
+file(MAKE_DIRECTORY ${WORK_DIR})
+validate(0 "overturning +Overturning of a block" --list)
+validate(0 "--jobs" --help)
+validate(2 "unknown case 'inclin'; did you mean 'incline'" inclin)
+validate(2 "no such program" stack --kluft ${WORK_DIR}/none)
+validate(0 "contact force = weight above.*all within tolerance" stack -o ${WORK_DIR}/results)
+foreach(name report.md report.html stack/figure.png stack/weight/history.csv)
+  if(NOT EXISTS ${WORK_DIR}/results/${name})
+    message(FATAL_ERROR "kluft validate stack has left no ${name}")
+  endif()
+endforeach()

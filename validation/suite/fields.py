@@ -1,0 +1,86 @@
+"""Reads the field files (VTU, raw appended) that a run writes."""
+
+import xml.etree.ElementTree as ElementTree
+
+import numpy as np
+
+TYPES = {"Float64": "f8", "Int64": "i8", "Int32": "i4", "UInt8": "u1"}
+START = b'<AppendedData encoding="raw">\n_'
+
+
+class Fields:
+    """Blocks (polygons) or interfaces (lines) of one load step.
+
+    points: (n, 2) before loading; displacement: (n, 2); cells: a list of arrays of point indices; field["stress_xx"]: one
+    number per cell. Units and signs are those of the file: stress and traction positive in tension.
+    """
+
+    def __init__(self, path):
+        content = path.read_bytes()
+        at = content.index(START)
+        order = "<" if b'byte_order="LittleEndian"' in content[:at] else ">"
+        root = ElementTree.fromstring(content[:at].decode() + "</VTKFile>")
+        base = at + len(START)
+
+        def array(node):
+            begin = base + int(node.get("offset"))
+            length = int(np.frombuffer(content, order + "u8", 1, begin)[0])
+            kind = np.dtype(order + TYPES[node.get("type")])
+            values = np.frombuffer(content, kind, length // kind.itemsize, begin + 8)
+            columns = int(node.get("NumberOfComponents", 1))
+            return values.reshape(-1, columns) if columns > 1 else values
+
+        piece = root.find("UnstructuredGrid/Piece")
+        self.points = array(piece.find("Points/DataArray"))[:, :2]
+        point_data = {node.get("Name"): array(node) for node in piece.findall("PointData/DataArray")}
+        self.displacement = point_data["displacement"][:, :2]
+        self.field = {node.get("Name"): array(node) for node in piece.findall("CellData/DataArray")}
+        shapes = {node.get("Name"): array(node) for node in piece.findall("Cells/DataArray")}
+        self.cells = np.split(shapes["connectivity"], shapes["offsets"][:-1])
+
+    def __getitem__(self, name):
+        return self.field[name]
+
+    def __len__(self):
+        return len(self.cells)
+
+    def middles(self):
+        """Mean of the corners of each cell before loading, (n, 2): the centroid of a regular hexagon and of a line."""
+        return np.array([self.points[cell].mean(axis=0) for cell in self.cells])
+
+    def mean_displacements(self):
+        """Mean displacement of the corners of each cell, (n, 2): blocks move affinely."""
+        return np.array([self.displacement[cell].mean(axis=0) for cell in self.cells])
+
+    def gradients(self):
+        """Displacement gradient of each block, (n, 2, 2): [i, j] = du_i/dx_j."""
+        result = []
+        for cell in self.cells:
+            x = self.points[cell] - self.points[cell].mean(axis=0)
+            u = self.displacement[cell] - self.displacement[cell].mean(axis=0)
+            result.append(np.linalg.lstsq(x, u, rcond=None)[0].T)
+        return np.array(result)
+
+    def areas(self):
+        result = []
+        for cell in self.cells:
+            x, y = self.points[cell].T
+            result.append(0.5 * abs(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1))))
+        return np.array(result)
+
+    def lengths(self):
+        """Of lines."""
+        return np.array([np.linalg.norm(self.points[cell[1]] - self.points[cell[0]]) for cell in self.cells])
+
+    def angles(self):
+        """Direction of each line's normal in degrees, 0 <= angle < 180."""
+        result = []
+        for cell in self.cells:
+            along = self.points[cell[1]] - self.points[cell[0]]
+            result.append(np.degrees(np.arctan2(-along[0], along[1])) % 180.0)
+        return np.array(result)
+
+    def nearest(self, point):
+        """Index of the cell whose middle is nearest to the point."""
+        return int(np.argmin(np.linalg.norm(self.middles() - np.asarray(point), axis=1)))
+

@@ -1,0 +1,152 @@
+"""Runs cases of the validation suite: scripts/validate."""
+
+import argparse
+import concurrent.futures
+import difflib
+import importlib.util
+import json
+import os
+import shutil
+import sys
+import traceback
+from pathlib import Path
+
+CASES = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(CASES))
+EPILOG = """Results of case C go to DIR/C. A run of the whole suite also writes report.md, report.html and the figures into the
+directory of the cases and the tables into their READMEs; a run of some cases writes its report into DIR only.
+Exit codes: 0 all within tolerance, 1 a miss, 2 an unknown case or no program.
+
+examples:
+  scripts/validate
+  scripts/validate incline overturning -o results/today
+  scripts/validate --list
+"""
+
+
+def case_names():
+    return sorted(check.parent.name for check in CASES.glob("*/check.py"))
+
+
+def arguments(words):
+    parser = argparse.ArgumentParser(prog="validate", description=__doc__, epilog=EPILOG,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("cases", nargs="*", metavar="CASE", help="cases to run (default: all)")
+    parser.add_argument("-o", "--output", type=Path, default=Path("results/validation"), metavar="DIR",
+                        help="directory of all results (default: results/validation)")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, metavar="N",
+                        help="cases at a time (default: the number of processors)")
+    parser.add_argument("--kluft", type=Path, default=CASES.parent / "build" / "release" / "kluft", metavar="FILE",
+                        help="the program (default: build/release/kluft)")
+    parser.add_argument("--list", action="store_true", help="name the cases and run nothing")
+    return parser.parse_args(words)
+
+
+def refuse(message):
+    print(f"validate: {message}", file=sys.stderr)
+    return 2
+
+
+def unknown_case(chosen, names):
+    for name in chosen:
+        if name not in names:
+            near = difflib.get_close_matches(name, names, 1, 0.4)
+            return f"unknown case '{name}'" + (f"; did you mean '{near[0]}'?" if near else "") + \
+                f"\nexpected some of {', '.join(names)}"
+    return None
+
+
+def title_of(name):
+    from suite import report
+
+    readme = CASES / name / "README.md"
+    return (report.title_of(readme.read_text(encoding="utf-8")) if readme.exists() else "") or name
+
+
+def run_case(name, output, program):
+    """The outcome of one case as plain values, for another process to read."""
+    from suite.case import Case, Row
+
+    case = Case(name, CASES / name, output / name, program)
+    case.output.mkdir(parents=True, exist_ok=True)
+    for stale in ("figure.png", "failure.txt"):
+        (case.output / stale).unlink(missing_ok=True)
+    failure = ""
+    try:
+        spec = importlib.util.spec_from_file_location(f"check_{name.replace('-', '_')}", CASES / name / "check.py")
+        module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+        module.check(case)
+    except Exception as error:  # a case that breaks is a miss and must not keep the others from running
+        failure = f"{type(error).__name__}: {error}"
+        (case.output / "failure.txt").write_text(traceback.format_exc(), encoding="utf-8")
+        case.rows.append(Row(name, "check", "a result", failure.splitlines()[0][:90], None, None, "same", False))
+    for row in case.rows:
+        row.seconds = case.seconds
+    return {"case": name, "title": title_of(name), "rows": [row.as_dict() for row in case.rows], "failure": failure,
+            "seconds": case.seconds, "figure": (case.output / "figure.png").exists()}
+
+
+def run_cases(names, options):
+    outcomes = {}
+    with concurrent.futures.ProcessPoolExecutor(options.jobs) as pool:
+        futures = {pool.submit(run_case, name, options.output, options.kluft): name for name in names}
+        for done in concurrent.futures.as_completed(futures):
+            outcome = done.result()
+            outcomes[outcome["case"]] = outcome
+            missed = sum(not row["met"] for row in outcome["rows"])
+            verdict = f"{missed} missed" if missed else "within tolerance"
+            print(f"{outcome['case']}: {verdict}, {outcome['seconds']:.1f} s", file=sys.stderr, flush=True)
+    return [outcomes[name] for name in names]
+
+
+def write_reports(outcomes, options, whole):
+    from suite import report
+
+    places = [options.output] + ([CASES] if whole and os.access(CASES, os.W_OK) else [])
+    for place in places:
+        for outcome in outcomes:
+            figure = options.output / outcome["case"] / "figure.png"
+            if place != options.output and figure.exists():
+                shutil.copyfile(figure, place / outcome["case"] / "figure.png")
+            if place == CASES:
+                report.update_readme(CASES / outcome["case"] / "README.md", outcome["rows"])
+        report.write_markdown(place / "report.md", outcomes)
+        report.write_html(place / "report.html", outcomes)
+    (options.output / "report.json").write_text(json.dumps(outcomes, indent=1), encoding="utf-8")
+    return places[-1] / "report.html"
+
+
+def main(words):
+    options = arguments(words)
+    names = case_names()
+    message = unknown_case(options.cases, names)
+    if message:
+        return refuse(message)
+    if options.jobs < 1:
+        return refuse("--jobs: expected at least 1")
+    chosen = [name for name in names if name in options.cases] if options.cases else names
+    if options.list:
+        for name in chosen:
+            print(f"{name:24} {title_of(name)}")
+        return 0
+    for module in ("numpy", "matplotlib"):
+        if importlib.util.find_spec(module) is None:
+            return refuse(f"the Python module {module} is missing: install python3-{module} (scripts/install-packages)")
+    if not options.kluft.is_file():
+        return refuse(f"{options.kluft}: no such program; build it with scripts/build, or name it with --kluft")
+    options.kluft = options.kluft.resolve()
+    options.output = options.output.resolve()
+    options.output.mkdir(parents=True, exist_ok=True)
+    from suite import report
+
+    outcomes = run_cases(chosen, options)
+    rows = [row for outcome in outcomes for row in outcome["rows"]]
+    print(report.text_table(rows))
+    written = write_reports(outcomes, options, chosen == names)
+    print(f"\n{report.closing_line(outcomes)}\n{written}")
+    return 0 if all(row["met"] for row in rows) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
