@@ -25,9 +25,9 @@ constexpr double balance = 1e-9;
 
 // ---- scenes --------------------------------------------------------------------------------------------------------
 
-const std::string accurate = "solver: {tolerance: 1e-10, balance: 1e-9, max_iterations: 50}\n";
+const std::string accurate = "solver: {tolerance: 1e-10, balance: 1e-9, viscosity: 1e-3, max_iterations: 50}\n";
 
-/// Half of a rectangle of 2 m by 1.5 m on the other, under gravity inclined by 30 degrees.
+/// Half of a rectangle of 2 m by 1 m on the other, under gravity inclined by 30 degrees.
 Scene incline(double friction_degrees) {
     return read_scene_text(
         fmt::format(R"(
@@ -37,7 +37,7 @@ materials: {{rock: {{density: 2500, youngs_modulus: 10 GPa, poissons_ratio: 0.2}
 interfaces:
   joint: {{kind: fracture, normal_stiffness: 1e9, shear_stiffness: 5e8, friction_angle: {}, contact_rounding: 0, friction_rounding: 0}}
 geometry:
-  domain: {{rectangle: {{width: 2, height: 1.5}}}}
+  domain: {{rectangle: {{width: 2, height: 1}}}}
   fractures: [{{trace: [[-1, 0.5], [3, 0.5]], interface: joint}}]
   reference_spacing: 1.0
 boundaries: {{bottom: {{support: fixed}}}}
@@ -112,7 +112,7 @@ Scene cut_sample() {
     return read_scene(std::string(KLUFT_SOURCE_DIR) + "/models/triaxial/case-1.yaml",
                       {"interfaces.joint.contact_rounding=0", "interfaces.joint.friction_rounding=0",
                        "stages.0.steps=2", "stages.1.steps=20", "stages.1.strain.value=1 %", "solver.tolerance=1e-10",
-                       "solver.balance=1e-9", "solver.max_iterations=50"});
+                       "solver.balance=1e-9", "solver.viscosity=1e-3", "solver.max_iterations=50"});
 }
 
 /// Hexagons of 0.1 m under lateral pressure and a platen.
@@ -124,8 +124,8 @@ interfaces:
   joint: {{kind: fracture, normal_stiffness_times_spacing: 400 MPa, shear_stiffness_times_spacing: 200 MPa, friction_angle: 30, contact_rounding: 0, friction_rounding: 0}}
   bond: {{kind: potential_crack, normal_stiffness_times_spacing: 400 MPa, shear_stiffness_times_spacing: 200 MPa, cohesion: 100 MPa, friction_angle: 40, tensile_strength: 50 MPa, fails_to: joint}}
 geometry:
-  domain: {{rectangle: {{width: 0.4, height: 0.5}}}}
-  fractures: [{{trace: [[-0.1, 0.05], [0.5, 0.46]], interface: joint}}]
+  domain: {{rectangle: {{width: 0.3, height: 0.4}}}}
+  fractures: [{{trace: [[-0.1, 0.05], [0.4, 0.4]], interface: joint}}]
   tessellation: {{hexagons: {{spacing: 0.1, rotation: 10}}, interface: {}}}
 stages:
   - {{name: pressure, pressure: {{left: 0.2 MPa, right: 0.2 MPa, top: 0.2 MPa}}, steps: 2}}

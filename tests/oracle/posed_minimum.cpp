@@ -298,11 +298,10 @@ OracleSolution solve_by_minimisation(const LoadedBody& body, const Eigen::Vector
     solution.q = start;
     std::vector<double> normal_forces = normal_forces_at(body, start);
     Lagged lagged{coulomb_limits(body, normal_forces), pressure_forces_at(body, start)};
-    if (largest(normal_forces) == 0.0) { // from rest: what has friction sticks until there are normal forces
-        for (std::size_t i = 0; i < body.contacts.size(); ++i) {
-            const InterfaceLaw& law = (*body.laws)[body.contacts[i].law];
-            if (law.tan_friction > 0.0 || law.cohesion > 0.0) lagged.slip_limits[i] = infinity;
-        }
+    // At first what has friction sticks: limits of the start may be too small to hold the body under larger loads.
+    for (std::size_t i = 0; i < body.contacts.size(); ++i) {
+        const InterfaceLaw& law = (*body.laws)[body.contacts[i].law];
+        if (law.tan_friction > 0.0 || law.cohesion > 0.0) lagged.slip_limits[i] = infinity;
     }
     Scales scales = first_scales(body, start, lagged);
     for (int& k = solution.outer_iterations; k < max_outer_iterations && !solution.converged;) {
@@ -326,6 +325,7 @@ OracleSolution solve_by_minimisation(const LoadedBody& body, const Eigen::Vector
 
         const auto pressure_forces = pressure_forces_at(body, solution.q);
         solution.last_change = change_of(normal_forces, solution.normal_forces, lagged, pressure_forces);
+if (std::getenv("DBG")) fprintf(stderr, "%d %d %.3e %s\n", k, minimum.iterations, solution.last_change, minimum.status.c_str());
         solution.converged = k > 1 && solution.last_change <= outer_tolerance;
         normal_forces = solution.normal_forces;
         lagged = {coulomb_limits(body, normal_forces), pressure_forces};
