@@ -325,7 +325,8 @@ OracleSolution solve_by_minimisation(const LoadedBody& body, const Eigen::Vector
 
         const auto pressure_forces = pressure_forces_at(body, solution.q);
         solution.last_change = change_of(normal_forces, solution.normal_forces, lagged, pressure_forces);
-if (std::getenv("DBG")) fprintf(stderr, "%d %d %.3e %s\n", k, minimum.iterations, solution.last_change, minimum.status.c_str());
+        if (std::getenv("DBG"))
+            fprintf(stderr, "%d %d %.3e %s\n", k, minimum.iterations, solution.last_change, minimum.status.c_str());
         solution.converged = k > 1 && solution.last_change <= outer_tolerance;
         normal_forces = solution.normal_forces;
         lagged = {coulomb_limits(body, normal_forces), pressure_forces};

@@ -42,14 +42,14 @@ struct PosedMinimum {
 [[nodiscard]] std::vector<Vec2> pressure_forces_at(const LoadedBody& body, const Eigen::VectorXd& q);
 
 struct OracleSolution {
-    Eigen::VectorXd q;                  ///< size 6 n_blocks (m)
-    std::vector<double> normal_forces;  ///< per contact, compression positive: the multipliers (N/m)
-    std::vector<double> shear_forces;   ///< per contact (N/m)
-    double energy = 0.0;                ///< of the last minimisation (J/m)
-    double work_of_slip = 0.0;          ///< the part of it that friction takes (J/m)
-    double missed_condition = 0.0;      ///< largest error of all prescribed displacements (m)
-    int n_unknowns = 0;                 ///< of the last minimisation
-    int ipopt_iterations = 0;           ///< of all
+    Eigen::VectorXd q;                 ///< size 6 n_blocks (m)
+    std::vector<double> normal_forces; ///< per contact, compression positive: the multipliers (N/m)
+    std::vector<double> shear_forces;  ///< per contact (N/m)
+    double energy = 0.0;               ///< of the last minimisation (J/m)
+    double work_of_slip = 0.0;         ///< the part of it that friction takes (J/m)
+    double missed_condition = 0.0;     ///< largest error of all prescribed displacements (m)
+    int n_unknowns = 0;                ///< of the last minimisation
+    int ipopt_iterations = 0;          ///< of all
     int outer_iterations = 0;
     double last_change = 0.0; ///< of the normal forces, relative to the largest
     bool converged = false;

@@ -78,7 +78,7 @@ void PosedStep::pose(const Scene& scene) {
     pattern_ = BlockPattern(model_.system.n_blocks(), contacts.near_pairs);
 }
 
-PosedStep::Solution PosedStep::solve_by_open_close(double tolerance, double balance) {
+PosedStep::Solution PosedStep::solve_by_open_close(double tolerance, double balance, const Eigen::VectorXd& guess) {
     LinearSolver linear;
     linear.analyze(pattern_);
     OpenCloseOptions options;
@@ -86,7 +86,7 @@ PosedStep::Solution PosedStep::solve_by_open_close(double tolerance, double bala
     options.max_iterations = 100;
     OpenCloseSolver solver(linear, options);
     Solution solution;
-    solution.q = before_.displacement;
+    solution.q = guess;
     const bool unloaded = before_.contacts.empty();
     do {
         problem_.start = solution.q;

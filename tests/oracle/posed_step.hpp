@@ -39,8 +39,8 @@ public:
         int iterations = 0;
         int rounds = 0; ///< of the mass-like term
     };
-    /// The equilibrium of the posed step, by open-close iteration until the mass-like term is below `balance`.
-    [[nodiscard]] Solution solve_by_open_close(double tolerance, double balance);
+    /// The equilibrium of the posed step, by open-close iteration from `guess` until the mass-like term is below `balance`.
+    [[nodiscard]] Solution solve_by_open_close(double tolerance, double balance, const Eigen::VectorXd& guess);
 
 private:
     void pose(const Scene& scene);

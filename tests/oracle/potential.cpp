@@ -56,8 +56,7 @@ Eigen::Matrix4d stiffness_of(const ElasticBlock& block, const Eigen::VectorXd& x
     const Eigen::Vector4d da(1, 0, 0, 1), db(0, 1, -1, 0), dc(1, 0, 0, -1), dd(0, 1, 1, 0);
     const Eigen::Vector4d along = ((2.0 + p.a) * da + p.b * db) / s.trace;
     const Eigen::Vector4d across = ((2.0 + p.a) * db - p.b * da) / s.trace;
-    return (block.mu + block.lambda) *
-               (along * along.transpose() + s.excess / s.trace * across * across.transpose()) +
+    return (block.mu + block.lambda) * (along * along.transpose() + s.excess / s.trace * across * across.transpose()) +
            block.mu * (dc * dc.transpose() + dd * dd.transpose());
 }
 

@@ -44,10 +44,10 @@ struct Potential {
     int n_unknowns = 0;
     std::vector<ElasticBlock> blocks;
     std::vector<Spring> springs;
-    Eigen::VectorXd linear;              ///< of the unknowns: minus the dead loads (N/m)
-    std::vector<LinearForm> equalities;  ///< = 0 (m)
+    Eigen::VectorXd linear;               ///< of the unknowns: minus the dead loads (N/m)
+    std::vector<LinearForm> equalities;   ///< = 0 (m)
     std::vector<LinearForm> inequalities; ///< >= 0 (m)
-    std::vector<int> nonnegative;        ///< unknowns that are >= 0
+    std::vector<int> nonnegative;         ///< unknowns that are >= 0
 
     /// Energy per metre of thickness (J/m).
     [[nodiscard]] double energy(const Eigen::VectorXd& x) const;
