@@ -18,7 +18,7 @@ constexpr int unknowns_per_block = 6;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int max_outer_iterations = 200;
 constexpr double outer_tolerance = 1e-10; ///< of the change of normal forces, relative to the largest
-constexpr double least_force = 1e-9;      ///< of the largest normal force: a smaller one is the barrier's
+constexpr double least_force = 1e-11;     ///< of the largest normal force: a smaller one is the barrier's
 constexpr double warm_weight = 1e-6;      ///< of the barrier, where the last solution is near
 
 /// Adds factor * direction . u(xi) of a block, eq. (1): unknowns are changes since `start`.
