@@ -55,6 +55,11 @@ pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo)
 kluft_purpose(Threads "assembly and studies")
 find_package(Threads REQUIRED)
 
+set_package_properties(Ipopt PROPERTIES TYPE OPTIONAL PURPOSE "an independent method that checks the solver, in tests")
+find_package(Ipopt)
+option(KLUFT_BUILD_ORACLE "Build the tests against Ipopt (needs KLUFT_BUILD_TESTS)" ${Ipopt_FOUND})
+
+add_feature_info(oracle KLUFT_BUILD_ORACLE "the solver against Ipopt, label oracle of ctest")
 add_feature_info(tests KLUFT_BUILD_TESTS "GoogleTest, run by ctest")
 add_feature_info(benchmarks KLUFT_BUILD_BENCH "Google Benchmark, run by scripts/bench")
 add_feature_info(sanitizers KLUFT_SANITIZE "address and undefined behaviour")
