@@ -118,6 +118,12 @@ Model build_model(BlockSystem system, const ModelInput& input) {
         model.effective_modulus = std::max(model.effective_modulus, effective.youngs_modulus);
         model.moduli.push_back(moduli);
     }
+    // One soft joint across a stiff body makes it as soft as k_n H.
+    const double height = (system.upper - system.lower).maxCoeff();
+    for (const Interface& interface : system.interfaces) {
+        const double of_joint = model.laws[interface.interface_type].normal_stiffness * height;
+        model.effective_modulus = std::min(model.effective_modulus, of_joint);
+    }
 
     model.strengths.resize(system.interfaces.size());
     for (int i = 0; i < system.n_interfaces(); ++i) {

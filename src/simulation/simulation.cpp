@@ -27,10 +27,10 @@ namespace kluft {
 
 namespace {
 
-constexpr int max_balance_rounds = 12;
-constexpr double least_balance_progress = 0.7; ///< of the viscous share per round, else the body is moving
-constexpr double relaxation_growth = 16.0;     ///< of eta on the blocks that stop the iteration
-constexpr double relaxation_decay = 4.0;       ///< after a solve in a few iterations, also of later load steps
+constexpr double balance_rounds_per_digit = 4.0; ///< of `balance`
+constexpr double least_balance_progress = 0.7;   ///< of the viscous share per round, else the body is moving
+constexpr double relaxation_growth = 16.0;       ///< of eta on the blocks that stop the iteration
+constexpr double relaxation_decay = 4.0;         ///< after a solve in a few iterations, also of later load steps
 constexpr int easy_iterations = 6;
 constexpr double largest_relaxation = 4.0e6;
 constexpr int easy_relaxation = 4;
@@ -368,7 +368,8 @@ private:
     /// The mass-like term must not change the answer: solve again from the result until its share is small.
     void balance(Trial& trial) {
         trial.viscous_share = viscous_share(trial);
-        for (int round = 0; round < max_balance_rounds && trial.viscous_share > options_.balance; ++round) {
+        const int max_rounds = static_cast<int>(std::ceil(-balance_rounds_per_digit * std::log10(options_.balance)));
+        for (int round = 0; round < max_rounds && trial.viscous_share > options_.balance; ++round) {
             problem_.start = trial.q;
             Trial next = trial;
             next.summary = open_close_.solve(problem_, pattern_, next.q);

@@ -248,6 +248,54 @@ stages:
   - {name: platen, strain: {boundary: top, value: 0.02}, platens: smooth, steps: 20}
 )";
 
+// Near the corner of the strength the index is constant (tension) before it rises (shear): the search for its zero must
+// not creep up to the kink. p1 = 2 c cos(phi)/(1 - sin(phi)) + p3 (1 + sin(phi))/(1 - sin(phi)).
+TEST(Simulation, EventIsFoundBehindAKinkOfTheStrengthIndex) {
+    const auto run = run_scene(R"(
+kluft: 1
+materials:
+  rock: {youngs_modulus: 1e12, poissons_ratio: 0.25, cohesion: 0.16 MPa, friction_angle: 36.2, tensile_strength: 0.1 MPa}
+interfaces:
+  bond: {kind: potential_crack, normal_stiffness: 1e12, shear_stiffness: 5e11, fails_to: joint}
+  joint: {kind: fracture, normal_stiffness: 1e12, shear_stiffness: 5e11, friction_angle: 36.2}
+geometry:
+  domain: {rectangle: {width: 1, height: 2}}
+  fractures: [{trace: [[-0.1, 1], [1.1, 1]], interface: bond}]
+boundaries: {bottom: {support: pinned}}
+stages:
+  - {pressure: {left: -0.09999 MPa, right: -0.09999 MPa, top: 0}}
+  - {displacement: {boundary: top, value: 1.5e-5}, steps: 6}
+cracks: {event_tolerance: 1e-9}
+solver: {tolerance: 1e-10, balance: 1e-9}
+)");
+    ASSERT_EQ(run.report.status, RunStatus::done);
+    const double sine = std::sin(36.2 * degree);
+    const double p1 = (2 * 0.16e6 * std::cos(36.2 * degree) - 0.09999e6 * (1 + sine)) / (1 - sine);
+    ASSERT_EQ(run.cracks.size(), 1U);
+    EXPECT_NEAR(run.cracks.front().p1, p1, 1e-6 * p1);
+}
+
+// Pushed with half of what overturns it, W b/(2 a), a block that is 1000 times as stiff as its joint settles and rests: the
+// mass-like term follows the joint.
+TEST(Simulation, StiffBlockOnASoftJointComesToRest) {
+    const auto run = run_scene(R"(
+kluft: 1
+analysis: {plane: stress, gravity: 10}
+materials: {rock: {youngs_modulus: 1e13, poissons_ratio: 0, density: 2500}}
+interfaces: {joint: {kind: fracture, normal_stiffness: 1e10, shear_stiffness: 1e10, friction_angle: 45}}
+geometry:
+  domain: {polygon: [[-1, -1], [3, -1], [3, 0], [1, 0], [1, 2], [0, 2], [0, 1.55], [0, 1.45], [0, 0], [-1, 0]]}
+  fractures: [{trace: [[0, 0], [1, 0]]}]
+boundaries: {bottom: {sides: [0], support: fixed}, push: {sides: [6]}}
+stages:
+  - {name: weight}
+  - {name: push, pressure: {push: 83333}, steps: 2}
+solver: {tolerance: 1e-10, balance: 1e-7, max_unbalanced_steps: 1}
+)");
+    EXPECT_EQ(run.report.status, RunStatus::done);
+    EXPECT_EQ(run.report.unbalanced_steps, 0);
+}
+
 TEST(Simulation, SameSceneTwiceGivesTheSameBits) {
     std::ifstream file(KLUFT_SOURCE_DIR "/models/quickstart.yaml");
     const std::string scene{std::istreambuf_iterator<char>(file), {}};

@@ -23,7 +23,7 @@ struct Model {
     std::vector<int> fracture_law;     ///< per interface type: the law after failure, its own for a fracture
     std::vector<Strength> strengths;   ///< per interface; of use for potential cracks only
     LoadProgram loads;
-    double effective_modulus = 0.0; ///< E of the body, for the mass-like term (Pa)
+    double effective_modulus = 0.0; ///< E of the body or of its softest joint, k_n H, for the mass-like term (Pa)
     bool has_potential_cracks = false;
     std::vector<std::string> warnings;
 };
