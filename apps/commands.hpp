@@ -18,6 +18,8 @@ enum class ExitCode {
 
 /// The name of a run: that of its directory, also of "." and "results/case-3/".
 [[nodiscard]] std::string run_name(const std::filesystem::path& directory);
+/// Names of several runs, or the directories where two runs have the same name.
+[[nodiscard]] std::vector<std::string> run_names(const std::vector<std::string>& directories);
 
 struct RunArguments {
     std::string scene;
@@ -49,6 +51,14 @@ struct DrawArguments {
 };
 
 [[nodiscard]] ExitCode draw(const DrawArguments& arguments);
+
+struct CompareArguments {
+    std::vector<std::string> directories; ///< two
+    std::string tolerance = "0.05";
+    std::string output;
+};
+
+[[nodiscard]] ExitCode compare(const CompareArguments& arguments);
 
 struct EnvelopeArguments {
     std::vector<std::string> directories;

@@ -19,6 +19,7 @@
 #include "kluft/scene/scene_model.hpp"
 #include "kluft/scene/scene_reader.hpp"
 #include "kluft/simulation/state_points.hpp"
+#include "kluft/studies/finished_run.hpp"
 
 namespace kluft {
 
@@ -41,9 +42,7 @@ RunHeading heading_of(const fs::path& directory) {
 }
 
 RunCurve read_curve(const fs::path& directory, const std::string& label) {
-    if (!fs::exists(directory / "history.csv")) {
-        throw InputError(directory.string() + ": expected a directory of results, found no history.csv in it");
-    }
+    require_results(directory);
     RunCurve curve;
     curve.label = label;
     curve.history = read_history(directory / "history.csv");
@@ -51,15 +50,6 @@ RunCurve read_curve(const fs::path& directory, const std::string& label) {
     if (fs::exists(directory / "equilibria.csv")) curve.equilibria = read_history(directory / "equilibria.csv");
     curve.platen_stage = heading_of(directory).platen_stage;
     return curve;
-}
-
-/// Names of the runs, or the directories where two runs have the same name.
-std::vector<std::string> labels_of(const std::vector<std::string>& directories) {
-    std::vector<std::string> labels;
-    for (const auto& directory : directories) labels.push_back(run_name(directory));
-    auto sorted = labels;
-    std::ranges::sort(sorted);
-    return std::ranges::adjacent_find(sorted) == sorted.end() ? labels : directories;
 }
 
 [[noreturn]] void refuse_mark(const std::string& mark, const std::string& found) {
@@ -106,7 +96,7 @@ double limit_of(const std::string& text) {
 void announce(const fs::path& picture) { fmt::print("{}\n", picture.string()); }
 
 void draw_curve(const DrawArguments& arguments, const std::vector<fs::path>& pictures) {
-    const auto labels = labels_of(arguments.sources);
+    const auto labels = run_names(arguments.sources);
     std::vector<RunCurve> curves;
     for (std::size_t i = 0; i < labels.size(); ++i) curves.push_back(read_curve(arguments.sources[i], labels[i]));
     std::vector<PlottedReference> references;

@@ -13,6 +13,7 @@
 #include "kluft/output/envelope.hpp"
 #include "kluft/output/history_table.hpp"
 #include "kluft/scene/quantity.hpp"
+#include "kluft/studies/finished_run.hpp"
 
 namespace kluft {
 
@@ -44,12 +45,7 @@ ExitCode envelope(const EnvelopeArguments& arguments) {
     std::vector<PeakPoint> peaks;
     for (const auto& name : arguments.directories) {
         const fs::path directory = name;
-        if (!fs::is_directory(directory)) {
-            throw InputError(name + ": expected a directory of results, found " +
-                             (fs::exists(directory) ? "a file" : "nothing"));
-        }
-        if (!fs::exists(directory / "history.csv"))
-            throw InputError(name + ": expected a directory of results, found no history.csv in it");
+        require_results(directory);
         const fs::path table =
             fs::exists(directory / "equilibria.csv") ? directory / "equilibria.csv" : directory / "history.csv";
         peaks.push_back(peak_point(run_name(directory), read_history(table)));

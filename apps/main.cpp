@@ -151,6 +151,33 @@ void add_draw_command(CLI::App& app, Command& command) {
     sub->callback([arguments, &command] { command = [arguments] { return kluft::draw(*arguments); }; });
 }
 
+void add_compare_command(CLI::App& app, Command& command) {
+    auto arguments = std::make_shared<kluft::CompareArguments>();
+    CLI::App* sub =
+        app.add_subcommand("compare", "Set two runs side by side: peak, moduli, curves, cracks, costs; exit code 1 "
+                                      "unless they agree");
+    sub->add_option("directories", arguments->directories, "Two directories of results, A and B")
+        ->required()
+        ->expected(2);
+    sub->add_option("--tolerance", arguments->tolerance,
+                    "Largest difference of peak stress, peak strain, Young's modulus (of B from A, relative to A) and "
+                    "largest mean difference of the curves, as 0.05 or '5 %'")
+        ->capture_default_str();
+    sub->add_option("-o,--output", arguments->output,
+                    "Directory of compare.md, compare.json, curves.png, cracks.png and both as .svg (default: "
+                    "results/compare-<A>-<B>)");
+    sub->footer("The curves are those of differential stress over axial strain, linear between balanced load steps, "
+                "compared at\n201 equal steps of strain up to the smaller of both peak strains, relative to A's peak "
+                "differential stress.\n"
+                "A crack is matched by one of the same mode in the other run within one spacing of the hexagons "
+                "(the larger one),\nthe nearest pairs first, each crack once.\n"
+                "Exit codes: 0 the runs agree, 1 they do not, 2 bad input.\n"
+                "Examples:\n"
+                "  kluft compare results/event results/all\n"
+                "  kluft compare results/implicit results/explicit --tolerance 0.03 -o results/integrators");
+    sub->callback([arguments, &command] { command = [arguments] { return kluft::compare(*arguments); }; });
+}
+
 void add_envelope_command(CLI::App& app, Command& command) {
     auto arguments = std::make_shared<kluft::EnvelopeArguments>();
     CLI::App* sub = app.add_subcommand(
@@ -186,12 +213,14 @@ int main(int argc, char** argv) {
                "  kluft run models/triaxial/case-3-all.yaml -o results/case-3-all\n"
                "  kluft run models/triaxial/case-3-all.yaml --set cracks.update=all --set stages.1.steps=200\n"
                "  kluft draw results/case-3-all -o picture.png\n"
+                "  kluft compare results/case-3 results/case-3-all\n"
                "  kluft envelope results/case-5-all results/case-3-all results/case-4-all results/case-6-all\n"
                "  kluft validate incline overturning");
     Command command;
     add_run_command(app, command);
     add_check_command(app, command);
     add_draw_command(app, command);
+    add_compare_command(app, command);
     add_envelope_command(app, command);
     add_validate_command(app, command);
     const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);

@@ -2,7 +2,7 @@
 
 _kluft() {
     local word=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
-    local commands="run check draw envelope validate"
+    local commands="run check draw compare envelope validate"
     COMPREPLY=()
 
     local command="" index
@@ -19,7 +19,7 @@ _kluft() {
     fi
 
     case "$previous" in
-    --set | --threads | --mark | --limit | --title | --compare) return ;;
+    --set | --threads | --mark | --limit | --title | --compare | --tolerance) return ;;
     -o | --output)
         mapfile -t COMPREPLY < <(compgen -f -- "$word")
         return
@@ -31,6 +31,7 @@ _kluft() {
     run) options+=" -o --output --set --threads --quiet --resume" ;;
     check) options+=" --set" ;;
     draw) options+=" -o --output --curve --blocks --mark --limit --title --set" ;;
+    compare) options+=" -o --output --tolerance" ;;
     envelope) options+=" -o --output --compare --title" ;;
     validate) options+=" -o --output --jobs --list" ;;
     esac
@@ -41,7 +42,7 @@ _kluft() {
 
     case "$command" in
     run | check | draw) _kluft_scenes "$word" ;;
-    envelope) mapfile -t COMPREPLY < <(compgen -d -- "$word") ;;
+    compare | envelope) mapfile -t COMPREPLY < <(compgen -d -- "$word") ;;
     esac
 }
 

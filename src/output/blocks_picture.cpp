@@ -9,9 +9,8 @@
 #include <fmt/format.h>
 
 #include "body_drawing.hpp"
-#include "kluft/core/diagnostics.hpp"
+#include "body_page.hpp"
 #include "kluft/output/atomic_file.hpp"
-#include "kluft/output/axis.hpp"
 #include "kluft/output/colour_scale.hpp"
 #include "kluft/output/vtu.hpp"
 #include "legend.hpp"
@@ -20,106 +19,13 @@ namespace kluft {
 
 namespace {
 
-constexpr double margin = 26.0; // points
-constexpr double title_height = 34.0;
-constexpr double panel_title_height = 18.0;
-constexpr double panel_gap = 34.0;
-constexpr double column_width = 158.0; // colour bar and legend
-constexpr double scale_bar_height = 34.0;
 constexpr double mega = 1e6;
-const TextStyle title_style{.size = 11.5, .colour = colour(0x222222), .bold = true};
-const TextStyle panel_style{.size = 9.5, .colour = colour(0x222222), .down = Align::high};
-const TextStyle note_style{.size = 7.5, .colour = colour(0x666666), .down = Align::middle};
 
 LegendEntry patch_entry(std::string label, const Colour& fill) {
     return {std::move(label), [fill](Canvas& canvas, const Vec2& middle) {
                 canvas.fill_rectangle(middle - Vec2(9.0, 4.5), {18.0, 9.0}, fill);
                 canvas.stroke_rectangle(middle - Vec2(9.0, 4.5), {18.0, 9.0}, {ink::body, 0.5});
             }};
-}
-
-/// One column; entries without a sample are notes in small print.
-void draw_legend(Canvas& canvas, const Vec2& corner, const std::vector<LegendEntry>& entries) {
-    Vec2 at = corner + Vec2(0.0, 0.5 * legend_line);
-    for (const LegendEntry& entry : entries) {
-        if (entry.draw_sample) entry.draw_sample(canvas, at + Vec2(9.0, 0.0));
-        const TextStyle& style = entry.draw_sample ? legend_style : note_style;
-        const double indent = entry.draw_sample ? 25.0 : 0.0;
-        canvas.text_within(column_width - indent, at + Vec2(indent, 0.0), entry.label, style);
-        at.y() += legend_line;
-    }
-}
-
-double legend_height(const std::vector<LegendEntry>& entries) {
-    return legend_line * static_cast<double>(entries.size());
-}
-
-/// A round length of about a third of the panel's width, with its unit.
-std::pair<double, std::string> round_length(double metres) {
-    const double power = std::pow(10.0, std::floor(std::log10(metres)));
-    double length = power;
-    for (const double factor : {2.0, 5.0})
-        if (factor * power <= metres) length = factor * power;
-    if (length >= 1000.0) return {length, fmt::format("{:g} km", length / 1000.0)};
-    if (length >= 1.0) return {length, fmt::format("{:g} m", length)};
-    if (length >= 0.01) return {length, fmt::format("{:g} cm", 100.0 * length)};
-    return {length, fmt::format("{:g} mm", 1000.0 * length)};
-}
-
-void draw_scale_bar(Canvas& canvas, const Panel& panel, const BlockSystem& body) {
-    const double width = body.upper.x() - body.lower.x();
-    if (!(width > 0.0)) return;
-    const auto [length, label] = round_length(0.4 * width);
-    const double y = panel.corner.y() + panel.size().y() + 13.0;
-    const double x = panel.place(body.lower).x();
-    const double end = x + panel.scale * length;
-    const Stroke stroke{ink::body, 1.2};
-    canvas.segments({{{x, y}, {end, y}}, {{x, y - 3.0}, {x, y + 3.0}}, {{end, y - 3.0}, {end, y + 3.0}}}, stroke);
-    canvas.text({end + 6.0, y}, label, {.size = 8.5, .down = Align::middle});
-}
-
-/// Places on the page of `n_panels` equal panels beside each other with a column to their right.
-struct Layout {
-    double scale = 1.0; ///< points per metre
-    Vec2 panel_size = Vec2::Zero();
-    double slot = 0.0; ///< width reserved for a panel
-    int n_panels = 1;
-    Vec2 page = Vec2::Zero();
-
-    [[nodiscard]] Vec2 corner(int panel) const {
-        const double height = page.y() - 2.0 * margin - title_height - panel_title_height - scale_bar_height;
-        return {margin + panel * (slot + panel_gap) + 0.5 * (slot - panel_size.x()),
-                margin + title_height + panel_title_height + 0.5 * (height - panel_size.y())};
-    }
-    [[nodiscard]] double column() const { return margin + n_panels * (slot + panel_gap); }
-};
-
-Layout layout_of(const Box& box, int n_panels, double column_height, const Vec2& largest) {
-    Layout layout;
-    const Vec2 extent = (box.upper - box.lower).cwiseMax(Vec2(1e-12, 1e-12));
-    layout.n_panels = n_panels;
-    layout.scale = std::min(largest.x() / extent.x(), largest.y() / extent.y());
-    layout.panel_size = layout.scale * extent;
-    constexpr double narrowest = 130.0;
-    layout.slot = std::max(narrowest, layout.panel_size.x());
-    const double height = std::max(layout.panel_size.y(), column_height - panel_title_height - scale_bar_height);
-    layout.page = {margin + n_panels * (layout.slot + panel_gap) + column_width + margin,
-                   2.0 * margin + title_height + panel_title_height + scale_bar_height + height};
-    return layout;
-}
-
-/// More pixels for more blocks, so that each gets a few.
-double pixels_per_point(const BlockSystem& system, double scale) {
-    constexpr double pixels_per_block = 5.0;
-    return std::clamp(pixels_per_block / block_size_on_page(system, scale), 3.0, 6.0);
-}
-
-void draw_panel(Canvas& canvas, const Layout& layout, int index, const Box& box, const DrawnBody& body,
-                const std::string& title) {
-    const Panel panel{layout.corner(index), box, layout.scale};
-    canvas.text({panel.place(body.system.lower).x(), panel.corner.y() - 8.0}, title, panel_style);
-    draw_body(canvas, panel, body);
-    if (index == 0) draw_scale_bar(canvas, panel, body.system);
 }
 
 bool has(const DrawnBody& body, InterfaceLook look) {
@@ -231,12 +137,6 @@ std::vector<LegendEntry> size_notes(const BlockSystem& system) {
             {fmt::format("y {:.7g} \u2026 {:.7g} m", low.y(), high.y()), {}}};
 }
 
-void refuse_large_svg(const BlockSystem& system, PictureFormat format) {
-    if (format == PictureFormat::svg && system.n_blocks() > most_blocks_in_svg)
-        throw InputError(fmt::format("an SVG picture of {} blocks would be too large (at most {}): take PNG",
-                                     system.n_blocks(), most_blocks_in_svg));
-}
-
 } // namespace
 
 std::string after_title(const std::vector<StepRecord>& history) {
@@ -260,15 +160,15 @@ std::string draw_blocks(const BlockSystem& system, const FieldRecord& fields, co
     constexpr double bar_height = 190.0;
     constexpr double bar_gap = 24.0;
     const Box box = box_of(after);
-    const Layout layout = layout_of(box, 2, bar_height + bar_gap + legend_height(entries), {360.0, 450.0});
+    const PageLayout layout = page_layout(box, 2, bar_height + bar_gap + column_height(entries), {360.0, 450.0});
     return draw_picture(
-        format, layout.page.x(), layout.page.y(), pixels_per_point(system, layout.scale), [&](Canvas& canvas) {
-            canvas.text_within(layout.page.x() - 2.0 * margin, {margin, margin + 10.0}, plot.title, title_style);
+        format, layout.page.x(), layout.page.y(), body_pixels_per_point(system, layout.scale), [&](Canvas& canvas) {
+            draw_title(canvas, layout, plot.title);
             draw_panel(canvas, layout, 0, box, before, "before");
             draw_panel(canvas, layout, 1, box, after, plot.after);
-            const Vec2 corner(layout.column(), margin + title_height + panel_title_height);
+            const Vec2 corner = layout.column_corner();
             draw_colour_bar(canvas, scale, corner, {13.0, bar_height}, "major principal stress (MPa, compression +)");
-            draw_legend(canvas, corner + Vec2(0.0, bar_height + bar_gap), entries);
+            draw_column(canvas, corner + Vec2(0.0, bar_height + bar_gap), entries);
         });
 }
 
@@ -286,14 +186,14 @@ std::string draw_geometry(const BlockSystem& system, const BlocksPlot& plot, Pic
     append(entries, boundary_entries(system));
     append(entries, size_notes(system));
     const Box box = box_of(body);
-    const Layout layout = layout_of(box, 1, legend_height(entries), {620.0, 500.0});
+    const PageLayout layout = page_layout(box, 1, column_height(entries), {620.0, 500.0});
     return draw_picture(
-        format, layout.page.x(), layout.page.y(), pixels_per_point(system, layout.scale), [&](Canvas& canvas) {
-            canvas.text_within(layout.page.x() - 2.0 * margin, {margin, margin + 10.0}, plot.title, title_style);
+        format, layout.page.x(), layout.page.y(), body_pixels_per_point(system, layout.scale), [&](Canvas& canvas) {
+            draw_title(canvas, layout, plot.title);
             draw_panel(canvas, layout, 0, box, body,
                        fmt::format("{} blocks, {} interfaces", system.n_blocks(), system.n_interfaces()));
             draw_boundaries(canvas, {layout.corner(0), box, layout.scale}, system);
-            draw_legend(canvas, {layout.column(), margin + title_height + panel_title_height}, entries);
+            draw_column(canvas, layout.column_corner(), entries);
         });
 }
 

@@ -31,10 +31,10 @@ const Colour text_colour = colour(0x222222);
 const Colour white = colour(0xFFFFFF);
 
 /// Each curve has a colour; beyond as many curves as there are colours, dashes tell them apart.
-Stroke curve_stroke(std::size_t index) {
+Stroke curve_stroke(const CurvePlot& plot, std::size_t index) {
     constexpr std::size_t n_colours = 7;
     Stroke stroke{series_colour(index), 1.5, {}, true};
-    if (index >= n_colours) stroke.dash = {5.0, 3.0};
+    if (index >= n_colours || plot.curves[index].dashed) stroke.dash = {5.0, 3.0};
     return stroke;
 }
 
@@ -233,7 +233,7 @@ std::vector<LegendEntry> legend_of(const CurvePlot& plot) {
     std::vector<LegendEntry> entries;
     for (std::size_t i = 0; i < plot.curves.size(); ++i) {
         if (plot.curves[i].label.empty()) continue;
-        entries.push_back(line_entry(plot.curves[i].label, curve_stroke(i)));
+        entries.push_back(line_entry(plot.curves[i].label, curve_stroke(plot, i)));
     }
     for (const PlottedReference& reference : plot.references) {
         const bool listed = std::any_of(entries.begin(), entries.end(),
@@ -308,7 +308,8 @@ void draw_plot(Canvas& canvas, const CurvePlot& plot, const LegendGrid& below) {
     const Vec2 above(0.0, plot.y_limit ? room.y() : 0.0);
     canvas.begin_clip(frame.corner - room + above, frame.size + 2.0 * room - above);
     draw_references(canvas, frame, plot.references);
-    for (std::size_t i = 0; i < plot.curves.size(); ++i) draw_curve(canvas, frame, plot.curves[i], curve_stroke(i));
+    for (std::size_t i = 0; i < plot.curves.size(); ++i)
+        draw_curve(canvas, frame, plot.curves[i], curve_stroke(plot, i));
     canvas.end_clip();
     Obstacles obstacles = obstacles_of(plot, frame);
     below.draw(canvas, {frame.corner.x(), plot_height});

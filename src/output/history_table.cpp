@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <limits>
 #include <string_view>
 #include <type_traits>
 
@@ -115,16 +116,30 @@ std::vector<std::string_view> split(std::string_view line) {
     }
 }
 
-/// For each column of Record its index in the file.
+using Names = std::vector<std::string_view>;
+
+constexpr std::size_t no_column = std::numeric_limits<std::size_t>::max();
+
+bool contains(const Names& names, std::string_view name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// For each column of Record its index in the file; no_column for one that is missing and not needed. Without a list
+/// all are needed.
 template <class Record>
-std::vector<std::size_t> column_order(const std::string& path, const std::vector<std::string_view>& names) {
+std::vector<std::size_t> column_order(const std::string& path, const Names& names, const Names* needed) {
     std::vector<std::size_t> order;
     std::vector<std::string> missing;
     Record record;
     visit_columns(record, [&](std::string_view name, auto&) {
         const auto found = std::find(names.begin(), names.end(), name);
-        if (found == names.end()) missing.push_back(fmt::format("{}:1: no column '{}'", path, name));
-        order.push_back(static_cast<std::size_t>(found - names.begin()));
+        if (found != names.end()) {
+            order.push_back(static_cast<std::size_t>(found - names.begin()));
+            return;
+        }
+        order.push_back(no_column);
+        if (needed == nullptr || contains(*needed, name))
+            missing.push_back(fmt::format("{}:1: no column '{}'", path, name));
     });
     if (!missing.empty()) throw InputError(missing);
     return order;
@@ -139,7 +154,9 @@ Record parse_row(const std::string& place, std::string_view line, std::size_t n_
     Record record;
     std::size_t column = 0;
     visit_columns(record, [&](std::string_view name, auto& value) {
-        const std::string_view text = cells[order[column++]];
+        const std::size_t index = order[column++];
+        if (index == no_column) return;
+        const std::string_view text = cells[index];
         const std::string_view expected = parse(text, value);
         if (!expected.empty())
             throw InputError(fmt::format("{}: {}: expected {}, found '{}'", place, name, expected, text.substr(0, 40)));
@@ -147,13 +164,14 @@ Record parse_row(const std::string& place, std::string_view line, std::size_t n_
     return record;
 }
 
-template <class Record> std::vector<Record> read_table(const std::filesystem::path& path) {
+template <class Record>
+std::vector<Record> read_table(const std::filesystem::path& path, const Names* needed = nullptr) {
     const std::string content = read_file(path);
     std::string_view rest = content;
     if (rest.find('\n') == std::string_view::npos)
         throw InputError(fmt::format("{}:1: expected a line of column names", path.string()));
     const auto names = split(rest.substr(0, rest.find('\n')));
-    const auto order = column_order<Record>(path.string(), names);
+    const auto order = column_order<Record>(path.string(), names, needed);
     std::vector<Record> records;
     rest.remove_prefix(rest.find('\n') + 1);
     for (std::size_t line = 2, end = rest.find('\n'); end != std::string_view::npos; end = rest.find('\n'), ++line) {
@@ -174,6 +192,9 @@ std::string table_row(const StepRecord& record) {
 }
 std::string table_row(const CrackRecord& crack) { return row_of(crack); }
 std::vector<StepRecord> read_history(const std::filesystem::path& path) { return read_table<StepRecord>(path); }
+std::vector<StepRecord> read_history(const std::filesystem::path& path, const std::vector<std::string_view>& needed) {
+    return read_table<StepRecord>(path, &needed);
+}
 std::vector<CrackRecord> read_cracks(const std::filesystem::path& path) { return read_table<CrackRecord>(path); }
 
 } // namespace kluft

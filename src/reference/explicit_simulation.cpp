@@ -1,22 +1,18 @@
 #include "kluft/reference/explicit_simulation.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
-#include <new>
-#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "kluft/core/diagnostics.hpp"
 #include "kluft/core/stopwatch.hpp"
 #include "kluft/fracture/crack_check.hpp"
 #include "kluft/reference/block_inertia.hpp"
 #include "kluft/reference/explicit_motion.hpp"
 #include "kluft/simulation/measurements.hpp"
-#include "kluft/simulation/stage_loads.hpp"
+#include "kluft/simulation/run_course.hpp"
 #include "kluft/simulation/state_points.hpp"
 #include "kluft/simulation/weakening.hpp"
 
@@ -36,14 +32,6 @@ constexpr double collapse_motion = 0.5;   ///< of a block in one load step that 
 constexpr int watch_interval = 10;        ///< time steps between two looks at the motion
 constexpr int progress_interval = 1000;   ///< time steps
 
-struct Interrupted {};
-struct Failure {
-    std::string what;
-    bool may_be_collapse = false;
-};
-
-using Clock = std::chrono::steady_clock;
-
 /// From 0 to 1 without a jump of the velocity at the ends.
 double smooth(double x) { return x * x * (3.0 - 2.0 * x); }
 
@@ -51,36 +39,35 @@ class ExplicitRun {
 public:
     ExplicitRun(const Model& model, const CrackOptions& cracks, const SolverOptions& solver,
                 const ExplicitOptions& options, State& state, StepObserver& observer, const std::atomic<bool>& stop)
-        : model_(model), cracks_(cracks), solver_(solver), options_(options), accepted_(state), observer_(observer),
-          stop_(stop), work_(state), gauges_(make_gauges(model)),
+        : model_(model), cracks_(cracks), solver_(solver), options_(options), course_(model, state, observer, stop),
           motion_(loaded_body(), block_masses(model, options.density_scaling), options.damping, state.displacement),
           crossing_time_(crossing_time(model, block_masses(model, options.density_scaling))),
           detected_at_(state.displacement) {
-        for (const Stage& stage : model.loads.stages) n_steps_ += stage.steps;
         extents_.reserve(model.system.blocks.size());
         for (const Block& block : model.system.blocks) extents_.push_back(largest_coordinate(block));
     }
 
     RunReport run() {
-        try {
-            run_stages();
-        } catch (const Interrupted&) {
-            report_.status = RunStatus::interrupted;
-        } catch (const Failure& failure) {
-            const bool is_limit = failure.may_be_collapse && is_loaded_by_stress() && accepted_.step > 0;
-            report_.status = is_limit ? RunStatus::collapsed : RunStatus::no_equilibrium;
-            report_.diagnosis = fmt::format("no equilibrium in stage {} at load step {}: {}", work_.stage,
-                                            work_.step + 1, failure.what);
-        } catch (const ResourceError& error) {
-            report_.status = RunStatus::out_of_resources;
-            report_.diagnosis = error.what();
-        } catch (const std::bad_alloc&) {
-            report_.status = RunStatus::out_of_resources;
-            report_.diagnosis = "out of memory";
-        }
-        report_.costs.elapsed_s = elapsed();
-        report_.motion = MotionReport{time_steps_, motion_.time_step(), worst_energy_error_};
-        return report_;
+        LoadSteps steps;
+        steps.begin_stage = [this] { begin_stage(); };
+        steps.initial_record = [this] {
+            set_load(0.0);
+            return measure();
+        };
+        steps.load_step = [this](double target, bool) { return load_step(target); };
+        steps.look_back = [this](const StepRecord& record) { look_back(record); };
+        steps.end_stage = [this] {
+            leave_stage(model_, *course_.loads, motion_.body(), motion_.evaluate().forces, work_);
+        };
+        steps.costs = [this] {
+            RunCosts costs = report_.costs;
+            costs.elapsed_s = course_.elapsed();
+            return costs;
+        };
+        steps.fields = [this] { return field_record(model_, work_, motion_.body()); };
+        RunReport report = run_stages(course_, steps);
+        report.motion = MotionReport{time_steps_, motion_.time_step(), worst_energy_error_};
+        return report;
     }
 
 private:
@@ -100,53 +87,21 @@ private:
         return largest;
     }
 
-    [[nodiscard]] double elapsed() const { return std::chrono::duration<double>(Clock::now() - started_).count(); }
+    // ---- load steps ------------------------------------------------------------------------------------------
 
-    // ---- stages and load steps -------------------------------------------------------------------------------
-
-    void run_stages() {
-        const auto& stages = model_.loads.stages;
-        for (; work_.stage < static_cast<int>(stages.size()); next_stage()) {
-            const Stage& stage = stages[work_.stage];
-            loads_.emplace(enter_stage(model_, work_));
-            motion_.body().constraints = loads_->constraints();
-            motion_.body().pressure_edges = loads_->edges();
-            motion_.add_detection_energy(detect());
-            if (work_.step == 0 && work_.stage == 0) report_initial_state();
-            while (work_.step_in_stage < stage.steps) load_step();
-        }
-    }
-
-    void next_stage() {
-        leave_stage(model_, *loads_, motion_.body(), motion_.evaluate().forces, work_);
-        if (work_.stage < static_cast<int>(model_.loads.stages.size())) accept();
-    }
-
-    void accept() {
-        work_.costs = report_.costs;
-        work_.costs.elapsed_s = elapsed();
-        State next = work_;
-        accepted_ = std::move(next);
+    void begin_stage() {
+        motion_.body().constraints = course_.loads->constraints();
+        motion_.body().pressure_edges = course_.loads->edges();
+        motion_.add_detection_energy(detect());
     }
 
     void set_load(double load_factor) {
-        apply_load(model_, *loads_, work_.stage, load_factor, motion_.body());
+        apply_load(model_, *course_.loads, work_.stage, load_factor, motion_.body());
         work_.load_factor = load_factor;
     }
 
-    void report_initial_state() {
-        set_load(0.0);
-        StepRecord record = measure();
-        record.step = 0;
-        notify_step(record, false);
-    }
-
-    void load_step() {
-        const Stage& stage = model_.loads.stages[work_.stage];
-        const double from = static_cast<double>(work_.step_in_stage) / stage.steps;
-        const double to = static_cast<double>(work_.step_in_stage + 1) / stage.steps;
-        const bool last_of_stage = work_.step_in_stage + 1 == stage.steps;
-        passes_ = 0;
+    StepRecord load_step(double to) {
+        const double from = static_cast<double>(work_.step_in_stage) / course_.stage().steps;
         const bool steady = has_platen_velocity();
         const double duration = steady ? platen_time() : load_time();
         move_load(from, to, duration, steady);
@@ -155,36 +110,32 @@ private:
         keep_state();
         StepRecord record = measure();
         record.load_factor = to;
-        record.crack_passes = passes_;
-        observer_.equilibrium(record);
-        ++work_.step_in_stage;
-        ++work_.step;
+        notify_equilibrium(course_, record);
         work_.unbalanced_ratio = record.unbalanced_ratio;
-        work_.unbalanced_in_succession = record.balanced ? 0 : work_.unbalanced_in_succession + 1;
-        if (!record.balanced) ++report_.unbalanced_steps;
-        record.step = work_.step;
-        accept();
-        notify_step(record, last_of_stage);
-        if (steady) return;
-        const auto unbalanced = [&] {
-            return fmt::format("the unbalanced force is {:.2g} of the forces", record.unbalanced_ratio);
-        };
-        if (!record.balanced && is_platen_loaded_by_stress()) throw Failure{unbalanced(), true};
-        if (work_.unbalanced_in_succession >= solver_.max_unbalanced_steps) throw Failure{unbalanced(), true};
+        return record;
+    }
+
+    /// A platen of constant velocity waits for nothing, so that its load steps may be unbalanced.
+    void look_back(const StepRecord& record) const {
+        if (has_platen_velocity()) return;
+        const bool past_strength = !record.balanced && course_.is_platen_loaded_by_stress();
+        if (past_strength || work_.unbalanced_in_succession >= solver_.max_unbalanced_steps)
+            throw LostEquilibrium{fmt::format("the unbalanced force is {:.2g} of the forces", record.unbalanced_ratio),
+                                  true};
     }
 
     [[nodiscard]] bool has_platen_velocity() const {
-        const auto& motion = model_.loads.stages[work_.stage].motion;
+        const auto& motion = course_.stage().motion;
         return options_.loading_rate > 0.0 && motion && motion->control != PlatenControl::stress;
     }
 
     [[nodiscard]] double load_time() const {
-        const int steps = model_.loads.stages[work_.stage].steps;
+        const int steps = course_.stage().steps;
         return std::max(crossings_per_step, crossings_per_stage / steps) * crossing_time_;
     }
 
     [[nodiscard]] double platen_time() const {
-        const Stage& stage = model_.loads.stages[work_.stage];
+        const Stage& stage = course_.stage();
         double distance = std::abs(stage.motion->value);
         if (stage.motion->control == PlatenControl::strain) distance *= platen_distance(model_, *stage.motion);
         return distance / (stage.steps * options_.loading_rate);
@@ -195,15 +146,6 @@ private:
         const int fixed = opposite_boundary(model.system, motion.boundary);
         const Vec2 base = fixed >= 0 ? mean_position(model.system, fixed) : model.system.lower;
         return std::abs(normal.dot(mean_position(model.system, motion.boundary) - base));
-    }
-
-    [[nodiscard]] bool is_platen_loaded_by_stress() const {
-        const auto& motion = model_.loads.stages[work_.stage].motion;
-        return motion && motion->control == PlatenControl::stress;
-    }
-
-    [[nodiscard]] bool is_loaded_by_stress() const {
-        return !model_.loads.stages[work_.stage].motion || is_platen_loaded_by_stress();
     }
 
     // ---- time steps ------------------------------------------------------------------------------------------
@@ -237,8 +179,8 @@ private:
         }
         ++time_steps_;
         if (time_steps_ % watch_interval == 0) watch_motion();
-        if (model_.has_potential_cracks && time_steps_ % options_.crack_check_interval == 0) check_cracks();
-        if (time_steps_ % progress_interval == 0) notify_progress();
+        if (model_.has_potential_cracks && time_steps_ % options_.crack_check_interval == 0) break_bonds();
+        if (time_steps_ % progress_interval == 0) report_progress();
     }
 
     [[nodiscard]] double force_ratio() const { return motion_.unbalanced_force() / std::max(force_scale_, 1e-300); }
@@ -251,7 +193,7 @@ private:
     }
 
     void watch_motion() {
-        if (stop_) throw Interrupted{};
+        if (course_.stop) throw Interrupted{};
         if (time_steps_ % (10 * watch_interval) == 0 || force_scale_ == 0.0)
             force_scale_ = motion_.evaluate().magnitudes.norm();
         load_rate_ =
@@ -259,10 +201,10 @@ private:
         const double spacing = model_.system.spacing;
         const double fastest = largest_motion(motion_.velocity()) * motion_.time_step();
         if (!std::isfinite(motion_.unbalanced_force()) || !(fastest < wildest_motion * spacing))
-            throw Failure{fmt::format("after {} time steps blocks move without limit", time_steps_), true};
-        if (is_loaded_by_stress() &&
-            largest_motion(motion_.displacement() - accepted_.displacement) > collapse_motion * spacing)
-            throw Failure{"the body falls or flows", true};
+            throw LostEquilibrium{fmt::format("after {} time steps blocks move without limit", time_steps_), true};
+        if (course_.is_loaded_by_stress() &&
+            largest_motion(motion_.displacement() - course_.accepted.displacement) > collapse_motion * spacing)
+            throw LostEquilibrium{"the body falls or flows", true};
         if (largest_motion(motion_.displacement() - detected_at_) > detection_motion * spacing) {
             keep_state();
             motion_.add_detection_energy(detect());
@@ -283,20 +225,9 @@ private:
 
     /// The place where the work state gets displacements and histories.
     void keep_state() {
-        const LoadedBody& body = motion_.body();
         (void)motion_.evaluate();
         work_.displacement = motion_.displacement();
-        for (const Bond& bond : body.bonds) {
-            double* const shear = &work_.bond_shear[n_bond_points * bond.interface];
-            for (int k = 0; k < n_bond_points; ++k)
-                shear[k] = bond_traction(model_.laws[bond.law], bond, k, work_.displacement).shear;
-        }
-        work_.contacts.clear();
-        for (const ContactPoint& point : body.contacts) {
-            const auto traction = contact_traction(model_.laws, point, work_.displacement);
-            if (traction.state == ContactState::open && traction.history.dilation == 0.0) continue;
-            work_.contacts.push_back({point.key, traction.history});
-        }
+        keep_histories(motion_.body(), work_.displacement, work_);
     }
 
     /// Contacts and frames of the work state. Returns the elastic energy that the springs lost by that (J/m).
@@ -314,34 +245,16 @@ private:
 
     // ---- cracks ----------------------------------------------------------------------------------------------
 
-    [[nodiscard]] std::vector<CrackCandidate> candidates() {
-        const Stopwatch watch(report_.costs.seconds.crack_check);
-        ++report_.crack_checks;
-        const Eigen::VectorXd& q = motion_.displacement();
-        const auto stresses = block_stresses(model_.system, model_.moduli, q);
-        if (cracks_.criterion == CrackCriterion::principal_stress)
-            return crack_check(model_.system, bonded_, model_.strengths, stresses);
-        return crack_check(model_.system, bonded_, model_.strengths, stresses,
-                           bond_tractions(model_, motion_.body(), q));
-    }
-
-    void check_cracks() {
-        const auto broken = chosen_to_fail(cracks_, candidates());
+    void break_bonds() {
+        const auto broken = chosen_to_fail(
+            cracks_, check_cracks(course_, cracks_.criterion, bonded_, motion_.body(), motion_.displacement()));
         if (broken.empty()) return;
         if (!std::isfinite(motion_.unbalanced_force())) return; // watch_motion ends the run
         keep_state();
         const StepRecord before = measure();
-        if (before.balanced) observer_.equilibrium(before);
-        ++passes_;
-        ++report_.costs.events;
+        if (before.balanced) notify_equilibrium(course_, before);
         double energy = energy_of_interfaces(broken);
-        for (const auto& candidate : broken) {
-            CrackRecord record = weaken(model_, candidate, work_);
-            record.pass = passes_;
-            record.axial_strain = before.axial_strain;
-            observer_.crack(record);
-        }
-        std::ranges::sort(work_.contacts, {}, &ContactMemory::key);
+        weaken_together(course_, broken, before.axial_strain);
         const double lost = detect();
         energy -= energy_of_interfaces(broken);
         motion_.add_crack_energy(energy);
@@ -368,8 +281,8 @@ private:
     StepRecord measure() {
         const BodyForces forces = motion_.evaluate();
         force_scale_ = forces.magnitudes.norm();
-        StepRecord record =
-            measure_step(model_, gauges_, work_, motion_.body(), *loads_, motion_.displacement(), forces.forces);
+        StepRecord record = measure_step(model_, course_.gauges, work_, motion_.body(), *course_.loads,
+                                         motion_.displacement(), forces.forces);
         const EnergyBalance energy = motion_.energies();
         MotionRecord motion;
         motion.time_steps = static_cast<double>(time_steps_);
@@ -387,69 +300,43 @@ private:
         record.motion = motion;
         record.unbalanced_ratio = time_steps_ > 0 ? force_ratio() : 0.0;
         record.balanced = record.unbalanced_ratio <= solver_.balance;
-        record.crack_passes = passes_;
-        record.elapsed_s = elapsed();
+        record.crack_passes = course_.passes;
+        record.elapsed_s = course_.elapsed();
         if (!std::isfinite(record.axial_stress) || !std::isfinite(energy.external_work))
-            throw Failure{fmt::format("after {} time steps the displacements are no numbers", time_steps_)};
+            throw LostEquilibrium{fmt::format("after {} time steps the displacements are no numbers", time_steps_)};
         return record;
     }
 
     /// Difference of the forces on the moved and the opposite boundary over the larger one.
     [[nodiscard]] double platen_imbalance(const Eigen::VectorXd& forces) const {
-        if (gauges_.moved < 0 || gauges_.opposite < 0) return 0.0;
+        const Gauges& gauges = course_.gauges;
+        if (gauges.moved < 0 || gauges.opposite < 0) return 0.0;
         const auto force_on = [&](int boundary) {
             const BoundaryFrame frame = boundary_frame(model_.system, boundary);
-            return frame.length * boundary_stress(motion_.body(), forces, boundary, loads_->is_held(boundary),
+            return frame.length * boundary_stress(motion_.body(), forces, boundary, course_.loads->is_held(boundary),
                                                   frame.length, frame.normal);
         };
-        const double a = force_on(gauges_.moved);
-        const double b = force_on(gauges_.opposite);
+        const double a = force_on(gauges.moved);
+        const double b = force_on(gauges.opposite);
         const double larger = std::max(std::abs(a), std::abs(b));
         return larger > 0.0 ? std::abs(a - b) / larger : 0.0;
     }
 
-    void notify_step(const StepRecord& record, bool last_of_stage) {
-        last_record_ = record;
-        const Stopwatch watch(report_.costs.seconds.observers);
-        observer_.step(
-            record, work_, [&] { return field_record(model_, work_, motion_.body()); }, last_of_stage);
-    }
-
-    void notify_progress() {
-        Progress progress;
-        progress.stage = work_.stage;
-        progress.n_stages = static_cast<int>(model_.loads.stages.size());
-        progress.step = work_.step;
-        progress.n_steps = n_steps_;
-        progress.load_factor = work_.load_factor;
-        progress.axial_strain = last_record_.axial_strain;
-        progress.axial_stress = last_record_.axial_stress;
-        progress.cracks = last_record_.cracks_tension + last_record_.cracks_shear;
-        progress.open_close_iterations = static_cast<int>(time_steps_); // the work done so far
-        observer_.progress(progress);
-    }
+    void report_progress() { notify_progress(course_, work_.load_factor, static_cast<int>(time_steps_)); }
 
     const Model& model_;
     const CrackOptions& cracks_;
     const SolverOptions& solver_;
     const ExplicitOptions& options_;
-    State& accepted_; ///< at the last committed load step
-    StepObserver& observer_;
-    const std::atomic<bool>& stop_;
+    RunCourse course_;
+    State& work_ = course_.work;         ///< where the body was when its state was last kept
+    RunReport& report_ = course_.report; ///< so far
 
-    State work_; ///< where the body was when its state was last kept
-    Gauges gauges_;
     ExplicitMotion motion_;
     double crossing_time_;
     Eigen::VectorXd detected_at_;
     std::vector<double> extents_; ///< largest distance from the centroid in block coordinates, per block
     std::vector<char> bonded_;    ///< per interface of the work state
-    std::optional<StageLoads> loads_;
-    StepRecord last_record_;
-    RunReport report_;
-    Clock::time_point started_ = Clock::now();
-    int n_steps_ = 0;
-    int passes_ = 0;
     long time_steps_ = 0;
     double load_rate_ = 1.0;
     double force_scale_ = 0.0;

@@ -1,11 +1,8 @@
 #include "kluft/simulation/simulation.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <new>
 #include <numeric>
-#include <optional>
 #include <utility>
 
 #include <Eigen/Eigenvalues>
@@ -19,7 +16,7 @@
 #include "kluft/fracture/crack_check.hpp"
 #include "kluft/kinematics/affine.hpp"
 #include "kluft/simulation/measurements.hpp"
-#include "kluft/simulation/stage_loads.hpp"
+#include "kluft/simulation/run_course.hpp"
 #include "kluft/simulation/state_points.hpp"
 #include "kluft/simulation/weakening.hpp"
 
@@ -41,15 +38,6 @@ constexpr double collapse_motion = 0.5; ///< of a block in one load step, in lat
 constexpr int quick_event_trials = 12;  ///< then the interval is halved: f may have a kink that Illinois creeps up to
 constexpr int max_event_trials = 60;
 constexpr double largest_useful_index = 10.0; ///< of f in the search for an event: a strength of zero gives infinity
-
-struct Interrupted {};
-struct NoEquilibrium {
-    int worst_block;
-    double residual_ratio;
-    bool nothing_holds = false; ///< the body: there is neither a support nor a platen
-};
-
-using Clock = std::chrono::steady_clock;
 
 /// True if the constraints stop every rigid motion of every group of bonded blocks.
 bool is_held(const BlockSystem& system, const std::vector<char>& bonded, const Constraints& constraints) {
@@ -84,10 +72,8 @@ class Run {
 public:
     Run(const Model& model, const CrackOptions& cracks, const SolverOptions& solver, State& state,
         StepObserver& observer, const std::atomic<bool>& stop)
-        : model_(model), cracks_(cracks), options_(solver), accepted_(state), observer_(observer), stop_(stop),
-          work_(state), gauges_(make_gauges(model)), open_close_(linear_, open_close_options(solver)) {
-        for (const Stage& stage : model.loads.stages) n_steps_ += stage.steps;
-        report_.costs = state.costs;
+        : model_(model), cracks_(cracks), options_(solver), course_(model, state, observer, stop),
+          open_close_(linear_, open_close_options(solver)) {
         problem_.system = &model.system;
         problem_.moduli = &model.moduli;
         problem_.laws = &model.laws;
@@ -96,23 +82,24 @@ public:
     }
 
     RunReport run() {
-        try {
-            run_stages();
-        } catch (const Interrupted&) {
-            report_.status = RunStatus::interrupted;
-        } catch (const NoEquilibrium& failure) {
-            const bool is_limit = is_loaded_by_stress() && accepted_.step > 0 && !failure.nothing_holds;
-            report_.status = is_limit ? RunStatus::collapsed : RunStatus::no_equilibrium;
-            report_.diagnosis = diagnose(failure);
-        } catch (const ResourceError& error) {
-            report_.status = RunStatus::out_of_resources;
-            report_.diagnosis = error.what();
-        } catch (const std::bad_alloc&) {
-            report_.status = RunStatus::out_of_resources;
-            report_.diagnosis = "out of memory";
-        }
-        report_.costs = costs();
-        return report_;
+        LoadSteps steps;
+        steps.begin_stage = [this] {
+            if (work_.step_in_stage == 0) work_.displacement_rate.resize(0);
+        };
+        steps.initial_record = [this] {
+            prepare();
+            set_load(0.0);
+            return measure(work_.displacement, 0.0);
+        };
+        steps.load_step = [this](double target, bool last_of_stage) { return load_step(target, last_of_stage); };
+        steps.look_back = [this](const StepRecord& record) {
+            if (work_.unbalanced_in_succession >= options_.max_unbalanced_steps)
+                throw no_equilibrium(last_worst_block_, record.unbalanced_ratio);
+        };
+        steps.end_stage = [this] { leave_stage(model_, *course_.loads, problem_, last_residual_.forces, work_); };
+        steps.costs = [this] { return costs(); };
+        steps.fields = [this] { return field_record(model_, work_, problem_); };
+        return run_stages(course_, steps);
     }
 
 private:
@@ -142,7 +129,7 @@ private:
         costs.updates += linear.updates;
         costs.largest_rank = std::max(costs.largest_rank, linear.rank);
         costs.refinements += linear.refinements;
-        costs.elapsed_s = elapsed();
+        costs.elapsed_s = course_.elapsed();
         costs.seconds.analysis += linear.analyze_seconds;
         costs.seconds.factorization += linear.factorize_seconds;
         costs.seconds.update += linear.update_seconds;
@@ -151,84 +138,27 @@ private:
         return costs;
     }
 
-    [[nodiscard]] double elapsed() const {
-        return report_.costs.elapsed_s + std::chrono::duration<double>(Clock::now() - started_).count();
-    }
+    // ---- load steps ------------------------------------------------------------------------------------------
 
-    /// All or nothing, also out of memory.
-    void accept() {
-        work_.costs = costs();
-        State next = work_;
-        accepted_ = std::move(next);
-    }
-
-    // ---- stages and load steps -------------------------------------------------------------------------------
-
-    void run_stages() {
-        const auto& stages = model_.loads.stages;
-        bool initial = work_.step == 0 && work_.stage == 0 && work_.step_in_stage == 0;
-        for (; work_.stage < static_cast<int>(stages.size()); next_stage()) {
-            const Stage& stage = stages[work_.stage];
-            begin_stage();
-            if (initial) report_initial_state();
-            initial = false;
-            while (work_.step_in_stage < stage.steps) {
-                load_step(static_cast<double>(work_.step_in_stage + 1) / stage.steps,
-                          work_.step_in_stage + 1 == stage.steps);
-            }
-        }
-    }
-
-    void begin_stage() {
-        if (work_.step_in_stage == 0) work_.displacement_rate.resize(0);
-        loads_.emplace(enter_stage(model_, work_));
-    }
-
-    void next_stage() {
-        leave_stage(model_, *loads_, problem_, last_residual_.forces, work_);
-        if (work_.stage < static_cast<int>(model_.loads.stages.size())) accept();
-    }
-
-    void report_initial_state() {
-        prepare();
-        set_load(0.0);
-        StepRecord record = measure(work_.displacement, 0.0);
-        record.step = 0;
-        notify_step(record, false);
-    }
-
-    void load_step(double target, bool last_of_stage) {
+    StepRecord load_step(double target, bool last_of_stage) {
         iterations_at_start_ = report_.costs.open_close_iterations;
         if (options_.repeatable) open_close_.forget_factor();
-        passes_ = 0;
         step_balanced_ = true;
         worst_share_ = 0.0;
         const bool check =
             model_.has_potential_cracks && ((work_.step + 1) % std::max(1, cracks_.every) == 0 || last_of_stage);
         const bool smooth = advance(target, check);
-
-        work_.load_factor = target;
-        ++work_.step_in_stage;
-        ++work_.step;
-        work_.unbalanced_in_succession = step_balanced_ ? 0 : work_.unbalanced_in_succession + 1;
-        if (!step_balanced_) ++report_.unbalanced_steps;
         if (smooth) {
-            work_.displacement_rate = (work_.displacement - accepted_.displacement) / (target - accepted_.load_factor);
+            const State& before = course_.accepted;
+            work_.displacement_rate = (work_.displacement - before.displacement) / (target - before.load_factor);
         } else {
             work_.displacement_rate.resize(0);
         }
-        StepRecord record = last_record_;
-        record.step = work_.step;
-        record.load_factor = target;
+        StepRecord record = course_.last_record;
         record.open_close_iterations = report_.costs.open_close_iterations - iterations_at_start_;
-        record.crack_passes = passes_;
         record.balanced = step_balanced_;
         record.unbalanced_ratio = worst_share_;
-        accept();
-        notify_step(record, last_of_stage);
-        if (work_.unbalanced_in_succession >= options_.max_unbalanced_steps) {
-            throw NoEquilibrium{last_worst_block_, record.unbalanced_ratio};
-        }
+        return record;
     }
 
     /// Brings the work state to the target load factor. True if nothing broke, was cut or relaxed on the way.
@@ -244,7 +174,7 @@ private:
                 if (trial.converged()) commit(trial, from);
                 trial = relax(target, trial.summary.restless);
                 if (!trial.balanced && nothing_holds())
-                    throw NoEquilibrium{last_worst_block_, trial.viscous_share, true};
+                    throw no_equilibrium(last_worst_block_, trial.viscous_share, true);
             }
             double reached = target;
             if (by_events && trial.balanced) reached = locate_event(from, target, trial);
@@ -256,17 +186,12 @@ private:
         return smooth;
     }
 
-    [[nodiscard]] bool is_loaded_by_stress() const {
-        const auto& motion = model_.loads.stages[work_.stage].motion;
-        return !motion || motion->control == PlatenControl::stress;
-    }
-
     [[nodiscard]] bool nothing_holds() const { return problem_.constraints.rows().empty(); }
 
     /// Under a given stress or weight a body that lost its balance may fall for ever.
     [[nodiscard]] bool is_falling() const {
-        if (!is_loaded_by_stress()) return false;
-        const Eigen::VectorXd moved = work_.displacement - accepted_.displacement;
+        if (!course_.is_loaded_by_stress()) return false;
+        const Eigen::VectorXd moved = work_.displacement - course_.accepted.displacement;
         for (int b = 0; b < model_.system.n_blocks(); ++b) {
             if (moved.segment<2>(n_block_unknowns * b).norm() > collapse_motion * model_.system.spacing) return true;
         }
@@ -293,8 +218,8 @@ private:
             ++report_.detections;
         }
         require_pattern(near_pairs);
-        problem_.constraints = loads_->constraints();
-        problem_.pressure_edges = loads_->edges();
+        problem_.constraints = course_.loads->constraints();
+        problem_.pressure_edges = course_.loads->edges();
         problem_.start = work_.displacement;
         problem_.eta.clear();
         const bool needs_mass = separated || !is_held(model_.system, bonded_, problem_.constraints);
@@ -338,7 +263,7 @@ private:
         linear_.analyze(pattern_);
     }
 
-    void set_load(double load_factor) { apply_load(model_, *loads_, work_.stage, load_factor, problem_); }
+    void set_load(double load_factor) { apply_load(model_, *course_.loads, work_.stage, load_factor, problem_); }
 
     [[nodiscard]] Eigen::VectorXd predicted(double load_factor) const {
         if (work_.displacement_rate.size() == 0) return work_.displacement;
@@ -346,7 +271,7 @@ private:
     }
 
     Trial solve(double load_factor, Eigen::VectorXd guess) {
-        if (stop_) throw Interrupted{};
+        if (course_.stop) throw Interrupted{};
         set_load(load_factor);
         problem_.start = work_.displacement;
         Trial trial;
@@ -356,7 +281,7 @@ private:
         last_worst_block_ = trial.summary.worst_block;
         if (trial.converged()) balance(trial);
         if (trial.balanced && trial.summary.iterations <= easy_iterations) decay(work_.viscosity_factor);
-        notify_progress(load_factor);
+        notify_progress(course_, load_factor, report_.costs.open_close_iterations);
         return trial;
     }
 
@@ -393,7 +318,7 @@ private:
         (void)grow_eta(restless, factor);
         Trial last; // that the state moved to
         for (int attempt = 0; attempt < max_relaxation_attempts; ++attempt) {
-            if (stop_) throw Interrupted{};
+            if (course_.stop) throw Interrupted{};
             prepare();
             set_load(load_factor);
             factor.resize(model_.system.blocks.size(), 1.0);
@@ -404,13 +329,13 @@ private:
             trial.summary = open_close_.solve(problem_, pattern_, trial.q, work_.contacts.empty(), Aim::relaxation);
             report_.costs.open_close_iterations += trial.summary.iterations;
             last_worst_block_ = trial.summary.worst_block;
-            notify_progress(load_factor);
+            notify_progress(course_, load_factor, report_.costs.open_close_iterations);
             trial.viscous_share = viscous_share(trial);
             const double harmless =
                 std::max(relaxed_tolerance * options_.balance, relaxed_residual * trial.viscous_share);
             if (!trial.converged() && trial.summary.residual_ratio > harmless) {
                 if (!grow_eta(trial.summary.restless, factor)) {
-                    throw NoEquilibrium{trial.summary.worst_block, trial.summary.residual_ratio};
+                    throw no_equilibrium(trial.summary.worst_block, trial.summary.residual_ratio);
                 }
                 continue;
             }
@@ -421,14 +346,13 @@ private:
                 return trial;
             }
             commit(trial, work_.load_factor);
-            if (is_falling()) throw NoEquilibrium{trial.summary.worst_block, trial.viscous_share, nothing_holds()};
+            if (is_falling()) throw no_equilibrium(trial.summary.worst_block, trial.viscous_share, nothing_holds());
             if (trial.summary.iterations <= easy_relaxation) decay(factor);
             last = std::move(trial);
         }
-        if (last.q.size() == 0) throw NoEquilibrium{last_worst_block_, last.summary.residual_ratio};
-        const auto& motion = model_.loads.stages[work_.stage].motion;
-        if (motion && motion->control == PlatenControl::stress) { // the platen keeps moving: past the strength
-            throw NoEquilibrium{last.summary.worst_block, last.viscous_share};
+        if (last.q.size() == 0) throw no_equilibrium(last_worst_block_, last.summary.residual_ratio);
+        if (course_.is_platen_loaded_by_stress()) { // the platen keeps moving: past the strength
+            throw no_equilibrium(last.summary.worst_block, last.viscous_share);
         }
         return last;
     }
@@ -457,17 +381,7 @@ private:
 
     /// The place where the work state changes.
     void commit(const Trial& trial, double load_factor) {
-        for (const Bond& bond : problem_.bonds) {
-            const InterfaceLaw& law = model_.laws[bond.law];
-            double* const shear = &work_.bond_shear[n_bond_points * bond.interface];
-            for (int k = 0; k < n_bond_points; ++k) shear[k] = bond_traction(law, bond, k, trial.q).shear;
-        }
-        work_.contacts.clear();
-        for (int i = 0; i < static_cast<int>(problem_.contacts.size()); ++i) {
-            const auto traction = contact_traction(problem_, i, trial.q);
-            if (traction.state == ContactState::open && traction.history.dilation == 0.0) continue;
-            work_.contacts.push_back({problem_.contacts[i].key, traction.history});
-        }
+        keep_histories(problem_, trial.q, work_);
         work_.displacement = trial.q;
         work_.load_factor = load_factor;
         work_.unbalanced_ratio = trial.viscous_share;
@@ -475,18 +389,12 @@ private:
 
     // ---- cracks ----------------------------------------------------------------------------------------------
 
-    std::vector<CrackCandidate> check_cracks(const Eigen::VectorXd& q) {
-        const Stopwatch watch(report_.costs.seconds.crack_check);
-        ++report_.crack_checks;
-        const auto stresses = block_stresses(model_.system, model_.moduli, q);
-        if (cracks_.criterion == CrackCriterion::principal_stress) {
-            return crack_check(model_.system, bonded_, model_.strengths, stresses);
-        }
-        return crack_check(model_.system, bonded_, model_.strengths, stresses, bond_tractions(model_, problem_, q));
+    std::vector<CrackCandidate> candidates(const Eigen::VectorXd& q) {
+        return check_cracks(course_, cracks_.criterion, bonded_, problem_, q);
     }
 
     double largest_index_at(const Eigen::VectorXd& q) {
-        return std::min(largest_useful_index, largest_index(check_cracks(q)));
+        return std::min(largest_useful_index, largest_index(candidates(q)));
     }
 
     /// Cuts the step at the load factor where the largest f is in [1, 1 + tolerance] (Illinois on the load factor);
@@ -533,13 +441,10 @@ private:
     bool break_bonds(double load_factor) {
         bool any = false;
         for (;;) {
-            const auto broken = chosen_to_fail(cracks_, check_cracks(work_.displacement));
+            const auto broken = chosen_to_fail(cracks_, candidates(work_.displacement));
             if (broken.empty()) return any;
             any = true;
-            ++passes_;
-            ++report_.costs.events;
-            for (const auto& candidate : broken) break_bond(candidate);
-            std::ranges::sort(work_.contacts, {}, &ContactMemory::key);
+            weaken_together(course_, broken, course_.last_record.axial_strain);
             prepare();
             Trial trial = solve(load_factor, work_.displacement);
             if (!trial.balanced) {
@@ -551,64 +456,42 @@ private:
         }
     }
 
-    void break_bond(const CrackCandidate& candidate) {
-        CrackRecord record = weaken(model_, candidate, work_);
-        record.pass = passes_;
-        record.axial_strain = last_record_.axial_strain;
-        observer_.crack(record);
-    }
-
     // ---- measurements and messages ---------------------------------------------------------------------------
 
     StepRecord measure(const Eigen::VectorXd& q, double share) {
         EquilibriumEvaluator(problem_, pattern_).residual(q, last_residual_);
-        StepRecord record = measure_step(model_, gauges_, work_, problem_, *loads_, q, last_residual_.forces);
+        StepRecord record =
+            measure_step(model_, course_.gauges, work_, problem_, *course_.loads, q, last_residual_.forces);
         record.open_close_iterations = report_.costs.open_close_iterations - iterations_at_start_;
-        record.crack_passes = passes_;
+        record.crack_passes = course_.passes;
         record.unbalanced_ratio = share;
-        record.elapsed_s = elapsed();
+        record.elapsed_s = course_.elapsed();
         return record;
     }
 
     void record_equilibrium(const Trial& trial) {
-        last_record_ = measure(trial.q, trial.viscous_share);
-        last_record_.balanced = trial.balanced;
+        StepRecord& record = course_.last_record;
+        record = measure(trial.q, trial.viscous_share);
+        record.balanced = trial.balanced;
         step_balanced_ = step_balanced_ && trial.balanced;
         worst_share_ = std::max(worst_share_, trial.viscous_share);
-        const Stopwatch watch(report_.costs.seconds.observers);
-        observer_.equilibrium(last_record_);
+        notify_equilibrium(course_, record);
     }
 
-    void notify_step(const StepRecord& record, bool last_of_stage) {
-        last_record_ = record;
-        const Stopwatch watch(report_.costs.seconds.observers);
-        observer_.step(
-            record, work_, [&] { return field_record(model_, work_, problem_); }, last_of_stage);
+    /// `nothing_holds`: the body, which has neither a support nor a platen.
+    [[nodiscard]] LostEquilibrium no_equilibrium(int worst_block, double residual_ratio,
+                                                 bool nothing_holds = false) const {
+        std::string text = fmt::format("residual {:.2g} of the forces", residual_ratio);
+        if (nothing_holds) text += "; nothing holds the body, which has neither a support nor a platen";
+        if (worst_block >= 0) text += "; worst is " + block_description(worst_block);
+        return {text, !nothing_holds};
     }
 
-    void notify_progress(double load_factor) {
-        Progress progress;
-        progress.stage = work_.stage;
-        progress.n_stages = static_cast<int>(model_.loads.stages.size());
-        progress.step = work_.step;
-        progress.n_steps = n_steps_;
-        progress.load_factor = load_factor;
-        progress.axial_strain = last_record_.axial_strain;
-        progress.axial_stress = last_record_.axial_stress;
-        progress.cracks = last_record_.cracks_tension + last_record_.cracks_shear;
-        progress.open_close_iterations = report_.costs.open_close_iterations;
-        observer_.progress(progress);
-    }
-
-    [[nodiscard]] std::string diagnose(const NoEquilibrium& failure) const {
-        std::string text = fmt::format("no equilibrium in stage {} at load step {}: residual {:.2g} of the forces",
-                                       work_.stage, work_.step + 1, failure.residual_ratio);
-        if (failure.nothing_holds) text += "; nothing holds the body, which has neither a support nor a platen";
-        if (failure.worst_block < 0) return text;
-        const Block& block = model_.system.blocks[failure.worst_block];
+    [[nodiscard]] std::string block_description(int index) const {
+        const Block& block = model_.system.blocks[index];
         const Vec2 at = model_.system.origin + block.centroid;
-        text += fmt::format("; worst is block {} at ({:.6g}, {:.6g}), area {:.3g} m2, interfaces", failure.worst_block,
-                            at.x(), at.y(), block.area);
+        std::string text =
+            fmt::format("block {} at ({:.6g}, {:.6g}), area {:.3g} m2, interfaces", index, at.x(), at.y(), block.area);
         for (const Edge& edge : block.edges) {
             if (edge.interface >= 0) text += fmt::format(" {}", edge.interface);
         }
@@ -618,25 +501,17 @@ private:
     const Model& model_;
     const CrackOptions& cracks_;
     const SolverOptions& options_;
-    State& accepted_; ///< at the last committed load step
-    StepObserver& observer_;
-    const std::atomic<bool>& stop_;
+    RunCourse course_;
+    State& work_ = course_.work;         ///< at the last equilibrium
+    RunReport& report_ = course_.report; ///< so far
 
-    State work_; ///< at the last equilibrium
-    Gauges gauges_;
     LinearSolver linear_;
     OpenCloseSolver open_close_;
     std::vector<char> bonded_; ///< per interface of the work state
     BlockPattern pattern_;
     EquilibriumProblem problem_;
-    std::optional<StageLoads> loads_;
     Residual last_residual_;
-    StepRecord last_record_;
-    RunReport report_;
-    Clock::time_point started_ = Clock::now();
-    int n_steps_ = 0;
     int iterations_at_start_ = 0;
-    int passes_ = 0;
     bool step_balanced_ = true;
     double worst_share_ = 0.0;
     int last_worst_block_ = -1;

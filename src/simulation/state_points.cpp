@@ -4,7 +4,6 @@
 
 #include "kluft/contact/bonds.hpp"
 #include "kluft/contact/detection.hpp"
-#include "kluft/loading/loaded_body.hpp"
 #include "kluft/simulation/measurements.hpp"
 
 namespace kluft {
@@ -45,6 +44,20 @@ StateContacts state_contacts(const Model& model, const State& state) {
     auto detected = detect_contacts(model.system, surfaces, state.displacement, contact_reach * model.system.spacing,
                                     state.contacts);
     return {std::move(detected.points), std::move(detected.near_pairs)};
+}
+
+void keep_histories(const LoadedBody& body, const Eigen::VectorXd& q, State& state) {
+    for (const Bond& bond : body.bonds) {
+        const InterfaceLaw& law = (*body.laws)[bond.law];
+        double* const shear = &state.bond_shear[n_bond_points * bond.interface];
+        for (int k = 0; k < n_bond_points; ++k) shear[k] = bond_traction(law, bond, k, q).shear;
+    }
+    state.contacts.clear();
+    for (const ContactPoint& point : body.contacts) {
+        const auto traction = contact_traction(*body.laws, point, q);
+        if (traction.state == ContactState::open && traction.history.dilation == 0.0) continue;
+        state.contacts.push_back({point.key, traction.history});
+    }
 }
 
 FieldRecord fields_of_state(const Model& model, const State& state) {

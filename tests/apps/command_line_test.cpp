@@ -198,7 +198,7 @@ geometry:
 stages: [{name: push, pressure: {left: 1 MPa}, steps: 2}]
 )";
 
-const Words commands{"run", "check", "draw", "envelope"};
+const Words commands{"run", "check", "draw", "compare", "envelope"};
 
 // ---- help, version, mistakes ---------------------------------------------------------------------------------------
 
@@ -657,7 +657,7 @@ TEST_F(SlowCommandLine, SameSceneGivesTheSameTablesWithAnyNumberOfThreads) {
     EXPECT_GT(lines_of(content_of(path("first/cracks.csv"))).size(), 1U);
 }
 
-// ---- kluft draw, kluft envelope ------------------------------------------------------------------------------------
+// ---- kluft draw, kluft compare, kluft envelope ------------------------------------------------------------------------------------
 
 TEST_F(CommandLine, DrawMakesPicturesOfScenesAndRuns) {
     write("tiny.yaml", tiny_scene);
@@ -681,6 +681,79 @@ TEST_F(CommandLine, DrawRefusesWhatItCannotDraw) {
     expect_refused({"draw", "tiny.yaml", "-o", "tiny.gif"}, HasSubstr(".png"));
     expect_refused({"draw", "tiny.yaml", "empty"}, HasSubstr("tiny.yaml: expected a directory of results"));
     EXPECT_FALSE(fs::exists(path("tiny.gif")));
+}
+
+TEST_F(CommandLine, CompareSetsTwoRunsSideBySide) {
+    write("tiny.yaml", tiny_scene);
+    const Words run{"run", "tiny.yaml", "--quiet", "--set", "output.pictures=false", "-o"};
+    ASSERT_EQ(kluft(with(run, {"event"})).code, 0);
+    ASSERT_EQ(kluft(with(run, {"all", "--set", "cracks.update=all"})).code, 0);
+    ASSERT_EQ(kluft(with(run, {"explicit", "--set", "analysis.integrator=explicit"})).code, 0);
+
+    const Result same = kluft({"compare", "event", "event", "--tolerance", "0"});
+    EXPECT_EQ(same.code, 0) << same.out;
+    EXPECT_THAT(same.out, HasSubstr("The runs agree within 0 %."));
+    EXPECT_TRUE(fs::exists(path("results/compare-event-event/compare.md")));
+
+    const Result loose = kluft({"compare", "event", "all", "--tolerance", "1000 %", "-o", "c"});
+    EXPECT_EQ(loose.code, 0) << loose.out;
+    for (const char* name : {"c/curves.png", "c/cracks.png"})
+        EXPECT_THAT(content_of(path(name)), StartsWith("\x89PNG")) << name;
+    for (const char* name : {"c/curves.svg", "c/cracks.svg"})
+        EXPECT_THAT(content_of(path(name)), HasSubstr("</svg>")) << name;
+    EXPECT_THAT(content_of(path("c/compare.md")), HasSubstr("| peak stress (MPa) |"));
+
+    const Result strict = kluft({"compare", "event", "explicit", "--tolerance", "1e-9", "-o", "c"});
+    EXPECT_EQ(strict.code, 1) << strict.out;
+    EXPECT_THAT(strict.out, AllOf(ContainsRegex("peak stress [^\n]*MISS\n"), HasSubstr("do not agree within")));
+    const auto json = nlohmann::json::parse(content_of(path("c/compare.json")));
+    EXPECT_EQ(json["agree"], false);
+    EXPECT_EQ(json["b"]["integrator"], "explicit");
+    EXPECT_EQ(json["quantities"]["peak_stress"]["a"], summary("event")["peak_stress"]);
+    EXPECT_TRUE(json["quantities"]["solves"]["b"].is_null());
+    EXPECT_EQ(json["quantities"]["time_steps"]["b"], summary("explicit")["time_steps"]);
+}
+
+// A run of pressures alone, without potential cracks, and one that left nothing but its history.
+TEST_F(CommandLine, CompareLeavesOutWhatIsNotKnown) {
+    write("tiny.yaml", tiny_scene);
+    write("plain.yaml", R"(kluft: 1
+materials: {rock: {youngs_modulus: 1 GPa, poissons_ratio: 0.2}}
+interfaces: {joint: {kind: fracture, normal_stiffness: 1e9, shear_stiffness: 1e9, friction_angle: 30}}
+geometry: {domain: {rectangle: {width: 1, height: 2}}, reference_spacing: 1}
+boundaries: {bottom: {support: pinned}}
+stages: [{name: pressure, pressure: {top: 1 MPa}, steps: 1}]
+)");
+    ASSERT_EQ(kluft({"run", "tiny.yaml", "-o", "tiny", "--quiet"}).code, 0);
+    ASSERT_EQ(kluft({"run", "plain.yaml", "-o", "plain", "--quiet"}).code, 0);
+    fs::create_directory(path("bare"));
+    fs::copy_file(path("tiny/history.csv"), path("bare/history.csv"));
+    for (const Words& runs : {Words{"plain", "plain"}, Words{"plain", "tiny"}, Words{"tiny", "plain"},
+                              Words{"bare", "tiny"}, Words{"bare", "bare"}, Words{"plain", "bare"}}) {
+        const Result result = kluft(with({"compare", "-o", "c"}, runs));
+        EXPECT_EQ(result.code, runs[0] == runs[1] ? 0 : 1)
+            << ::testing::PrintToString(runs) << result.out << result.err;
+        EXPECT_THAT(result.out, AllOf(Not(HasSubstr("nan")), Not(HasSubstr("inf")), HasSubstr(" -")));
+        const auto json = nlohmann::json::parse(content_of(path("c/compare.json")));
+        EXPECT_TRUE(json["quantities"].contains("curve_mean"));
+        EXPECT_EQ(fs::exists(path("c/cracks.png")), runs != Words({"bare", "bare"}));
+    }
+}
+
+TEST_F(CommandLine, CompareRefusesWhatIsNoRun) {
+    write("file", "");
+    fs::create_directories(path("results/case-3"));
+    write("results/case-3/history.csv", "step\n");
+    expect_refused({"compare", "results/case3", "results/case-3"},
+                   HasSubstr("results/case3: expected a directory of results, found nothing; did you mean "
+                             "'results/case-3'?"));
+    expect_refused({"compare", "results/case-3", "file"}, HasSubstr("file: expected a directory of results, found a"));
+    expect_refused({"compare", "results/case-3", "results"}, HasSubstr("found no history.csv in it"));
+    expect_refused({"compare", "results/case-3", "results/case-3"}, HasSubstr("no column 'axial_strain'"));
+    expect_refused({"compare", "results/case-3"}, HasSubstr("directories"));
+    expect_refused({"compare", "a", "b", "--tolerance", "-1"}, HasSubstr("--tolerance: expected a fraction"));
+    expect_refused({"compare", "a", "b", "-o", "file"}, HasSubstr("file: expected a directory for the comparison"));
+    expect_refused({"compare", "a", "b", "--tolernace", "1"}, HasSubstr("did you mean '--tolerance'?"));
 }
 
 TEST_F(CommandLine, EnvelopeFitsThePeaksOfRuns) {

@@ -24,6 +24,7 @@ struct PlottedCurve {
     std::optional<Vec2> peak;
     std::vector<std::string> peak_text; ///< lines beside the peak
     bool peak_reached = true;           ///< otherwise drawn dashed: the curve was still rising
+    bool dashed = false;                ///< so that a curve that it covers is seen
 };
 
 /// A published value to compare with, in the units of the plot: a level across it (no x; the label stands on the line)

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "kluft/simulation/step_record.hpp"
@@ -25,6 +26,9 @@ namespace kluft {
 /// Reads history.csv or equilibria.csv. Columns may stand in any order and further ones are ignored; so is a last line
 /// without its end, which a killed run may leave. Throws InputError (file:line: column: expected, found).
 [[nodiscard]] std::vector<StepRecord> read_history(const std::filesystem::path& path);
+/// The same where only the columns `needed` must be there; numbers of missing ones keep their defaults.
+[[nodiscard]] std::vector<StepRecord> read_history(const std::filesystem::path& path,
+                                                   const std::vector<std::string_view>& needed);
 /// Reads cracks.csv. Throws InputError.
 [[nodiscard]] std::vector<CrackRecord> read_cracks(const std::filesystem::path& path);
 

@@ -6,6 +6,7 @@
 
 #include "kluft/contact/bonds.hpp"
 #include "kluft/contact/contact.hpp"
+#include "kluft/loading/loaded_body.hpp"
 #include "kluft/simulation/model.hpp"
 #include "kluft/simulation/state.hpp"
 #include "kluft/simulation/step_record.hpp"
@@ -25,6 +26,10 @@ struct StateContacts {
 
 /// Contacts of the unbonded surfaces, with the histories of the state.
 [[nodiscard]] StateContacts state_contacts(const Model& model, const State& state);
+
+/// Puts the shear tractions of the body's bonds and the histories of its touching contacts at displacements q into the
+/// state. Contacts that are open and have not dilated are forgotten.
+void keep_histories(const LoadedBody& body, const Eigen::VectorXd& q, State& state);
 
 /// Fields of a committed state, for pictures and ParaView.
 [[nodiscard]] FieldRecord fields_of_state(const Model& model, const State& state);

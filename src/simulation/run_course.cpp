@@ -1,0 +1,162 @@
+#include "kluft/simulation/run_course.hpp"
+
+#include <algorithm>
+#include <new>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "kluft/core/diagnostics.hpp"
+#include "kluft/core/stopwatch.hpp"
+#include "kluft/simulation/weakening.hpp"
+
+namespace kluft {
+
+namespace {
+
+/// All or nothing, also out of memory.
+void accept(RunCourse& course, const LoadSteps& steps) {
+    course.work.costs = steps.costs();
+    State next = course.work;
+    course.accepted = std::move(next);
+}
+
+void notify_step(RunCourse& course, const LoadSteps& steps, const StepRecord& record, bool last_of_stage) {
+    course.last_record = record;
+    const Stopwatch watch(course.report.costs.seconds.observers);
+    course.observer.step(record, course.work, steps.fields, last_of_stage);
+}
+
+void next_stage(RunCourse& course, const LoadSteps& steps) {
+    steps.end_stage();
+    if (course.work.stage < static_cast<int>(course.model.loads.stages.size())) accept(course, steps);
+}
+
+void report_initial_state(RunCourse& course, const LoadSteps& steps) {
+    StepRecord record = steps.initial_record();
+    record.step = 0;
+    notify_step(course, steps, record, false);
+}
+
+void run_to_the_end(RunCourse& course, const LoadSteps& steps) {
+    State& work = course.work;
+    for (; work.stage < static_cast<int>(course.model.loads.stages.size()); next_stage(course, steps)) {
+        const int n_steps = course.stage().steps;
+        course.loads.emplace(enter_stage(course.model, work));
+        steps.begin_stage();
+        if (work.step == 0 && work.stage == 0) report_initial_state(course, steps);
+        while (work.step_in_stage < n_steps) {
+            const double load_factor = static_cast<double>(work.step_in_stage + 1) / n_steps;
+            const bool last_of_stage = work.step_in_stage + 1 == n_steps;
+            course.passes = 0;
+            const StepRecord record = steps.load_step(load_factor, last_of_stage);
+            commit_load_step(course, steps, record, load_factor, last_of_stage);
+            steps.look_back(record);
+        }
+    }
+}
+
+void end_out_of_resources(RunReport& report, const std::string& what) {
+    report.status = RunStatus::out_of_resources;
+    report.diagnosis = what;
+}
+
+} // namespace
+
+RunCourse::RunCourse(const Model& body, State& state, StepObserver& told, const std::atomic<bool>& asked_to_stop)
+    : model(body), accepted(state), observer(told), stop(asked_to_stop), work(state), gauges(make_gauges(body)) {
+    for (const Stage& each : model.loads.stages) n_steps += each.steps;
+    report.costs = state.costs;
+}
+
+double RunCourse::elapsed() const {
+    const auto since = std::chrono::steady_clock::now() - started;
+    return report.costs.elapsed_s + std::chrono::duration<double>(since).count();
+}
+
+bool RunCourse::is_platen_loaded_by_stress() const {
+    const auto& motion = stage().motion;
+    return motion && motion->control == PlatenControl::stress;
+}
+
+bool RunCourse::is_loaded_by_stress() const { return !stage().motion || is_platen_loaded_by_stress(); }
+
+RunReport run_stages(RunCourse& course, const LoadSteps& steps) {
+    RunReport& report = course.report;
+    try {
+        run_to_the_end(course, steps);
+    } catch (const Interrupted&) {
+        report.status = RunStatus::interrupted;
+    } catch (const LostEquilibrium& failure) {
+        const bool is_limit = failure.may_be_collapse && course.is_loaded_by_stress() && course.accepted.step > 0;
+        report.status = is_limit ? RunStatus::collapsed : RunStatus::no_equilibrium;
+        report.diagnosis = fmt::format("no equilibrium in stage {} at load step {}: {}", course.work.stage,
+                                       course.work.step + 1, failure.what);
+    } catch (const ResourceError& error) {
+        end_out_of_resources(report, error.what());
+    } catch (const std::bad_alloc&) {
+        end_out_of_resources(report, "out of memory");
+    }
+    report.costs = steps.costs();
+    return report;
+}
+
+void commit_load_step(RunCourse& course, const LoadSteps& steps, StepRecord record, double load_factor,
+                      bool last_of_stage) {
+    State& work = course.work;
+    work.load_factor = load_factor;
+    ++work.step_in_stage;
+    ++work.step;
+    work.unbalanced_in_succession = record.balanced ? 0 : work.unbalanced_in_succession + 1;
+    if (!record.balanced) ++course.report.unbalanced_steps;
+    record.step = work.step;
+    record.load_factor = load_factor;
+    record.crack_passes = course.passes;
+    accept(course, steps);
+    notify_step(course, steps, record, last_of_stage);
+}
+
+void notify_equilibrium(RunCourse& course, const StepRecord& record) {
+    const Stopwatch watch(course.report.costs.seconds.observers);
+    course.observer.equilibrium(record);
+}
+
+void notify_progress(RunCourse& course, double load_factor, int n_solves) {
+    const StepRecord& last = course.last_record;
+    Progress progress;
+    progress.stage = course.work.stage;
+    progress.n_stages = static_cast<int>(course.model.loads.stages.size());
+    progress.step = course.work.step;
+    progress.n_steps = course.n_steps;
+    progress.load_factor = load_factor;
+    progress.axial_strain = last.axial_strain;
+    progress.axial_stress = last.axial_stress;
+    progress.cracks = last.cracks_tension + last.cracks_shear;
+    progress.open_close_iterations = n_solves;
+    course.observer.progress(progress);
+}
+
+std::vector<CrackCandidate> check_cracks(RunCourse& course, CrackCriterion criterion, const std::vector<char>& bonded,
+                                         const LoadedBody& body, const Eigen::VectorXd& q) {
+    const Stopwatch watch(course.report.costs.seconds.crack_check);
+    ++course.report.crack_checks;
+    const Model& model = course.model;
+    const auto stresses = block_stresses(model.system, model.moduli, q);
+    if (criterion == CrackCriterion::principal_stress)
+        return crack_check(model.system, bonded, model.strengths, stresses);
+    return crack_check(model.system, bonded, model.strengths, stresses, bond_tractions(model, body, q));
+}
+
+void weaken_together(RunCourse& course, const std::vector<CrackCandidate>& broken, double axial_strain) {
+    ++course.passes;
+    ++course.report.costs.events;
+    for (const CrackCandidate& candidate : broken) {
+        CrackRecord record = weaken(course.model, candidate, course.work);
+        record.pass = course.passes;
+        record.axial_strain = axial_strain;
+        course.observer.crack(record);
+    }
+    std::ranges::sort(course.work.contacts, {}, &ContactMemory::key);
+}
+
+} // namespace kluft
