@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "kluft/assembly/blas.hpp"
+#include "kluft/blocks/block_search.hpp"
 #include "kluft/contact/bonds.hpp"
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/core/stopwatch.hpp"
@@ -90,7 +91,7 @@ public:
         problem_.system = &model.system;
         problem_.moduli = &model.moduli;
         problem_.laws = &model.laws;
-        if (model.gravity != Vec2::Zero()) problem_.densities = model.densities;
+        if (has_gravity(model)) problem_.densities = model.densities;
         problem_.least_mass_area = std::sqrt(0.75) * model.system.spacing * model.system.spacing;
     }
 
@@ -604,8 +605,8 @@ private:
         if (failure.worst_block < 0) return text;
         const Block& block = model_.system.blocks[failure.worst_block];
         const Vec2 at = model_.system.origin + block.centroid;
-        text += fmt::format("; worst is block {} at ({:.6g}, {:.6g}), area {:.3g} m2, interfaces", failure.worst_block,
-                            at.x(), at.y(), block.area);
+        text += fmt::format("; worst is block {} at ({:.6g}, {:.6g}), area {:.3g} m2, interfaces",
+                            block_label(model_.system, failure.worst_block), at.x(), at.y(), block.area);
         for (const Edge& edge : block.edges) {
             if (edge.interface >= 0) text += fmt::format(" {}", edge.interface);
         }
