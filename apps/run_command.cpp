@@ -75,6 +75,7 @@ RunWriterOptions writer_options(const Scene& scene, const Model& model) {
     if (platen_stage >= 0) options.platen_stage = platen_stage;
     options.plane = scene.plane;
     options.motion = scene.integrator == Integrator::explicit_;
+    options.history_columns = history_columns(model);
     for (const Material& material : scene.materials) options.material_names.push_back(material.name);
     return options;
 }

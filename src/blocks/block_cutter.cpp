@@ -12,7 +12,9 @@
 #include <fmt/format.h>
 
 #include "kluft/blocks/arrangement.hpp"
+#include "kluft/blocks/block_search.hpp"
 #include "kluft/blocks/fracture_trace.hpp"
+#include "kluft/blocks/given_blocks.hpp"
 #include "kluft/blocks/hexagon_lattice.hpp"
 #include "kluft/blocks/map_mender.hpp"
 #include "kluft/core/diagnostics.hpp"
@@ -516,14 +518,19 @@ CutBody cut(const GeometrySpec& spec) {
     for (const auto& piece : mended.merged) body.report.merged.push_back({frame.origin + piece.at, piece.area});
 
     body.system = SystemBuilder(spec, frame, numbers, map).build();
-    measure(body.system, body.report);
+    form_sets(spec, body.system);
     return body;
+}
+
+CutBody body_of(const GeometrySpec& spec) {
+    return spec.blocks.empty() ? cut(spec) : CutBody{assemble_blocks(spec), {}};
 }
 
 } // namespace
 
 CutBody cut_blocks(const GeometrySpec& spec) {
-    CutBody body = cut(spec);
+    CutBody body = body_of(spec);
+    measure(body.system, body.report);
     return_freed_memory(); // five times what the body needs, which the run would otherwise not get
     return body;
 }

@@ -331,6 +331,7 @@ DetectedContacts detect_contacts(const BlockSystem& system, const ContactSurface
         const Surface& surface_a = all.all[all.of_block[a]];
         const Surface& surface_b = all.all[all.of_block[b]];
         if (!surface_a.separated && !surface_b.separated) continue;
+        if (system.blocks[a].fixed && system.blocks[b].fixed) continue;
         result.near_pairs.emplace_back(a, b);
         pair_detection.run(a, all.edges_of(surface_a), b, all.edges_of(surface_b));
     }

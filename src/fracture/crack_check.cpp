@@ -6,8 +6,14 @@ namespace kluft {
 
 namespace {
 
-PrincipalStresses mean_principal_stresses(const Interface& interface, const std::vector<Mat2>& stresses) {
-    return principal_stresses(0.5 * (stresses[interface.block_a] + stresses[interface.block_b]));
+/// Of the two blocks; a fixed one has none, and counts as its neighbour.
+PrincipalStresses mean_principal_stresses(const BlockSystem& system, const Interface& interface,
+                                          const std::vector<Mat2>& stresses) {
+    const bool fixed_a = system.blocks[interface.block_a].fixed;
+    const bool fixed_b = system.blocks[interface.block_b].fixed;
+    const Mat2& a = stresses[fixed_a ? interface.block_b : interface.block_a];
+    const Mat2& b = stresses[fixed_b ? interface.block_a : interface.block_b];
+    return principal_stresses(0.5 * (a + b));
 }
 
 template <typename Index>
@@ -17,7 +23,7 @@ std::vector<CrackCandidate> check_bonds(const BlockSystem& system, const std::ve
     candidates.reserve(static_cast<std::size_t>(std::ranges::count(bonded, 1)));
     for (int i = 0; i < system.n_interfaces(); ++i) {
         if (!bonded[i]) continue;
-        const auto stress = mean_principal_stresses(system.interfaces[i], stresses);
+        const auto stress = mean_principal_stresses(system, system.interfaces[i], stresses);
         candidates.push_back({i, index(i, stress), stress});
     }
     return candidates;

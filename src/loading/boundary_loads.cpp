@@ -47,7 +47,8 @@ Constraints::Constraints(std::vector<PrescribedDisplacement> rows) : rows_(std::
         const auto& singular = svd.singularValues();
         const auto rank = (singular.array() > rank_tolerance * singular[0]).count();
         const Eigen::MatrixXd range = svd.matrixV().leftCols(rank);
-        ConstrainedBlock constrained{block, indices, Mat6::Identity() - range * range.transpose(), {}};
+        ConstrainedBlock constrained{block, indices, Mat6::Zero(), {}};
+        if (rank < n_block_unknowns) constrained.projector = Mat6::Identity() - range * range.transpose();
         constrained.inverse =
             range * singular.head(rank).cwiseInverse().asDiagonal() * svd.matrixU().leftCols(rank).transpose();
         blocks_.push_back(std::move(constrained));

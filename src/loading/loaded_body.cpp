@@ -8,6 +8,22 @@ namespace kluft {
 
 namespace {
 
+/// Zero for a fixed block, whose weight nothing but its support feels.
+Vec2 weight_of(const LoadedBody& body, int b) {
+    const Block& block = body.system->blocks[b];
+    if (body.densities.empty() || block.fixed) return Vec2::Zero();
+    return body.densities[block.material] * block.area * body.gravity;
+}
+
+/// Calls visit(block, xi, force) for each load but the weights.
+template <class Visit> void for_each_surface_load(const LoadedBody& body, const Eigen::VectorXd& q, Visit visit) {
+    for (const PressureEdge& edge : body.pressure_edges) {
+        const double pressure = body.pressures[edge.boundary];
+        if (pressure != 0.0) visit(edge.block, edge.xi_middle, pressure_force(edge, pressure, q));
+    }
+    for (const PointLoad& load : body.point_loads) visit(load.block, load.xi, load.force);
+}
+
 /// Sums the forces and, where they are wanted, their magnitudes.
 template <bool with_magnitudes> class Summation {
 public:
@@ -30,7 +46,7 @@ public:
                 result_.magnitudes.segment<4>(n_block_unknowns * b + 2) += columns.cwiseAbs();
             raise_stiffest(2.0 * moduli.mu + moduli.lambda);
             if (!body.densities.empty()) {
-                const Vec2 weight = body.densities[block.material] * block.area * body.gravity;
+                const Vec2 weight = weight_of(body, b);
                 result_.forces.segment<2>(n_block_unknowns * b) -= weight;
                 if constexpr (with_magnitudes) result_.magnitudes.segment<2>(n_block_unknowns * b) += weight.cwiseAbs();
             }
@@ -62,11 +78,9 @@ public:
         }
     }
 
-    void add_pressures(const LoadedBody& body, const Eigen::VectorXd& q) {
-        for (const PressureEdge& edge : body.pressure_edges) {
-            const double pressure = body.pressures[edge.boundary];
-            if (pressure != 0.0) add(edge.block, edge.xi_middle, -pressure_force(edge, pressure, q));
-        }
+    void add_surface_loads(const LoadedBody& body, const Eigen::VectorXd& q) {
+        for_each_surface_load(body, q,
+                              [this](int block, const Vec2& xi, const Vec2& force) { add(block, xi, -force); });
     }
 
 private:
@@ -85,7 +99,7 @@ void body_forces(const LoadedBody& body, const Eigen::VectorXd& q, BodyForces& r
     sum.add_blocks(body, q);
     sum.add_bonds(body, q);
     sum.add_contacts(body, q, [](const PointTraction&) {});
-    sum.add_pressures(body, q);
+    sum.add_surface_loads(body, q);
 }
 
 void body_forces(const LoadedBody& body, const Eigen::VectorXd& q, BodyForces& result,
@@ -97,7 +111,14 @@ void body_forces(const LoadedBody& body, const Eigen::VectorXd& q, BodyForces& r
     sum.add_blocks(body, q);
     sum.add_bonds(body, q);
     sum.add_contacts(body, q, [&](const PointTraction& traction) { tractions.push_back(traction); });
-    sum.add_pressures(body, q);
+    sum.add_surface_loads(body, q);
+}
+
+void external_forces(const LoadedBody& body, const Eigen::VectorXd& q, Eigen::VectorXd& result) {
+    result.setZero(q.size());
+    for (int b = 0; b < body.system->n_blocks(); ++b) result.segment<2>(n_block_unknowns * b) += weight_of(body, b);
+    for_each_surface_load(body, q,
+                          [&](int block, const Vec2& xi, const Vec2& force) { add_force(result, block, xi, force); });
 }
 
 PointTraction contact_traction(const std::vector<InterfaceLaw>& laws, const ContactPoint& point,

@@ -191,6 +191,14 @@ std::string table_row(const StepRecord& record) {
     return record.motion ? row_of(record) + ',' + row_of(*record.motion) : row_of(record);
 }
 std::string table_row(const CrackRecord& crack) { return row_of(crack); }
+std::string histories_header(const std::vector<std::string>& columns) {
+    return fmt::format("step,stage,load_factor,{}", fmt::join(columns, ","));
+}
+std::string histories_row(const StepRecord& record) {
+    std::string line = fmt::format("{},{},{}", cell(record.step), cell(record.stage), cell(record.load_factor));
+    for (const double value : record.histories) line += ',' + cell(value);
+    return line;
+}
 std::vector<StepRecord> read_history(const std::filesystem::path& path) { return read_table<StepRecord>(path); }
 std::vector<StepRecord> read_history(const std::filesystem::path& path, const std::vector<std::string_view>& needed) {
     return read_table<StepRecord>(path, &needed);

@@ -52,6 +52,7 @@ struct RunWriter::Tables {
     PatientTable history;
     PatientTable equilibria;
     PatientTable cracks;
+    std::optional<PatientTable> histories;
     std::optional<FieldSeries> fields;
 };
 
@@ -87,7 +88,8 @@ bool is_due(int step, int every) { return every > 0 && step % every == 0; }
 void remove_results(const fs::path& directory) {
     remove_results_but_tables_and_state(directory);
     FieldSeries::remove(directory);
-    for (const char* name : {"state.h5", "history.csv", "equilibria.csv", "cracks.csv"}) remove_file(directory / name);
+    for (const char* name : {"state.h5", "history.csv", "equilibria.csv", "cracks.csv", "histories.csv"})
+        remove_file(directory / name);
 }
 
 RunWriter::RunWriter(fs::path directory, const BlockSystem& system, RunWriterOptions options)
@@ -96,6 +98,8 @@ RunWriter::RunWriter(fs::path directory, const BlockSystem& system, RunWriterOpt
     const fs::path history = directory_ / "history.csv";
     const fs::path equilibria = directory_ / "equilibria.csv";
     const fs::path cracks = directory_ / "cracks.csv";
+    const fs::path histories = directory_ / "histories.csv";
+    const std::string histories_columns = histories_header(options_.history_columns);
     const std::string header = options_.motion ? history_header() + ',' + motion_header() : history_header();
     if (options_.resumed_step) {
         const int last = *options_.resumed_step;
@@ -103,7 +107,10 @@ RunWriter::RunWriter(fs::path directory, const BlockSystem& system, RunWriterOpt
         tables_ = std::make_unique<Tables>(Tables{PatientTable(AppendTable::resume(history, header, last)),
                                                   PatientTable(AppendTable::resume(equilibria, header, last)),
                                                   PatientTable(AppendTable::resume(cracks, cracks_header(), last)),
+                                                  {},
                                                   {}});
+        if (!options_.history_columns.empty())
+            tables_->histories.emplace(AppendTable::resume(histories, histories_columns, last));
         history_ = read_history(history);
         equilibria_ = read_history(equilibria);
         if (history_.empty() || history_.back().step != last)
@@ -114,7 +121,10 @@ RunWriter::RunWriter(fs::path directory, const BlockSystem& system, RunWriterOpt
         tables_ = std::make_unique<Tables>(Tables{PatientTable(AppendTable::create(history, header)),
                                                   PatientTable(AppendTable::create(equilibria, header)),
                                                   PatientTable(AppendTable::create(cracks, cracks_header())),
+                                                  {},
                                                   {}});
+        if (!options_.history_columns.empty())
+            tables_->histories.emplace(AppendTable::create(histories, histories_columns));
         if (options_.fields) tables_->fields = FieldSeries::create(directory_);
     }
 }
@@ -138,6 +148,7 @@ void RunWriter::step(const StepRecord& record, const State& state, const std::fu
     if (is_known(record)) return;
     history_.push_back(record);
     tables_->history.append(table_row(record));
+    if (tables_->histories) tables_->histories->append(histories_row(record));
     if (options_.fields && (record.step == 0 || last_of_stage || is_due(record.step, options_.fields_every)))
         write_fields(record, fields());
     if (last_of_stage || is_due(record.step, options_.checkpoint_every)) checkpoint(state);
@@ -147,6 +158,7 @@ void RunWriter::checkpoint(const State& state) {
     tables_->history.sync();
     tables_->equilibria.sync();
     tables_->cracks.sync();
+    if (tables_->histories) tables_->histories->sync();
     write_state(directory_ / "state.h5", state, options_.fingerprint, options_.scene_text);
 }
 

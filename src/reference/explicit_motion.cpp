@@ -136,20 +136,6 @@ void ExplicitMotion::keep_histories() {
     }
 }
 
-void ExplicitMotion::set_external_forces() {
-    external_.setZero();
-    if (!body_.densities.empty()) {
-        for (int b = 0; b < body_.system->n_blocks(); ++b) {
-            const Block& block = body_.system->blocks[b];
-            external_.segment<2>(n_block_unknowns * b) += body_.densities[block.material] * block.area * body_.gravity;
-        }
-    }
-    for (const PressureEdge& edge : body_.pressure_edges) {
-        const double pressure = body_.pressures[edge.boundary];
-        if (pressure != 0.0) add_force(external_, edge.block, edge.xi_middle, pressure_force(edge, pressure, q_));
-    }
-}
-
 void ExplicitMotion::accelerate_free_blocks(double interval) {
     for (int b = 0; b < static_cast<int>(masses_.size()); ++b) {
         if (held_[b]) continue;
@@ -187,7 +173,7 @@ void ExplicitMotion::accelerate_held_blocks(double interval) {
 void ExplicitMotion::advance() {
     body_forces(body_, q_, forces_, tractions_);
     keep_histories();
-    set_external_forces();
+    external_forces(body_, q_, external_);
     const double interval = 0.5 * (last_time_step_ + time_step_);
     unbalanced_ = 0.0;
     accelerate_free_blocks(interval);
@@ -236,7 +222,7 @@ double ExplicitMotion::springs_energy() const {
 /// Work and velocity are half a time step behind the displacements; what is missing is added here.
 EnergyBalance ExplicitMotion::energies() {
     evaluate();
-    set_external_forces();
+    external_forces(body_, q_, external_);
     EnergyBalance energy = spent_;
     energy.spring_energy = springs_energy();
     for (int b = 0; b < static_cast<int>(masses_.size()); ++b) {

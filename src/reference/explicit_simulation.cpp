@@ -76,7 +76,7 @@ private:
         body.system = &model_.system;
         body.moduli = &model_.moduli;
         body.laws = &model_.laws;
-        if (model_.gravity != Vec2::Zero()) body.densities = model_.densities;
+        if (has_gravity(model_)) body.densities = model_.densities;
         return body;
     }
 

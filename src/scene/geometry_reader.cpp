@@ -24,6 +24,7 @@ namespace kluft {
 namespace {
 
 constexpr int most_sides_checked = 2000; ///< of a polygon here; the block cutter checks all
+constexpr int fixed_choice = 1;          ///< of a block's or a set's support
 constexpr double most_hexagons = 2e7;    ///< beyond what memory holds: the spacing's unit is wrong
 
 /// Where neighbouring points coincide, if anywhere: the second one's index.
@@ -59,6 +60,9 @@ public:
 
     GeometrySpec read() {
         const auto geometry = root_.section("geometry");
+        const bool is_given = geometry.node() != nullptr && geometry.node()->is_mapping() &&
+                              gives_one_of(geometry, {"domain", "blocks"}, context_) && geometry.has("blocks");
+        if (is_given) return read_given(geometry);
         if (geometry.has("domain")) read_domain(geometry.section("domain"));
         for (const auto& section : geometry.sections("fractures")) read_fracture(section);
         if (geometry.has("tessellation")) read_tessellation(geometry.section("tessellation"));
@@ -67,11 +71,156 @@ public:
         if (!materials_.empty() && geometry.node() != nullptr)
             spec_.material = context_.reference(geometry, "material", materials_, "a material").value_or(-1);
         for (const auto& section : geometry.sections("regions")) read_region(section);
+        for (const auto& section : geometry.sections("sets")) read_set(section);
         if (!spec_.domain.empty()) name_boundaries(root_.sections("boundaries"));
         return std::move(spec_);
     }
 
 private:
+    // ---- given blocks ----------------------------------------------------------------------------------------
+
+    GeometrySpec read_given(const SceneSection& geometry) {
+        for (const auto* key : {"fractures", "tessellation", "regions"})
+            if (geometry.has(key))
+                context_.fail(
+                    geometry, key,
+                    fmt::format("expected nothing beside blocks, found {}", found_text(*geometry.value(key))));
+        spec_.reference_spacing = geometry.number("reference_spacing");
+        spec_.minimum_area = geometry.number("minimum_area");
+        const auto sections = geometry.sections("blocks");
+        for (const auto& section : sections) read_block(geometry, section);
+        if (geometry.has("blocks_interface") || !interfaces_.empty() || sections.size() > 1)
+            spec_.blocks_interface =
+                context_.reference(geometry, "blocks_interface", interfaces_, "an interface").value_or(-1);
+        for (const auto& section : geometry.sections("sets")) read_set(section);
+        name_block_boundaries(root_.sections("boundaries"));
+        return std::move(spec_);
+    }
+
+    void read_block(const SceneSection& geometry, const SceneSection& section) {
+        GivenBlock block;
+        block.name = fmt::format("block {}", spec_.blocks.size() + 1);
+        first_side_.push_back(n_sides_);
+        block_is_clockwise_.push_back(0);
+        if (section.node()->is_mapping()) {
+            block.name = section.given_text("name").value_or(block.name);
+            check_new_name(section, "name", block.name);
+            const Polygon polygon = read_polygon(section, "polygon");
+            block_is_clockwise_.back() = !polygon.empty() && signed_area(polygon) < 0.0 ? 1 : 0;
+            block.polygon = counter_clockwise(polygon);
+            block.material = material_of_block(geometry, section);
+            block.fixed = section.choice("support") == fixed_choice;
+        }
+        n_sides_ += static_cast<int>(block.polygon.size());
+        spec_.blocks.push_back(std::move(block));
+    }
+
+    int material_of_block(const SceneSection& geometry, const SceneSection& section) {
+        if (materials_.empty()) return -1;
+        const SceneSection& where = geometry.has("material") && !section.has("material") ? geometry : section;
+        return context_.reference(where, "material", materials_, "a material").value_or(-1);
+    }
+
+    /// Blocks and sets share one list of names.
+    void check_new_name(const SceneSection& section, std::string_view key, const std::string& name) {
+        const auto names = block_names(spec_);
+        if (std::find(names.begin(), names.end(), name) != names.end())
+            context_.fail(section, key,
+                          fmt::format("expected each name of a block or a set once, found '{}' again", name));
+    }
+
+    void read_set(const SceneSection& section) {
+        BlockSetSpec set;
+        set.name = section.name();
+        check_new_name(section, {}, set.name);
+        if (section.node()->is_mapping() && gives_one_of(section, {"polygon", "blocks"}, context_)) {
+            if (section.has("polygon")) set.polygon = read_polygon(section, "polygon");
+            const auto names = names_of(spec_.blocks);
+            for (const auto& name : section.texts("blocks"))
+                if (const auto block = context_.index_of(section, "blocks", name, names, "a given block"))
+                    set.blocks.push_back(*block);
+            set.fixed = section.choice("support") == fixed_choice;
+        }
+        spec_.sets.push_back(std::move(set));
+    }
+
+    void name_block_boundaries(const std::vector<SceneSection>& sections) {
+        const bool gives_sides = std::any_of(sections.begin(), sections.end(), [](const SceneSection& section) {
+            return section.has("sides") || section.has("facing") || section.has("block");
+        });
+        if (!gives_sides) {
+            for (const auto facing : {Facing::bottom, Facing::right, Facing::top, Facing::left}) {
+                auto sides = all_sides_facing(facing);
+                if (!sides.empty()) spec_.boundaries.push_back({std::string(facing_name(facing)), std::move(sides)});
+            }
+            return;
+        }
+        for (const auto& section : sections) spec_.boundaries.push_back({section.name(), {}});
+        std::set<int> taken;
+        for (const bool of_one_block : {true, false}) {
+            for (std::size_t i = 0; i < sections.size(); ++i)
+                if (sections[i].has("block") == of_one_block) take_sides(sections[i], taken, spec_.boundaries[i]);
+        }
+    }
+
+    /// The sides that a boundary asks for and no boundary of one block has. They are taken then.
+    void take_sides(const SceneSection& section, std::set<int>& taken, BoundarySides& boundary) {
+        if (!section.node()->is_mapping() || !gives_one_of(section, {"sides", "facing"}, context_)) return;
+        std::vector<int> sides;
+        if (const auto name = section.given_text("block")) {
+            const auto block = context_.index_of(section, "block", *name, names_of(spec_.blocks), "a given block");
+            if (!block) return;
+            boundary.block = *name;
+            sides = section.has("sides") ? counted_sides_of(section, *block) : facing_sides_of(section, *block);
+        } else if (section.has("sides")) {
+            context_.fail(section, "sides", "expected block: NAME beside it, found none");
+        } else if (const auto choice = section.given_choice("facing")) {
+            sides = all_sides_facing(static_cast<Facing>(*choice));
+            std::erase_if(sides, [&](int side) { return taken.contains(side); });
+        }
+        for (const int side : sides)
+            if (!taken.insert(side).second && !boundary.block.empty())
+                context_.fail(
+                    section, {},
+                    fmt::format("expected each side of the block '{}' once, found one again", boundary.block));
+        boundary.sides = std::move(sides);
+    }
+
+    std::vector<int> facing_sides_of(const SceneSection& section, int block) {
+        const auto choice = section.given_choice("facing");
+        if (!choice) return {};
+        auto sides = sides_facing(spec_.blocks[block].polygon, static_cast<Facing>(*choice));
+        if (sides.empty() && !spec_.blocks[block].polygon.empty())
+            context_.fail(section, "facing",
+                          fmt::format("expected a direction that a side of the block faces, found {}",
+                                      found_text(*section.value("facing"))));
+        for (int& side : sides) side += first_side_[block];
+        return sides;
+    }
+
+    std::vector<int> counted_sides_of(const SceneSection& section, int block) {
+        const int n_sides = static_cast<int>(spec_.blocks[block].polygon.size());
+        std::vector<int> sides;
+        for (const long long side : section.integers("sides")) {
+            if (side >= 0 && side < n_sides)
+                sides.push_back(first_side_[block] + counter_clockwise_side(static_cast<int>(side), n_sides,
+                                                                            block_is_clockwise_[block] != 0));
+            else if (side >= 0 && n_sides > 0)
+                context_.fail(section, "sides",
+                              fmt::format("expected sides of the block from 0 to {}, found {}", n_sides - 1, side));
+        }
+        return sides;
+    }
+
+    [[nodiscard]] std::vector<int> all_sides_facing(Facing facing) const {
+        std::vector<int> all;
+        for (std::size_t b = 0; b < spec_.blocks.size(); ++b)
+            for (const int side : sides_facing(spec_.blocks[b].polygon, facing)) all.push_back(first_side_[b] + side);
+        return all;
+    }
+
+    // ---- a domain that is cut --------------------------------------------------------------------------------
+
     void read_domain(const SceneSection& domain) {
         if (!domain.node()->is_mapping() || !gives_one_of(domain, {"rectangle", "polygon", "file"}, context_)) return;
         if (domain.has("rectangle")) {
@@ -229,6 +378,12 @@ private:
     }
 
     void name_boundaries(const std::vector<SceneSection>& sections) {
+        for (const auto& section : sections)
+            if (section.has("block"))
+                context_.fail(
+                    section, "block",
+                    fmt::format("expected nothing for a domain that is cut, whose blocks have no names, found {}",
+                                found_text(*section.value("block"))));
         const bool gives_sides = std::any_of(sections.begin(), sections.end(), [](const SceneSection& section) {
             return section.has("sides") || section.has("facing");
         });
@@ -309,9 +464,18 @@ private:
     GeometrySpec spec_;
     bool is_rectangle_ = false;
     bool is_clockwise_ = false;
+    int n_sides_ = 0;                      ///< of the given blocks so far
+    std::vector<int> first_side_;          ///< per given block
+    std::vector<char> block_is_clockwise_; ///< as the scene gives it
 };
 
 } // namespace
+
+std::vector<std::string> block_names(const GeometrySpec& spec) {
+    std::vector<std::string> names = names_of(spec.sets);
+    for (const auto& block : spec.blocks) names.push_back(block.name);
+    return names;
+}
 
 GeometrySpec read_geometry(const SceneSection& root, const std::vector<std::string>& materials,
                            const std::vector<std::string>& interfaces, ReadingContext& context) {

@@ -20,8 +20,9 @@ constexpr std::array<std::string_view, 3> platen_keys{"displacement", "strain", 
 
 class LoadReader {
 public:
-    LoadReader(const std::vector<std::string>& boundaries, ReadingContext& context)
-        : boundaries_(boundaries), context_(context) {}
+    LoadReader(const std::vector<std::string>& boundaries, const std::vector<std::string>& blocks, bool has_gravity,
+               ReadingContext& context)
+        : boundaries_(boundaries), blocks_(blocks), context_(context), has_gravity_(has_gravity) {}
 
     void read_supports(const std::vector<SceneSection>& sections) {
         loads_.supports.assign(boundaries_.size(), Support::none);
@@ -31,20 +32,23 @@ public:
         }
     }
 
-    void read_stage(const SceneSection& section, bool has_gravity) {
+    void read_stage(const SceneSection& section) {
         Stage stage;
         stage.name = section.given_text("name").value_or(fmt::format("stage {}", loads_.stages.size()));
         stage.platens = static_cast<Platens>(section.choice("platens"));
         stage.steps = section.count("steps");
         if (section.has("pressure")) read_pressure(section.section("pressure"), stage);
+        stage.gravity = section.given_gravity("gravity");
+        has_gravity_ = has_gravity_ || stage.gravity.has_value();
+        for (const auto& force : section.sections("forces")) read_force(force, stage);
         read_platen(section, stage);
         const bool has_platen =
             std::any_of(platen_keys.begin(), platen_keys.end(), [&](auto key) { return section.has(key); });
         const bool has_pressure = section.has("pressure") && !section.value("pressure")->items.empty();
-        if (!has_gravity && !has_platen && !has_pressure && section.node()->is_mapping())
+        if (!has_gravity_ && !has_platen && !has_pressure && loads_.forces.empty() && section.node()->is_mapping())
             context_.fail(section, {},
-                          "expected a load (pressure, displacement, strain or stress) because there is no gravity, "
-                          "found none");
+                          "expected a load (pressure, displacement, strain, stress or forces) because there is no "
+                          "gravity, found none");
         loads_.stages.push_back(std::move(stage));
     }
 
@@ -66,6 +70,27 @@ private:
             if (support(*boundary) != Support::none)
                 context_.warn(pressure, name, "a pressure has no effect where the boundary is supported");
         }
+    }
+
+    void read_force(const SceneSection& section, Stage& stage) {
+        if (!section.node()->is_mapping()) return;
+        const std::string name = section.name();
+        const auto known = std::find_if(loads_.forces.begin(), loads_.forces.end(),
+                                        [&](const PointForce& force) { return force.name == name; });
+        const auto block = section.given_text("block");
+        if (block && !context_.index_of(section, "block", *block, blocks_, "a block or a set of one")) return;
+        const auto index = static_cast<int>(known - loads_.forces.begin());
+        if (known == loads_.forces.end()) {
+            if (!section.has("point"))
+                context_.fail(section, {}, "expected a point [x, y] in m because the force is new, found nothing");
+            loads_.forces.push_back({name, block.value_or(""), section.point("point")});
+        } else if ((block && *block != known->block) ||
+                   (section.has("point") && section.given_point("point").value_or(known->point) != known->point)) {
+            context_.fail(section, {},
+                          "expected the block and the point where the force acts in the stages before, found others; a "
+                          "force elsewhere needs another name");
+        }
+        stage.forces[index] = section.point("force");
     }
 
     void read_platen(const SceneSection& section, Stage& stage) {
@@ -97,17 +122,19 @@ private:
     }
 
     const std::vector<std::string>& boundaries_;
+    const std::vector<std::string>& blocks_;
     ReadingContext& context_;
+    bool has_gravity_; ///< in the analysis or a stage so far
     LoadProgram loads_;
 };
 
 } // namespace
 
-LoadProgram read_loads(const SceneSection& root, const std::vector<std::string>& boundaries, bool has_gravity,
-                       ReadingContext& context) {
-    LoadReader reader(boundaries, context);
+LoadProgram read_loads(const SceneSection& root, const std::vector<std::string>& boundaries,
+                       const std::vector<std::string>& blocks, bool has_gravity, ReadingContext& context) {
+    LoadReader reader(boundaries, blocks, has_gravity, context);
     reader.read_supports(root.sections("boundaries"));
-    for (const auto& section : root.sections("stages")) reader.read_stage(section, has_gravity);
+    for (const auto& section : root.sections("stages")) reader.read_stage(section);
     return reader.take();
 }
 

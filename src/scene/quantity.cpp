@@ -71,6 +71,8 @@ Dimension dimension_of(Measure measure) {
         return {1, 0, -1, 0};
     case Measure::acceleration:
         return {1, 0, -2, 0};
+    case Measure::line_force:
+        return {0, 1, -2, 0};
     case Measure::angle:
         return radian;
     }
@@ -81,7 +83,7 @@ Dimension dimension_of(Measure measure) {
 std::string dimension_name(const Dimension& dimension) {
     if (dimension == none) return "no unit but a plain number";
     for (const Measure measure : {Measure::length, Measure::stress, Measure::stiffness, Measure::density,
-                                  Measure::velocity, Measure::acceleration, Measure::angle})
+                                  Measure::velocity, Measure::acceleration, Measure::line_force, Measure::angle})
         if (dimension_of(measure) == dimension) return std::string(unit_name(measure));
     constexpr std::array<std::string_view, 4> symbols{"m", "kg", "s", "rad"};
     std::string name;
@@ -232,6 +234,8 @@ std::string_view unit_name(Measure measure) {
         return "m/s";
     case Measure::acceleration:
         return "m/s2";
+    case Measure::line_force:
+        return "N/m";
     case Measure::angle:
         return "deg";
     }

@@ -25,6 +25,8 @@ double largest(Measure measure) {
         return 1e15;
     case Measure::stiffness:
         return 1e18;
+    case Measure::line_force:
+        return 1e15;
     default:
         return 1e9;
     }
@@ -102,6 +104,9 @@ public:
             break;
         case KeyType::integers:
             check_integers(node, rule, path);
+            break;
+        case KeyType::texts:
+            check_texts(node, rule, path);
             break;
         case KeyType::gravity:
             check_gravity(node, rule, path);
@@ -204,6 +209,15 @@ private:
         for (std::size_t i = 0; i < node.items.size(); ++i) {
             const std::string problem = integer_problem(node.items[i], rule.range);
             if (!problem.empty()) fail(node.items[i], joined_path(path, std::to_string(i)), expected, problem);
+        }
+    }
+
+    void check_texts(const SceneNode& node, const KeyRule& rule, const std::string& path) {
+        if (!is_long_enough(node, rule, path)) return;
+        for (std::size_t i = 0; i < node.items.size(); ++i) {
+            const SceneNode& item = node.items[i];
+            const std::string problem = item.is_scalar() ? text_problem(item) : found_text(item);
+            if (!problem.empty()) fail(item, joined_path(path, std::to_string(i)), "text", problem);
         }
     }
 

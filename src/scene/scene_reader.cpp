@@ -1,5 +1,6 @@
 #include "kluft/scene/scene_reader.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <set>
@@ -24,15 +25,9 @@ namespace {
 void read_analysis(const SceneSection& root, Scene& scene) {
     const auto analysis = root.section("analysis");
     scene.plane = static_cast<Plane>(analysis.choice("plane"));
-    const SceneNode* gravity = analysis.value("gravity");
-    if (gravity == nullptr) return;
-    if (gravity->is_list()) {
-        scene.gravity_x = analysis.point("gravity").x();
-        scene.gravity_y = analysis.point("gravity").y();
-    } else if (gravity->is_scalar()) {
-        const double downwards = read_quantity(gravity->text, Measure::acceleration).value.value_or(0.0);
-        scene.gravity_y = downwards == 0.0 ? 0.0 : -downwards;
-    }
+    const Vec2 gravity = analysis.given_gravity("gravity").value_or(Vec2::Zero());
+    scene.gravity_x = gravity.x();
+    scene.gravity_y = gravity.y();
 }
 
 constexpr std::array explicit_keys{"damping", "density_scaling", "loading_rate", "crack_check_interval"};
@@ -89,20 +84,66 @@ OutputOptions read_output_options(const SceneSection& section) {
     return options;
 }
 
+/// The fractures that a history names: those of the traces with that name.
+std::vector<int> fractures_called(const SceneSection& section, const GeometrySpec& geometry, ReadingContext& context) {
+    const auto names = names_of(geometry.fractures);
+    const std::string name = section.given_text("fracture").value_or("");
+    if (!context.index_of(section, "fracture", name, names, "a mapped fracture")) return {};
+    std::vector<int> found;
+    for (std::size_t i = 0; i < names.size(); ++i)
+        if (names[i] == name) found.push_back(static_cast<int>(i));
+    return found;
+}
+
+HistoryRequest read_history_request(const SceneSection& section, const GeometrySpec& geometry,
+                                    ReadingContext& context) {
+    HistoryRequest request;
+    request.name = section.name();
+    if (!section.node()->is_mapping()) return request;
+    const auto known_block = [&](std::string_view key, const std::string& name) {
+        (void)context.index_of(section, key, name, block_names(geometry), "a block or a set of one");
+        return name;
+    };
+    const bool of_block = section.has("block") || section.has("point");
+    if (static_cast<int>(of_block) + static_cast<int>(section.has("fracture")) +
+            static_cast<int>(section.has("interface")) !=
+        1) {
+        context.fail(section, {}, "expected either block and point (or one of them), or fracture, or interface");
+        return request;
+    }
+    if (section.has("fracture")) request.fractures = fractures_called(section, geometry, context);
+    if (section.has("interface")) {
+        const auto names = section.texts("interface");
+        if (names.size() != 2)
+            context.fail(section, "interface", "expected the names of two blocks");
+        else if (names[0] == names[1])
+            context.fail(section, "interface",
+                         "expected two different blocks, found " + in_quotes(names[0]) + " twice");
+        else
+            request.pair = {known_block("interface", names[0]), known_block("interface", names[1])};
+    }
+    if (const auto block = section.given_text("block")) request.block = known_block("block", *block);
+    request.point = section.given_point("point");
+    return request;
+}
+
 bool has_gravity(const Scene& scene) { return scene.gravity_x != 0.0 || scene.gravity_y != 0.0; }
 
 void require_densities(const SceneSection& root, const Scene& scene, ReadingContext& context) {
-    if (!has_gravity(scene)) return;
+    const bool in_a_stage = std::any_of(scene.loads.stages.begin(), scene.loads.stages.end(),
+                                        [](const Stage& s) { return s.gravity && *s.gravity != Vec2::Zero(); });
+    if (!has_gravity(scene) && !in_a_stage) return;
     for (const auto& section : root.sections("materials"))
         if (!section.has("density"))
             context.fail(section, "density", "expected a number > 0 in kg/m3 because there is gravity, found nothing");
 }
 
-/// Interfaces on fractures and hexagons, and what those fail to.
+/// Interfaces on fractures and hexagons and between given blocks, and what those fail to.
 std::set<int> used_interface_types(const Scene& scene) {
     std::set<int> used;
     for (const auto& fracture : scene.geometry.fractures) used.insert(fracture.interface_type);
     if (scene.geometry.tessellation) used.insert(scene.geometry.tessellation->interface_type);
+    if (!scene.geometry.blocks.empty() && !scene.interface_types.empty()) used.insert(scene.geometry.blocks_interface);
     used.erase(-1);
     std::set<int> successors;
     for (const int type : used) successors.insert(scene.interface_types[static_cast<std::size_t>(type)].fails_to);
@@ -142,10 +183,13 @@ Scene convert(const SceneSection& root, ReadingContext& context) {
     scene.materials = read_materials(root, context);
     scene.interface_types = read_interface_types(root, context);
     scene.geometry = read_geometry(root, names_of(scene.materials), names_of(scene.interface_types), context);
-    scene.loads = read_loads(root, names_of(scene.geometry.boundaries), has_gravity(scene), context);
+    scene.loads =
+        read_loads(root, names_of(scene.geometry.boundaries), block_names(scene.geometry), has_gravity(scene), context);
     scene.cracks = read_crack_options(root.section("cracks"));
     scene.solver = read_solver_options(root.section("solver"));
     scene.output = read_output_options(root.section("output"));
+    for (const auto& section : root.section("output").sections("histories"))
+        scene.output.histories.push_back(read_history_request(section, scene.geometry, context));
     require_densities(root, scene, context);
     const auto interfaces = root.sections("interfaces");
     for (const int type : used_interface_types(scene)) {

@@ -167,6 +167,8 @@ Json value_schema(const KeyRule& rule) {
         item.type = KeyType::integer;
         return list_schema(unit_number(item), rule);
     }
+    case KeyType::texts:
+        return list_schema(Json{{"type", Json::array({"string", "number", "boolean"})}}, rule);
     case KeyType::gravity:
         return Json{{"anyOf", Json::array({unit_number(rule), point_schema(rule)})}};
     }

@@ -225,7 +225,8 @@ std::vector<KeyRule> interface_rules() {
          .type = KeyType::number,
          .measure = Measure::stress,
          .range = not_negative,
-         .fallback_note = "1e-3 of the largest boundary or self-weight stress",
+         .fallback_note =
+             "1e-3 of the largest boundary or self-weight stress, or point force over the size of its block",
          .doc = "g_0 k_n: normal traction over which the corner between open and closed is rounded; 0 for none."},
         {.path = "interfaces.*.friction_rounding",
          .type = KeyType::number,
@@ -242,8 +243,8 @@ std::vector<KeyRule> domain_rules() {
         {.path = "geometry", .type = KeyType::mapping, .required = true, .doc = "The body and its cuts."},
         {.path = "geometry.domain",
          .type = KeyType::mapping,
-         .required = true,
-         .doc = "The outline: one of `rectangle`, `polygon` and `file`."},
+         .doc = "The outline of a body that is cut: one of `rectangle`, `polygon` and `file`. Either `domain` or "
+                "`blocks`."},
         {.path = "geometry.domain.rectangle",
          .type = KeyType::mapping,
          .doc = "An upright rectangle. Its boundaries are named `bottom`, `right`, `top` and `left`."},
@@ -365,6 +366,59 @@ std::vector<KeyRule> cut_rules() {
     };
 }
 
+std::vector<KeyRule> block_rules() {
+    return {
+        {.path = "geometry.blocks",
+         .type = KeyType::list,
+         .least_items = 1,
+         .doc =
+             "Blocks given as polygons, instead of a body that is cut (`domain`, `fractures`, `tessellation`, "
+             "`regions`). They must not overlap; gaps are allowed. Where two of them share a part of an edge there is "
+             "an interface: coordinates that agree within 1e-9 of the body's diagonal are the same, and edges are "
+             "split where a corner of a neighbour lies on them. Corners rounded to fewer digits make gaps or overlaps, "
+             "so give sloping edges all digits. `minimum_area` has no effect on given blocks."},
+        {.path = "geometry.blocks.#", .type = KeyType::mapping, .doc = "One block."},
+        {.path = "geometry.blocks.#.name",
+         .type = KeyType::text,
+         .fallback_note = "`block 1`, `block 2`, ...",
+         .doc = "Each once; for messages, boundaries, sets, forces and histories."},
+        {.path = "geometry.blocks.#.polygon",
+         .type = KeyType::points,
+         .measure = Measure::length,
+         .required = true,
+         .least_items = 3,
+         .doc = "Corners of a simple polygon in order, either way round."},
+        {.path = "geometry.blocks.#.material",
+         .type = KeyType::text,
+         .fallback_note = "`geometry.material`, else the only material",
+         .doc = "Its material."},
+        {.path = "geometry.blocks.#.support",
+         .type = KeyType::choice,
+         .choices = {"none", "fixed"},
+         .fallback = "none",
+         .doc = "A `fixed` block does not move or deform, in any stage, and has no weight; two of them do not touch."},
+        {.path = "geometry.blocks_interface",
+         .type = KeyType::text,
+         .fallback_note = "the only interface",
+         .doc = "Kind of interface between given blocks, also where they come to touch later."},
+        {.path = "geometry.sets",
+         .type = KeyType::named,
+         .doc = "Blocks by name, also of a body that is cut. The name of a given block counts as a set of that block."},
+        {.path = "geometry.sets.*", .type = KeyType::mapping, .doc = "One set: `polygon` or `blocks`."},
+        {.path = "geometry.sets.*.polygon",
+         .type = KeyType::points,
+         .measure = Measure::length,
+         .least_items = 3,
+         .doc = "Blocks with their centroid inside belong to it."},
+        {.path = "geometry.sets.*.blocks", .type = KeyType::texts, .least_items = 1, .doc = "Names of given blocks."},
+        {.path = "geometry.sets.*.support",
+         .type = KeyType::choice,
+         .choices = {"none", "fixed"},
+         .fallback = "none",
+         .doc = "As of a given block."},
+    };
+}
+
 std::vector<KeyRule> loading_rules() {
     return {
         {.path = "boundaries",
@@ -373,7 +427,8 @@ std::vector<KeyRule> loading_rules() {
          .doc = "Named parts of the outline. A rectangle has `bottom`, `right`, `top`, `left`, and here they only get "
                 "supports. Any other domain has the same four (each side belongs to the direction that its outward "
                 "normal points to, within 45 degrees) unless a boundary here has `sides` or `facing`; then exactly "
-                "the boundaries given here exist, and sides in none of them are free."},
+                "the boundaries given here exist, and sides in none of them are free. Of given blocks the same holds "
+                "for all sides, of which the parts that no other block shares belong to the boundary."},
         {.path = "boundaries.*", .type = KeyType::mapping, .doc = "One boundary."},
         {.path = "boundaries.*.support",
          .type = KeyType::choice,
@@ -386,21 +441,29 @@ std::vector<KeyRule> loading_rules() {
          .type = KeyType::integers,
          .range = natural,
          .least_items = 1,
-         .doc = "Sides of the domain's polygon that belong to it, counted from 0 as the polygon is given. Not for "
-                "rectangles."},
+         .doc =
+             "Sides of the domain's polygon, or of that of `block`, that belong to it, counted from 0 as the polygon "
+             "is given. Not for rectangles."},
         {.path = "boundaries.*.facing",
          .type = KeyType::choice,
          .choices = {"left", "right", "top", "bottom"},
          .doc =
              "All sides whose outward normal points within 45 degrees of this direction (at exactly 45 degrees it is "
-             "`top` or `bottom`). Not for rectangles."},
+             "`top` or `bottom`); with `block` only those of that block, without it those that no boundary with a "
+             "`block` has. Not for rectangles."},
+        {.path = "boundaries.*.block",
+         .type = KeyType::text,
+         .fallback_note = "all blocks",
+         .doc = "The given block whose free sides belong to it, beside `facing` or `sides`."},
         {.path = "stages",
          .type = KeyType::list,
          .required = true,
          .least_items = 1,
          .doc = "Loading, one stage after the other. Pressures, strains, stresses and displacements are positive in "
                 "compression (inward) and grow linearly over the steps of a stage."},
-        {.path = "stages.#", .type = KeyType::mapping, .doc = "One stage: a pressure, a platen, or both."},
+        {.path = "stages.#",
+         .type = KeyType::mapping,
+         .doc = "One stage: pressures, forces, gravity and a platen, or some of them."},
         {.path = "stages.#.name",
          .type = KeyType::text,
          .fallback_note = "`stage 0`, `stage 1`, ...",
@@ -412,6 +475,33 @@ std::vector<KeyRule> loading_rules() {
          .type = KeyType::number,
          .measure = Measure::stress,
          .doc = "At the end of the stage."},
+        {.path = "stages.#.gravity",
+         .type = KeyType::gravity,
+         .measure = Measure::acceleration,
+         .range = not_negative,
+         .fallback_note = "that of the stage before; in the first stage `analysis.gravity`",
+         .doc = "Acceleration of gravity at the end of the stage, as `analysis.gravity`; it changes linearly over the "
+                "stage. A tilt test is a stage that turns `[gx, gy]`."},
+        {.path = "stages.#.forces",
+         .type = KeyType::named,
+         .doc =
+             "Dead loads by name: forces of constant direction on points of blocks. They grow linearly over the stage "
+             "from their value at the end of the stage before (0 if new); forces not named keep theirs."},
+        {.path = "stages.#.forces.*", .type = KeyType::mapping, .doc = "One force."},
+        {.path = "stages.#.forces.*.block",
+         .type = KeyType::text,
+         .fallback_note = "the block that has the point in it",
+         .doc = "Name of a given block, or of a set of exactly one block."},
+        {.path = "stages.#.forces.*.point",
+         .type = KeyType::point,
+         .measure = Measure::length,
+         .fallback_note = "where the force acts in the stages before",
+         .doc = "Material point of the block that it acts on, in the body as cut. It stays the same in later stages."},
+        {.path = "stages.#.forces.*.force",
+         .type = KeyType::point,
+         .measure = Measure::line_force,
+         .required = true,
+         .doc = "[fx, fy] at the end of the stage, per metre of thickness."},
         {.path = "stages.#.displacement",
          .type = KeyType::mapping,
          .doc = "A platen moves a boundary; the opposite one rests on a fixed platen. One of `displacement`, `strain` "
@@ -528,6 +618,34 @@ std::vector<KeyRule> option_rules() {
          .type = KeyType::boolean,
          .fallback = "true",
          .doc = "Write `curve` and `blocks` as `.png` and `.svg`."},
+        {.path = "output.histories",
+         .type = KeyType::named,
+         .doc =
+             "What `histories.csv` follows, by name: a block (`block`, `point`), a mapped fracture (`fracture`) or the "
+             "contacts of two blocks (`interface`). One row per accepted load step, the first the initial state, with "
+             "the columns `step`, `stage`, `load_factor`; for a block `<name>.displacement_x`, `.displacement_y` (m), "
+             "`.rotation` (rad, counter-clockwise), `.stress_xx`, `.stress_yy`, `.stress_xy` (Pa, positive in "
+             "compression); for the others, over all their contact points, `.normal_force`, `.shear_force` (N/m), "
+             "`.mean_normal_traction`, `.mean_shear_traction` (Pa), `.opening`, `.slip` (m, means weighted with "
+             "length). Normal forces and tractions are positive in compression, openings when open. The normal points "
+             "from the first to the second block; slip and shear are positive where the second one moves, or is held "
+             "back from moving, to the left of it, which stays so if the two are named the other way round. Opening "
+             "and slip are total, since the body as cut."},
+        {.path = "output.histories.*", .type = KeyType::mapping, .doc = "One of them."},
+        {.path = "output.histories.*.block",
+         .type = KeyType::text,
+         .fallback_note = "the block that has the point in it",
+         .doc = "Name of a given block, or of a set of exactly one block."},
+        {.path = "output.histories.*.point",
+         .type = KeyType::point,
+         .measure = Measure::length,
+         .fallback_note = "the centroid of the block",
+         .doc = "Material point of the block whose displacement is followed, in the body as cut."},
+        {.path = "output.histories.*.fracture", .type = KeyType::text, .doc = "Name of a mapped fracture."},
+        {.path = "output.histories.*.interface",
+         .type = KeyType::texts,
+         .least_items = 2,
+         .doc = "Names of two blocks, as of `block`."},
         {.path = "output.checkpoint_every",
          .type = KeyType::integer,
          .range = natural,
@@ -550,7 +668,7 @@ std::vector<KeyRule> all_rules() {
          .doc = "Another scene, relative to this file, that this one changes."},
     };
     for (const auto& part : {analysis_rules(), material_rules(), interface_rules(), domain_rules(), cut_rules(),
-                             loading_rules(), option_rules()})
+                             block_rules(), loading_rules(), option_rules()})
         rules.insert(rules.end(), part.begin(), part.end());
     return rules;
 }
@@ -639,6 +757,8 @@ std::string expected_text(const KeyRule& rule) {
         return fmt::format("a list of at least {} points [x, y]{}", rule.least_items, unit);
     case KeyType::integers:
         return "a list of at least one integer" + range_text(rule.range, true);
+    case KeyType::texts:
+        return fmt::format("a list of at least {} name{}", rule.least_items, rule.least_items == 1 ? "" : "s");
     case KeyType::gravity:
         return "a number >= 0 (downwards) or [gx, gy]" + unit;
     }

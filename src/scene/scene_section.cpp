@@ -117,6 +117,29 @@ std::optional<std::vector<Vec2>> SceneSection::given_points(std::string_view key
     return points;
 }
 
+std::optional<Vec2> SceneSection::given_point(std::string_view key) const {
+    const SceneNode* node = value(key);
+    return node == nullptr ? std::nullopt : point_of(*node, rule(key).measure);
+}
+
+std::optional<Vec2> SceneSection::given_gravity(std::string_view key) const {
+    const SceneNode* node = value(key);
+    if (node == nullptr) return std::nullopt;
+    if (node->is_list()) return given_point(key);
+    const auto downwards = number_of(*node, rule(key).measure);
+    if (!downwards) return std::nullopt;
+    return Vec2(0.0, *downwards == 0.0 ? 0.0 : -*downwards);
+}
+
+std::vector<std::string> SceneSection::texts(std::string_view key) const {
+    std::vector<std::string> result;
+    const SceneNode* node = value(key);
+    if (node == nullptr || !node->is_list()) return result;
+    for (const auto& item : node->items)
+        if (item.is_scalar()) result.push_back(item.text);
+    return result;
+}
+
 std::vector<long long> SceneSection::integers(std::string_view key) const {
     std::vector<long long> result;
     const SceneNode* node = value(key);

@@ -151,6 +151,7 @@ StepRecord measure_step(const Model& model, const Gauges& gauges, const State& s
     record.open = counts.open;
     record.sliding = counts.sliding;
     record.locked = counts.locked;
+    record.histories = measure_histories(model, body, q);
     return record;
 }
 

@@ -8,8 +8,10 @@
 
 #include <fmt/format.h>
 
+#include "kluft/blocks/block_search.hpp"
 #include "kluft/constitutive/strength_envelope.hpp"
 #include "kluft/core/diagnostics.hpp"
+#include "kluft/kinematics/material_point.hpp"
 
 namespace kluft {
 
@@ -19,9 +21,14 @@ namespace {
 constexpr double default_contact_rounding = 1e-3;
 constexpr double default_cohesion_onset = 0.01;
 
-double largest_boundary_stress(const BlockSystem& system, const ModelInput& input) {
+double largest_boundary_stress(const BlockSystem& system, const ModelInput& input,
+                               const std::vector<MaterialPoint>& force_points) {
     double largest = 0.0;
+    Vec2 gravity = input.gravity.cwiseAbs();
     for (const Stage& stage : input.loads.stages) {
+        if (stage.gravity) gravity = gravity.cwiseMax(stage.gravity->cwiseAbs());
+        for (const auto& [i, force] : stage.forces)
+            largest = std::max(largest, force.norm() / system.blocks[force_points[i].block].size);
         for (const auto& [boundary, pressure] : stage.pressure) largest = std::max(largest, std::abs(pressure));
         if (stage.motion && stage.motion->control == PlatenControl::stress) {
             largest = std::max(largest, std::abs(stage.motion->value));
@@ -29,7 +36,7 @@ double largest_boundary_stress(const BlockSystem& system, const ModelInput& inpu
     }
     for (const Material& material : input.materials) {
         const Vec2 extent = system.upper - system.lower;
-        largest = std::max(largest, material.density * extent.cwiseAbs().dot(input.gravity.cwiseAbs()));
+        largest = std::max(largest, material.density * extent.cwiseAbs().dot(gravity));
     }
     return largest;
 }
@@ -64,6 +71,27 @@ private:
     std::uint64_t value_ = 14695981039346656037ULL;
 };
 
+std::vector<MaterialPoint> points_of_forces(const BlockSystem& system, const LoadProgram& loads) {
+    std::vector<MaterialPoint> points;
+    for (const PointForce& force : loads.forces)
+        points.push_back(material_point(system, force.block, force.point, "stages: the force '" + force.name + "'"));
+    return points;
+}
+
+void refuse_moved_fixed_blocks(const BlockSystem& system, const LoadProgram& loads) {
+    for (const Stage& stage : loads.stages) {
+        if (!stage.motion) continue;
+        const Boundary& boundary = system.boundaries[stage.motion->boundary];
+        for (const auto& [b, e] : boundary.edges) {
+            if (!system.blocks[b].fixed) continue;
+            throw InputError(
+                fmt::format("stages: expected a platen on blocks that are not fixed, found block {} on the "
+                            "boundary '{}' that {} moves",
+                            block_label(system, b), boundary.name, stage.name));
+        }
+    }
+}
+
 Strength strength_of(const Interface& interface, const BlockSystem& system, const ModelInput& input) {
     const InterfaceType& type = input.interface_types[interface.interface_type];
     if (type.strength) return *type.strength;
@@ -90,7 +118,10 @@ Model build_model(BlockSystem system, const ModelInput& input) {
 
     double stiffest_rock = 0.0;
     for (const Material& material : input.materials) stiffest_rock = std::max(stiffest_rock, material.youngs_modulus);
-    const double boundary_stress = largest_boundary_stress(system, input);
+    model.force_points = points_of_forces(system, input.loads);
+    model.histories = place_histories(system, input.histories);
+    refuse_moved_fixed_blocks(system, input.loads);
+    const double boundary_stress = largest_boundary_stress(system, input, model.force_points);
     std::vector<InterfaceStiffness> stiffnesses;
     for (int t = 0; t < static_cast<int>(input.interface_types.size()); ++t) {
         const InterfaceType& type = input.interface_types[t];
@@ -140,10 +171,19 @@ Model build_model(BlockSystem system, const ModelInput& input) {
     return model;
 }
 
+bool has_gravity(const Model& model) {
+    return model.gravity != Vec2::Zero() || std::ranges::any_of(model.loads.stages, [](const Stage& stage) {
+               return stage.gravity && *stage.gravity != Vec2::Zero();
+           });
+}
+
 std::string fingerprint(const Model& model) {
     Digest digest;
     digest.add(model.gravity.x(), model.gravity.y());
     for (const Vec2& vertex : model.system.vertices) digest.add(vertex.x(), vertex.y());
+    for (int b = 0; b < model.system.n_blocks(); ++b)
+        if (model.system.blocks[b].fixed) digest.add(b);
+    if (model.system.outline_type >= 0) digest.add(model.system.outline_type);
     for (const Interface& i : model.system.interfaces)
         digest.add(i.block_a, i.edge_a, i.block_b, i.edge_b, i.interface_type);
     for (const ElasticModuli& moduli : model.moduli) digest.add(moduli.lambda, moduli.mu);
@@ -155,9 +195,12 @@ std::string fingerprint(const Model& model) {
     for (const Strength& strength : model.strengths) {
         digest.add(strength.cohesion, strength.friction_angle, strength.tensile_strength);
     }
+    for (const auto& [block, xi] : model.force_points) digest.add(block, xi.x(), xi.y());
     for (const Stage& stage : model.loads.stages) {
         digest.add(stage.steps, static_cast<int>(stage.platens));
         for (const auto& [boundary, pressure] : stage.pressure) digest.add(boundary, pressure);
+        if (stage.gravity) digest.add(stage.gravity->x(), stage.gravity->y());
+        for (const auto& [i, force] : stage.forces) digest.add(i, force.x(), force.y());
         if (stage.motion) {
             digest.add(static_cast<int>(stage.motion->control), stage.motion->boundary, stage.motion->value);
         }

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "kluft/assembly/blas.hpp"
+#include "kluft/blocks/block_search.hpp"
 #include "kluft/contact/bonds.hpp"
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/core/stopwatch.hpp"
@@ -77,7 +78,7 @@ public:
         problem_.system = &model.system;
         problem_.moduli = &model.moduli;
         problem_.laws = &model.laws;
-        if (model.gravity != Vec2::Zero()) problem_.densities = model.densities;
+        if (has_gravity(model)) problem_.densities = model.densities;
         problem_.least_mass_area = std::sqrt(0.75) * model.system.spacing * model.system.spacing;
     }
 
@@ -490,8 +491,8 @@ private:
     [[nodiscard]] std::string block_description(int index) const {
         const Block& block = model_.system.blocks[index];
         const Vec2 at = model_.system.origin + block.centroid;
-        std::string text =
-            fmt::format("block {} at ({:.6g}, {:.6g}), area {:.3g} m2, interfaces", index, at.x(), at.y(), block.area);
+        std::string text = fmt::format("block {} at ({:.6g}, {:.6g}), area {:.3g} m2, interfaces",
+                                       block_label(model_.system, index), at.x(), at.y(), block.area);
         for (const Edge& edge : block.edges) {
             if (edge.interface >= 0) text += fmt::format(" {}", edge.interface);
         }

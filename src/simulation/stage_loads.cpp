@@ -10,11 +10,33 @@ namespace kluft {
 
 namespace {
 
+constexpr int no_boundary = -1; ///< of the prescribed displacements of a fixed block
+
 template <typename Visit> void for_each_edge(const BlockSystem& system, int boundary, Visit visit) {
     for (const auto& [b, e] : system.boundaries[boundary].edges) {
         const Edge& edge = system.blocks[b].edges[e];
         visit(b, edge_start(system, edge), edge_end(system, edge));
     }
+}
+
+/// At the end of a stage; -1: before the first one.
+Vec2 gravity_after(const Model& model, int stage) {
+    for (int s = stage; s >= 0; --s)
+        if (model.loads.stages[s].gravity) return *model.loads.stages[s].gravity;
+    return stage < 0 ? Vec2(Vec2::Zero()) : model.gravity;
+}
+
+/// The same of a point force.
+Vec2 force_after(const Model& model, int force, int stage) {
+    for (int s = stage; s >= 0; --s) {
+        const auto& forces = model.loads.stages[s].forces;
+        if (const auto found = forces.find(force); found != forces.end()) return found->second;
+    }
+    return Vec2::Zero();
+}
+
+Vec2 between(const Vec2& start, const Vec2& end, double load_factor) {
+    return start == end ? end : Vec2(start + load_factor * (end - start));
 }
 
 /// (block, vertex) on a boundary nearest to its middle.
@@ -43,6 +65,7 @@ BoundaryFrame boundary_frame(const BlockSystem& system, int boundary) {
         sum += right_normal(end - start);
         frame.length += (end - start).norm();
     });
+    if (frame.length == 0.0) return frame;
     if (sum.norm() > 0.0) frame.normal = sum.normalized();
     for (int i = 0; i < 2; ++i) { // a side along an axis has exactly that normal
         if (std::abs(frame.normal[i]) < 1e-12)
@@ -171,6 +194,7 @@ StageLoads::StageLoads(const Model& model, const State& stage_start, const Stage
         const auto pin = supports[boundary] == Support::pinned ? middle_vertex(system, boundary) : std::nullopt;
         std::set<std::pair<int, int>> done; // (block, vertex)
         for (const auto& [b, e] : system.boundaries[boundary].edges) {
+            if (system.blocks[b].fixed) continue;
             const Edge& edge = system.blocks[b].edges[e];
             for (const int vertex : {edge.start, edge.end}) {
                 if (!done.emplace(b, vertex).second) continue;
@@ -184,6 +208,16 @@ StageLoads::StageLoads(const Model& model, const State& stage_start, const Stage
                 };
                 prescribe(normal);
                 if (supports[boundary] == Support::fixed || pin == std::pair(b, vertex)) prescribe(along);
+            }
+        }
+    }
+    for (int b = 0; b < system.n_blocks(); ++b) {
+        if (!system.blocks[b].fixed) continue;
+        for (const Vec2& xi : {Vec2(0.0, 0.0), Vec2(1.0, 0.0), Vec2(0.0, 1.0)}) {
+            for (const Vec2& direction : {Vec2(1.0, 0.0), Vec2(0.0, 1.0)}) {
+                rows.push_back({b, xi, direction, no_boundary});
+                start_targets_.push_back(0.0);
+                target_rates_.push_back(0.0);
             }
         }
     }
@@ -247,7 +281,13 @@ void apply_load(const Model& model, const StageLoads& loads, int stage, double l
     body.pressures = loads.pressures(load_factor);
     body.platen_force = loads.platen_force(load_factor);
     loads.set_targets(body.constraints, load_factor);
-    body.gravity = stage == 0 ? Vec2(load_factor * model.gravity) : model.gravity;
+    body.gravity = between(gravity_after(model, stage - 1), gravity_after(model, stage), load_factor);
+    body.point_loads.clear();
+    for (int i = 0; i < static_cast<int>(model.force_points.size()); ++i) {
+        const auto [block, xi] = model.force_points[i];
+        const Vec2 force = between(force_after(model, i, stage - 1), force_after(model, i, stage), load_factor);
+        if (force != Vec2::Zero()) body.point_loads.push_back({block, xi, force});
+    }
 }
 
 double boundary_stress(const LoadedBody& body, const Eigen::VectorXd& forces, int boundary, bool held,

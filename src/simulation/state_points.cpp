@@ -41,6 +41,7 @@ StateContacts state_contacts(const Model& model, const State& state) {
     for (const InterfaceLaw& law : model.laws) surfaces.friction.push_back(law.tan_friction);
     const auto fracture = std::ranges::find(model.bonds, 0);
     surfaces.default_law = fracture != model.bonds.end() ? static_cast<int>(fracture - model.bonds.begin()) : 0;
+    if (model.system.outline_type >= 0) surfaces.default_law = model.fracture_law[model.system.outline_type];
     auto detected = detect_contacts(model.system, surfaces, state.displacement, contact_reach * model.system.spacing,
                                     state.contacts);
     return {std::move(detected.points), std::move(detected.near_pairs)};

@@ -512,6 +512,48 @@ TEST_F(CommandLine, FinishedRunIsResumedWithoutChange) {
     EXPECT_EQ(summary("r")["factorizations"], factorizations);
 }
 
+// Two blocks on a fixed one, pushed until the upper one slides.
+const char* const masonry_scene = R"(kluft: 1
+analysis: {gravity: 10}
+materials: {stone: {density: 2000, youngs_modulus: 1 GPa, poissons_ratio: 0.2}}
+interfaces: {joint: {kind: fracture, normal_stiffness: 10 GPa/m, shear_stiffness: 10 GPa/m, friction_angle: 30}}
+geometry:
+  blocks:
+    - {name: base, polygon: [[-1, -1], [3, -1], [3, 0], [-1, 0]], support: fixed}
+    - {name: lower, polygon: [[0, 0], [2, 0], [2, 1], [0, 1]]}
+    - {name: upper, polygon: [[0.5, 1], [1.5, 1], [1.5, 2], [0.5, 2]]}
+stages:
+  - {name: weight, steps: 2}
+  - {name: push, forces: {push: {block: upper, point: [0.5, 1.2], force: [10 kN/m, 0]}}, steps: 4}
+output: {checkpoint_every: 1, histories: {seam: {interface: [lower, upper]}, upper: {block: upper}}}
+)";
+
+TEST_F(CommandLine, GivenBlocksAreCheckedDrawnRunAndFollowed) {
+    write("masonry.yaml", masonry_scene);
+    const Result checked = kluft({"check", "masonry.yaml"});
+    EXPECT_EQ(checked.code, 0) << checked.err;
+    EXPECT_THAT(checked.out, ContainsRegex("blocks +3\n"));
+    EXPECT_EQ(kluft({"draw", "masonry.yaml"}).code, 0);
+    const Result result = kluft({"run", "masonry.yaml", "-o", "r"});
+    ASSERT_EQ(result.code, 0) << result.err;
+    const auto rows = lines_of(content_of(path("r/histories.csv")));
+    ASSERT_EQ(rows.size(), 8U);
+    EXPECT_THAT(rows[0], StartsWith("step,stage,load_factor,seam.normal_force,"));
+    EXPECT_THAT(rows[1], StartsWith("0,0,0,0,0,"));
+    ASSERT_EQ(kluft({"run", "masonry.yaml", "-o", "r", "--resume"}).code, 0);
+    EXPECT_EQ(lines_of(content_of(path("r/histories.csv"))), rows);
+    EXPECT_EQ(kluft({"draw", "r"}).code, 0);
+}
+
+TEST_F(CommandLine, GivenBlockThatSlidesAwayIsCalledByItsName) {
+    write("masonry.yaml", masonry_scene);
+    const Result result = kluft({"run", "masonry.yaml", "-o", "r", "--set", "stages.1.forces.push.force=[30 kN/m, 0]"});
+    EXPECT_THAT(result.err, HasSubstr("worst is block 'upper' at (1, 1.5)"));
+    EXPECT_EQ(summary("r")["status"], "collapsed");
+    expect_refused({"check", "masonry.yaml", "--set", "geometry.blocks.2.polygon=[[0, 0.5], [1, 0.5], [1, 2], [0, 2]]"},
+                   HasSubstr("'lower' and 'upper'"));
+}
+
 TEST_F(CommandLine, ExplicitRunWritesTheSameFilesAndItsOwnQuality) {
     write("tiny.yaml", tiny_scene);
     const std::vector<std::string> words{"run", "tiny.yaml", "-o", "r", "--set", "analysis.integrator=explicit"};

@@ -68,6 +68,7 @@ public:
         record.differential_stress = 1e6 * std::min(record.axial_strain / 0.005, 2.0 - record.axial_strain / 0.005);
         record.lateral_stress = 0.2e6;
         record.axial_stress = record.differential_stress + record.lateral_stress;
+        record.histories = {0.5 * step, -1e3};
         return record;
     }
 
@@ -173,6 +174,28 @@ TEST(RunWriter, LeavesTheSameTablesAfterAResumedRun) {
     resumed.finish();
     for (const char* name : {"history.csv", "equilibria.csv", "cracks.csv", "fields.pvd"})
         EXPECT_TRUE(read_file(broken / name) == read_file(whole / name)) << name;
+}
+
+TEST(RunWriter, WritesHistoriesWhereTheSceneFollowsSomething) {
+    const TemporaryDirectory whole;
+    const TemporaryDirectory broken;
+    RunWriterOptions options;
+    options.checkpoint_every = 4;
+    options.pictures = false;
+    options.fields = false;
+    options.history_columns = {"top.displacement_y", "foot.normal_force"};
+    SmallRun(whole.path(), options).go_to(14);
+    EXPECT_THAT(read_file(whole / "histories.csv"),
+                ::testing::StartsWith("step,stage,load_factor,top.displacement_y,foot.normal_force\n0,0,0,0,-1000\n"
+                                      "1,0,0,0.5,-1000\n"));
+    { SmallRun(broken.path(), options).go_to(11); }
+    options.resumed_step = read_state(broken / "state.h5", "scene").step;
+    { SmallRun(broken.path(), options).go_to(14, false); }
+    EXPECT_EQ(read_file(broken / "histories.csv"), read_file(whole / "histories.csv"));
+    options.history_columns = {"top.displacement_x"};
+    EXPECT_THROW(SmallRun(broken.path(), options), InputError);
+    remove_results(whole.path());
+    EXPECT_FALSE(fs::exists(whole / "histories.csv"));
 }
 
 TEST(RunWriter, IgnoresStepsThatAResumedRunTellsAgain) {

@@ -314,8 +314,8 @@ TEST(SceneErrors, GravityNeedsDensities) {
 
 TEST(SceneErrors, AStageNeedsALoadOrGravity) {
     EXPECT_THAT(errors_in(test::short_scene, {"stages=[{name: idle}]"}),
-                ElementsAre("--set stages=[{name: idle}]: stages.0: expected a load (pressure, displacement, strain or "
-                            "stress) because there is no gravity, found none"));
+                ElementsAre("--set stages=[{name: idle}]: stages.0: expected a load (pressure, displacement, strain, "
+                            "stress or forces) because there is no gravity, found none"));
     EXPECT_THAT(errors_in(test::short_scene, {"stages=[{pressure: {}}]"}), testing::SizeIs(1));
     EXPECT_THAT(errors_in(test::short_scene,
                           {"stages=[{name: weight}]", "analysis.gravity=9.81", "materials.rock.density=2000"}),

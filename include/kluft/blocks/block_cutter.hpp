@@ -43,6 +43,8 @@ struct CutBody {
 ///
 /// The order of the blocks is that of their centroids, in rows upwards and to the right in a row; that of the
 /// interfaces follows their lower block. Both are the same on every run.
+/// Where the specification gives the blocks themselves, they are put together instead (given_blocks.hpp). The sets are
+/// those of the specification.
 /// Throws InputError for a domain that is empty, not simple or has NaN coordinates, and for what else in the
 /// specification is out of range.
 [[nodiscard]] CutBody cut_blocks(const GeometrySpec& spec);

@@ -9,9 +9,10 @@
 namespace kluft {
 
 enum class EdgeOrigin {
-    boundary,    ///< on the domain's outline or a hole of it
-    fracture,    ///< on a mapped fracture (also where a tessellation edge coincides)
-    tessellation ///< on an edge of the hexagon net
+    boundary,     ///< on the domain's outline or a hole of it
+    fracture,     ///< on a mapped fracture (also where a tessellation edge coincides)
+    tessellation, ///< on an edge of the hexagon net
+    given         ///< where two given blocks meet
 };
 
 /// A directed edge of a block's outline; the block lies to its left.
@@ -32,6 +33,7 @@ struct Block {
     double size = 0.0;                 ///< h = sqrt(area), m
     Mat2 second_moment = Mat2::Zero(); ///< integral of (X - X_c)(X - X_c)^T over the block, m4
     int material = 0;
+    bool fixed = false; ///< does not move or deform in any stage
 };
 
 /// An edge with a block on each side. `start` and `end` follow block a's edge, so that the normal to the right of
@@ -42,7 +44,7 @@ struct Interface {
     int block_b = 0;
     int edge_b = 0;
     EdgeOrigin origin = EdgeOrigin::tessellation;
-    int fracture = -1;      ///< index of the mapped fracture it lies on; -1 for a tessellation edge
+    int fracture = -1;      ///< index of the mapped fracture it lies on; -1 for any other edge
     int interface_type = 0; ///< index into the scene's interface types
 };
 
@@ -56,13 +58,23 @@ struct Boundary {
     std::vector<BoundaryEdge> edges;
 };
 
+/// Some of the blocks, by name.
+struct BlockSet {
+    std::string name;
+    std::vector<int> blocks; ///< ascending
+};
+
 struct BlockSystem {
     Vec2 origin = Vec2::Zero(); ///< scene coordinates of the local origin (m)
     std::vector<Vec2> vertices; ///< local coordinates = scene coordinates - origin (m)
     std::vector<Block> blocks;
     std::vector<Interface> interfaces;
     std::vector<Boundary> boundaries; ///< in the order of GeometrySpec::boundaries
-    double spacing = 0.0;      ///< d: the tessellation's spacing or the reference spacing; else the mean block size (m)
+    double spacing = 0.0;  ///< d: the tessellation's spacing or the reference spacing; else the mean block size, of a
+                           ///< body of given blocks without the fixed ones (m)
+    int outline_type = -1; ///< interface type of two surfaces of the outline that meet; -1: the first fracture's
+    std::vector<std::string> block_names; ///< one per block of a body of given blocks; empty for a body that was cut
+    std::vector<BlockSet> sets;
     Vec2 lower = Vec2::Zero(); ///< lower left corner of the body's box, local coordinates
     Vec2 upper = Vec2::Zero();
 

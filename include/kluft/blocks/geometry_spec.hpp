@@ -43,10 +43,29 @@ struct MaterialRegion {
     int material = 0;
 };
 
-/// A named part of the domain's outline: the indices of the domain polygon's sides (side i from vertex i to i + 1).
+/// A block given by its outline, for a body that is put together instead of cut.
+struct GivenBlock {
+    std::string name;
+    Polygon polygon; ///< simple and counter-clockwise
+    int material = 0;
+    bool fixed = false; ///< does not move or deform
+};
+
+/// A named part of the body: the blocks with their centroid in `polygon`, or some of the given blocks.
+struct BlockSetSpec {
+    std::string name;
+    Polygon polygon;         ///< empty: `blocks` tells
+    std::vector<int> blocks; ///< indices of given blocks
+    bool fixed = false;      ///< they do not move or deform
+};
+
+/// A named part of the body's outline: the indices of the domain polygon's sides (side i from vertex i to i + 1), or of
+/// the given blocks' sides, counted through block after block, of which only the parts that no other block shares
+/// belong to it.
 struct BoundarySides {
     std::string name;
     std::vector<int> sides;
+    std::string block{}; ///< the given block whose sides they are; empty: of the whole body
 };
 
 struct GeometrySpec {
@@ -60,6 +79,9 @@ struct GeometrySpec {
     double minimum_area =
         0.05; ///< smallest block as a fraction of a hexagon; without a tessellation of reference_spacing's
     double reference_spacing = 0.0; ///< d where there is no tessellation (m); 0 = none given
+    std::vector<GivenBlock> blocks; ///< instead of domain, holes, fractures, tessellation and regions
+    int blocks_interface = 0;       ///< index into the scene's interface types: of the interfaces between them
+    std::vector<BlockSetSpec> sets;
 };
 
 /// d of the scene: the tessellation's spacing, else the reference spacing (m), else 0.

@@ -13,7 +13,8 @@ namespace kluft {
 struct CrackCandidate {
     int interface = 0;
     FailureIndex index;
-    PrincipalStresses stress; ///< mean of the two adjacent blocks, positive in compression (Pa)
+    PrincipalStresses
+        stress; ///< mean of the two adjacent blocks, of which fixed ones do not count; positive in compression (Pa)
 };
 
 /// Mean traction of an interface (Pa, normal positive in tension).

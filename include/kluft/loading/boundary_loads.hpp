@@ -31,7 +31,7 @@ struct PrescribedDisplacement {
     int block = 0;
     Vec2 xi = Vec2::Zero();
     Vec2 direction = Vec2::Zero();
-    int boundary = 0;
+    int boundary = 0; ///< whose support it is; -1 for a fixed block
     double target = 0.0;
     double rate = 0.0; ///< not zero: moves with a rigid platen whose travel is unknown
 };

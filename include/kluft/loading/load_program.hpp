@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "kluft/core/vector.hpp"
+
 namespace kluft {
 
 enum class Platens {
@@ -23,9 +25,19 @@ struct PlatenMotion {
                         ///< of the stage, counted from the stage's start for displacement and strain
 };
 
+/// A dead load: a force of constant direction on a material point of a block.
+struct PointForce {
+    std::string name;
+    std::string block;         ///< name of a block or of a set of one block; empty: the block that has the point in it
+    Vec2 point = Vec2::Zero(); ///< in the body as cut, scene coordinates (m)
+};
+
 struct Stage {
     std::string name;
     std::map<int, double> pressure; ///< boundary -> Pa at the end of the stage; others keep theirs
+    std::map<int, Vec2> forces;  ///< index into LoadProgram::forces -> N/m at the end of the stage; others keep theirs
+    std::optional<Vec2> gravity; ///< at the end of the stage (m/s2); without it as before, in the first stage that of
+                                 ///< the model
     std::optional<PlatenMotion> motion;
     Platens platens = Platens::smooth;
     int steps = 1;
@@ -40,6 +52,7 @@ enum class Support {
 
 struct LoadProgram {
     std::vector<Support> supports; ///< one per boundary, holding in every stage
+    std::vector<PointForce> forces;
     std::vector<Stage> stages;
 };
 

@@ -16,6 +16,13 @@
 
 namespace kluft {
 
+/// A force of constant direction on a material point (N per metre of thickness).
+struct PointLoad {
+    int block = 0;
+    Vec2 xi = Vec2::Zero();
+    Vec2 force = Vec2::Zero();
+};
+
 struct LoadedBody {
     const BlockSystem* system = nullptr;
     const std::vector<ElasticModuli>* moduli = nullptr; ///< per material
@@ -25,7 +32,8 @@ struct LoadedBody {
     std::vector<PressureEdge> pressure_edges;
     std::vector<double> pressures; ///< per boundary (Pa)
     std::vector<double> densities; ///< per material (kg/m3); empty without gravity
-    Vec2 gravity = Vec2::Zero();   ///< m/s2
+    Vec2 gravity = Vec2::Zero();   ///< m/s2; fixed blocks have no weight
+    std::vector<PointLoad> point_loads;
     Constraints constraints;
     std::optional<PlatenForce> platen_force; ///< on the platen whose travel is unknown
 };
@@ -41,6 +49,9 @@ void body_forces(const LoadedBody& body, const Eigen::VectorXd& q, BodyForces& r
 /// The same without the magnitudes, which it leaves alone. `tractions`: those of the contacts, in their order.
 void body_forces(const LoadedBody& body, const Eigen::VectorXd& q, BodyForces& result,
                  std::vector<PointTraction>& tractions);
+
+/// The external forces at q alone: weights, pressures and point loads, without the supports' (N/m).
+void external_forces(const LoadedBody& body, const Eigen::VectorXd& q, Eigen::VectorXd& result);
 
 struct GapAndSlip {
     double gap = 0.0;  ///< total (m)

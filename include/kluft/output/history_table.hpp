@@ -1,4 +1,4 @@
-// The rows of history.csv, equilibria.csv and cracks.csv.
+// The rows of history.csv, equilibria.csv, cracks.csv and histories.csv.
 #pragma once
 
 #include <filesystem>
@@ -22,6 +22,10 @@ namespace kluft {
 /// booleans are 0 or 1.
 [[nodiscard]] std::string table_row(const StepRecord& record);
 [[nodiscard]] std::string table_row(const CrackRecord& crack);
+
+/// The same for histories.csv: step, stage, load_factor and the columns of the scene.
+[[nodiscard]] std::string histories_header(const std::vector<std::string>& columns);
+[[nodiscard]] std::string histories_row(const StepRecord& record);
 
 /// Reads history.csv or equilibria.csv. Columns may stand in any order and further ones are ignored; so is a last line
 /// without its end, which a killed run may leave. Throws InputError (file:line: column: expected, found).

@@ -29,7 +29,8 @@ struct RunWriterOptions {
     std::optional<int> platen_stage; ///< the first stage that moves a platen
     Plane plane = Plane::strain;
     std::vector<std::string> material_names;
-    bool motion = false; ///< the rows have the columns of an explicit run
+    bool motion = false;                      ///< the rows have the columns of an explicit run
+    std::vector<std::string> history_columns; ///< of StepRecord::histories; without any there is no histories.csv
 };
 
 /// How a run ended and what it cost.
@@ -45,7 +46,7 @@ struct RunOutcome {
     std::optional<MotionReport> motion; ///< of an explicit run
 };
 
-/// Writes history.csv, equilibria.csv and cracks.csv row by row, field files, state.h5 at checkpoints, and at the end
+/// Writes history.csv, equilibria.csv, cracks.csv and histories.csv row by row, field files, state.h5 at checkpoints, and at the end
 /// summary.json and the pictures. The tables hold whole rows at any moment, every other file appears whole.
 ///
 /// A new run first removes what an earlier one left in the directory (run.log excepted), so that results never mix;

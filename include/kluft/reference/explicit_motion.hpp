@@ -13,7 +13,7 @@ namespace kluft {
 
 /// Where the work of the loads has gone, per metre of thickness (J/m).
 struct EnergyBalance {
-    double external_work = 0.0; ///< of pressures, weight, supports and platens
+    double external_work = 0.0; ///< of pressures, weight, point loads, supports and platens
     double block_energy = 0.0;  ///< elastic
     double spring_energy = 0.0; ///< elastic, of bonds and contacts
     double kinetic_energy = 0.0;
@@ -34,7 +34,7 @@ public:
     /// At rest at q. `masses`: one per block (kg/m).
     ExplicitMotion(LoadedBody body, std::vector<Mat6> masses, double damping, Eigen::VectorXd q);
 
-    /// Pressures, weight, platen force and targets of the constraints may be set between time steps.
+    /// Pressures, weight, point loads, platen force and targets of the constraints may be set between time steps.
     [[nodiscard]] LoadedBody& body() { return body_; }
     [[nodiscard]] const LoadedBody& body() const { return body_; }
     /// To be called after the rows of the constraints or the points of bonds and contacts were replaced.
@@ -76,7 +76,6 @@ private:
 
     void hold_blocks();
     void keep_histories();
-    void set_external_forces();
     void accelerate_free_blocks(double interval);
     void accelerate_held_blocks(double interval);
 

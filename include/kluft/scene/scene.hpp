@@ -7,6 +7,7 @@
 #include "kluft/blocks/geometry_spec.hpp"
 #include "kluft/constitutive/material.hpp"
 #include "kluft/loading/load_program.hpp"
+#include "kluft/simulation/histories.hpp"
 #include "kluft/simulation/simulation_options.hpp"
 
 namespace kluft {
@@ -16,6 +17,7 @@ struct OutputOptions {
     int fields_every = 0; ///< load steps between two field files; 0: only the first and the last state of each stage
     bool fields = true;   ///< write fields.pvd and fields/*.vtu
     bool pictures = true; ///< write curve and blocks pictures
+    std::vector<HistoryRequest> histories; ///< the columns of histories.csv
     int checkpoint_every = 0; ///< load steps between two state.h5; 0: at the end of each stage and when the run ends
 };
 

@@ -22,6 +22,7 @@ enum class KeyType {
     point,    ///< [x, y]
     points,   ///< [[x, y], ...]
     integers, ///< [0, 1, ...]
+    texts,    ///< [name, ...]
     gravity   ///< a number or [x, y]
 };
 
@@ -43,7 +44,7 @@ struct KeyRule {
     std::string_view fallback{};            ///< the default as a scene would write it; "" for none
     std::string_view fallback_note{};       ///< the default in words where it is no constant
     bool required = false;
-    int least_items = 0; ///< of named mappings, lists and points
+    int least_items = 0; ///< of named mappings, lists, points and texts
     std::string_view doc{};
 };
 

@@ -37,7 +37,11 @@ public:
     [[nodiscard]] int choice(std::string_view key) const;
     [[nodiscard]] Vec2 point(std::string_view key) const;
     [[nodiscard]] std::optional<std::vector<Vec2>> given_points(std::string_view key) const;
+    [[nodiscard]] std::optional<Vec2> given_point(std::string_view key) const;
     [[nodiscard]] std::vector<long long> integers(std::string_view key) const;
+    [[nodiscard]] std::vector<std::string> texts(std::string_view key) const;
+    /// [gx, gy] of a key that takes gravity; a number is downwards.
+    [[nodiscard]] std::optional<Vec2> given_gravity(std::string_view key) const;
 
     [[nodiscard]] const SceneNode* node() const { return node_; }
     [[nodiscard]] const SceneNode* value(std::string_view key) const;

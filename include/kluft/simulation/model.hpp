@@ -9,13 +9,14 @@
 #include "kluft/constitutive/lattice_stiffness.hpp"
 #include "kluft/constitutive/material.hpp"
 #include "kluft/loading/load_program.hpp"
+#include "kluft/simulation/histories.hpp"
 
 namespace kluft {
 
 struct Model {
     BlockSystem system;
     Plane plane = Plane::strain;
-    Vec2 gravity = Vec2::Zero();       ///< m/s2
+    Vec2 gravity = Vec2::Zero();       ///< at the end of the first stage, unless that has its own (m/s2)
     std::vector<ElasticModuli> moduli; ///< of the blocks, per material
     std::vector<double> densities;     ///< per material (kg/m3)
     std::vector<InterfaceLaw> laws;    ///< per interface type
@@ -23,7 +24,9 @@ struct Model {
     std::vector<int> fracture_law;     ///< per interface type: the law after failure, its own for a fracture
     std::vector<Strength> strengths;   ///< per interface; of use for potential cracks only
     LoadProgram loads;
+    std::vector<MaterialPoint> force_points; ///< where LoadProgram::forces act
     double effective_modulus = 0.0; ///< E of the body or of its softest joint, k_n H, for the mass-like term (Pa)
+    std::vector<HistoryGauge> histories;
     bool has_potential_cracks = false;
     std::vector<std::string> warnings;
 };
@@ -36,10 +39,15 @@ struct ModelInput {
     std::vector<InterfaceType> interface_types;
     int tessellation_type = -1; ///< interface type of the hexagon net; -1 without one
     LoadProgram loads;
+    std::vector<HistoryRequest> histories;
 };
 
-/// Throws InputError where stiffnesses cannot be resolved or a potential crack has no strength.
+/// Throws InputError where stiffnesses cannot be resolved, a potential crack has no strength, a platen moves a fixed block
+/// or a point force or a history is of no block.
 [[nodiscard]] Model build_model(BlockSystem system, const ModelInput& input);
+
+/// Whether there is gravity in any stage.
+[[nodiscard]] bool has_gravity(const Model& model);
 
 /// A number of the body, its mechanics and its loads, as text: a saved state belongs to one of them.
 [[nodiscard]] std::string fingerprint(const Model& model);

@@ -69,7 +69,8 @@ private:
 void leave_stage(const Model& model, const StageLoads& loads, const LoadedBody& body, const Eigen::VectorXd& forces,
                  State& state);
 
-/// Sets pressures, platens and weight of a load factor; the weight grows in the first stage.
+/// Sets pressures, platens, point forces and weight of a load factor. The weight grows in the first stage and in those
+/// that have a gravity.
 void apply_load(const Model& model, const StageLoads& loads, int stage, double load_factor, LoadedBody& body);
 
 /// Mean normal stress on a boundary: its pressure, or the support's reaction over the current length (Pa).

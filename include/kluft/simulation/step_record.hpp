@@ -18,7 +18,7 @@ struct MotionRecord {
     double time_steps = 0.0;       ///< so far
     double kinetic_ratio = 0.0;    ///< kinetic over strain energy
     double platen_imbalance = 0.0; ///< difference of the forces on the two platens over the larger one
-    double external_work = 0.0;    ///< of pressures, platens, supports and weight
+    double external_work = 0.0;    ///< of pressures, point forces, platens, supports and weight
     double strain_energy = 0.0;    ///< elastic, of blocks and interfaces
     double kinetic_energy = 0.0;
     double friction_energy = 0.0;  ///< lost by slip, dilation included
@@ -28,7 +28,7 @@ struct MotionRecord {
     double energy_error = 0.0;     ///< what is missing in the balance over the largest of its terms
 };
 
-/// A row of history.csv or equilibria.csv; the members are its columns, in order. Pa and fractions.
+/// A row of history.csv or equilibria.csv; the members up to `elapsed_s` are its columns, in order. Pa and fractions.
 struct StepRecord {
     int step = 0;  ///< through all stages
     int stage = 0; ///< from 0
@@ -50,6 +50,7 @@ struct StepRecord {
     bool balanced = true;
     double elapsed_s = 0.0;
     std::optional<MotionRecord> motion; ///< of explicit runs
+    std::vector<double> histories;      ///< what the scene follows: further columns of histories.csv
 };
 
 enum class CrackMode { tension, shear };

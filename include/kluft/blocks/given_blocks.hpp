@@ -1,0 +1,18 @@
+// A body put together from blocks that are given as polygons.
+#pragma once
+
+#include "kluft/blocks/block_system.hpp"
+#include "kluft/blocks/geometry_spec.hpp"
+
+namespace kluft {
+
+/// The blocks of `spec.blocks` in their order, with interfaces of the type `spec.blocks_interface` wherever two of them
+/// share a part of an edge: edges are split at the ends of that part, so that the two sides of an interface match.
+/// Coordinates that agree within 1e-9 of the diagonal of the body's box are the same, and a corner that is so near to a
+/// side lies on it. Gaps between blocks are allowed; a corner that only touches a side makes no interface.
+/// The boundaries get the free parts of their sides.
+/// Throws InputError for what is no simple counter-clockwise polygon, for blocks that overlap (naming both), and for a
+/// boundary of one block without a free part, and for a set without a block.
+[[nodiscard]] BlockSystem assemble_blocks(const GeometrySpec& spec);
+
+} // namespace kluft
