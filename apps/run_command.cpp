@@ -24,6 +24,7 @@
 #include "kluft/simulation/measurements.hpp"
 #include "kluft/simulation/simulation.hpp"
 #include "kluft/simulation/state_points.hpp"
+#include "kluft/simulation/strength_reduction.hpp"
 
 namespace kluft {
 
@@ -74,6 +75,7 @@ RunWriterOptions writer_options(const Scene& scene, const Model& model) {
     const int platen_stage = make_gauges(model).first_platen_stage;
     if (platen_stage >= 0) options.platen_stage = platen_stage;
     options.plane = scene.plane;
+    options.strength_factor = reduction_of(model.loads, 0) != nullptr;
     options.motion = scene.integrator == Integrator::explicit_;
     for (const Material& material : scene.materials) options.material_names.push_back(material.name);
     return options;
@@ -84,6 +86,7 @@ RunOutcome outcome_of(const RunReport& report, const Model& model) {
     RunOutcome outcome;
     outcome.status = report.status;
     outcome.message = report.diagnosis;
+    outcome.factor_of_safety = report.factor_of_safety;
     outcome.motion = report.motion;
     outcome.open_close_iterations = report.costs.open_close_iterations;
     outcome.counts = {{"factorizations", report.costs.factorizations},
@@ -130,6 +133,7 @@ std::string closing_line(const RunReport& report, const RunSummary& summary, con
                             100.0 * summary.numbers.peak_strain.value_or(0.0),
                             summary.numbers.peak_reached ? "" : " (still rising)");
     }
+    if (report.factor_of_safety) text += fmt::format(", factor of safety {:.6g}", *report.factor_of_safety);
     const std::string work = report.motion ? fmt::format("{} time steps", report.motion->time_steps)
                                            : fmt::format("{} solves", summary.numbers.open_close_iterations);
     text += fmt::format(", {} tension and {} shear cracks, {}, {:.1f} s; results in {}", summary.numbers.cracks_tension,
@@ -152,6 +156,10 @@ ExitCode simulate(const Model& model, const Scene& scene, State& state, RunWrite
     RunObserver observer(writer, quiet);
     const RunReport report = integrate(model, scene, state, observer);
     observer.clear();
+    for (const auto& warning : report.warnings) {
+        log.warning(warning);
+        if (!quiet) fmt::print(stderr, "warning: {}\n", warning);
+    }
     if (!report.diagnosis.empty()) {
         log.error(report.diagnosis);
         fmt::print(stderr, "{}\n", report.diagnosis);

@@ -58,6 +58,15 @@ void read_integrator(const SceneSection& root, Scene& scene, ReadingContext& con
                          "expected a number > 0 in kg/m3 because of density_scaling: none, found none");
 }
 
+/// A factor of safety is sought between equilibria.
+void refuse_explicit_reduction(const SceneSection& root, const Scene& scene, ReadingContext& context) {
+    if (scene.integrator == Integrator::implicit) return;
+    for (const auto& stage : root.sections("stages"))
+        if (stage.has("strength_reduction"))
+            context.fail(stage, "strength_reduction",
+                         "expected integrator: implicit beside it, found integrator: explicit");
+}
+
 CrackOptions read_crack_options(const SceneSection& section) {
     CrackOptions options;
     options.criterion = static_cast<CrackCriterion>(section.choice("criterion"));
@@ -142,7 +151,9 @@ Scene convert(const SceneSection& root, ReadingContext& context) {
     scene.materials = read_materials(root, context);
     scene.interface_types = read_interface_types(root, context);
     scene.geometry = read_geometry(root, names_of(scene.materials), names_of(scene.interface_types), context);
-    scene.loads = read_loads(root, names_of(scene.geometry.boundaries), has_gravity(scene), context);
+    scene.loads = read_loads(root, names_of(scene.geometry.boundaries), names_of(scene.interface_types),
+                             has_gravity(scene), context);
+    refuse_explicit_reduction(root, scene, context);
     scene.cracks = read_crack_options(root.section("cracks"));
     scene.solver = read_solver_options(root.section("solver"));
     scene.output = read_output_options(root.section("output"));

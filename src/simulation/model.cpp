@@ -155,6 +155,11 @@ std::string fingerprint(const Model& model) {
         if (stage.motion) {
             digest.add(static_cast<int>(stage.motion->control), stage.motion->boundary, stage.motion->value);
         }
+        if (stage.strength_reduction) {
+            const StrengthReduction& reduction = *stage.strength_reduction;
+            digest.add(reduction.from, reduction.to, reduction.tolerance);
+            for (const int type : reduction.interface_types) digest.add(type);
+        }
     }
     return digest.text();
 }

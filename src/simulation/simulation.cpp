@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <new>
 #include <numeric>
 #include <optional>
@@ -21,6 +22,7 @@
 #include "kluft/simulation/measurements.hpp"
 #include "kluft/simulation/stage_loads.hpp"
 #include "kluft/simulation/state_points.hpp"
+#include "kluft/simulation/strength_reduction.hpp"
 #include "kluft/simulation/weakening.hpp"
 
 namespace kluft {
@@ -39,6 +41,10 @@ constexpr double relaxed_residual = 2.0;  ///< of the mass-like forces: the same
 constexpr int max_relaxation_attempts = 250;
 constexpr double collapse_motion = 0.5; ///< of a block in one load step, in lattice spacings
 constexpr int max_event_trials = 12;
+constexpr double reduction_balance = 0.1;    ///< of the tolerance of a factor of safety: largest `balance`
+constexpr double reduction_residual = 0.01;  ///< of it: largest `tolerance`, and the share of a body that rests
+constexpr int max_moving_attempts = 25;      ///< of a relaxation with reduced strengths, whose share does not fall
+constexpr double least_relaxation_progress = 0.9; ///< of the share in as many attempts
 constexpr double largest_useful_index = 10.0; ///< of f in the search for an event: a strength of zero gives infinity
 
 struct Interrupted {};
@@ -89,7 +95,7 @@ public:
         report_.costs = state.costs;
         problem_.system = &model.system;
         problem_.moduli = &model.moduli;
-        problem_.laws = &model.laws;
+        problem_.laws = &strengths_.laws;
         if (model.gravity != Vec2::Zero()) problem_.densities = model.densities;
         problem_.least_mass_area = std::sqrt(0.75) * model.system.spacing * model.system.spacing;
     }
@@ -100,7 +106,8 @@ public:
         } catch (const Interrupted&) {
             report_.status = RunStatus::interrupted;
         } catch (const NoEquilibrium& failure) {
-            const bool is_limit = is_loaded_by_stress() && accepted_.step > 0 && !failure.nothing_holds;
+            const bool is_limit = (is_loaded_by_stress() && accepted_.step > 0 && !failure.nothing_holds) ||
+                                  report_.factor_of_safety.has_value();
             report_.status = is_limit ? RunStatus::collapsed : RunStatus::no_equilibrium;
             report_.diagnosis = diagnose(failure);
         } catch (const ResourceError& error) {
@@ -150,6 +157,19 @@ private:
         return costs;
     }
 
+    /// Whether the viscous share of a relaxation falls, with patience.
+    struct RelaxationProgress {
+        double least = std::numeric_limits<double>::infinity();
+        int attempts = 0; ///< since then
+        bool falls(double share) {
+            if (share < least_relaxation_progress * least) {
+                least = share;
+                attempts = 0;
+            }
+            return ++attempts <= max_moving_attempts;
+        }
+    };
+
     [[nodiscard]] double elapsed() const {
         return report_.costs.elapsed_s + std::chrono::duration<double>(Clock::now() - started_).count();
     }
@@ -171,6 +191,7 @@ private:
             begin_stage();
             if (initial) report_initial_state();
             initial = false;
+            if (stage.strength_reduction) reduce_strengths(stage);
             while (work_.step_in_stage < stage.steps) {
                 load_step(static_cast<double>(work_.step_in_stage + 1) / stage.steps,
                           work_.step_in_stage + 1 == stage.steps);
@@ -181,7 +202,78 @@ private:
     void begin_stage() {
         if (work_.step_in_stage == 0) work_.displacement_rate.resize(0);
         loads_.emplace(enter_stage(model_, work_));
+        strengths_ = reduced_strengths(model_, work_.stage, work_.load_factor);
+        const bool reduces = reduces_strengths();
+        const double tolerance = reduces ? current_stage().strength_reduction->tolerance : 0.0;
+        rest_share_ = reduction_residual * tolerance;
+        balance_ = reduces ? std::min(options_.balance, reduction_balance * tolerance) : options_.balance;
+        open_close_.set_tolerance(reduces ? std::min(options_.tolerance, rest_share_) : options_.tolerance);
     }
+
+    [[nodiscard]] const Stage& current_stage() const { return model_.loads.stages[work_.stage]; }
+    [[nodiscard]] bool reduces_strengths() const { return current_stage().strength_reduction.has_value(); }
+
+    // ---- factor of safety ------------------------------------------------------------------------------------
+
+    /// Divides the strengths by larger and larger factors. Where no equilibrium is found, the interval between the last
+    /// one with equilibrium and the first one without is halved, always from the last equilibrium, and the run ends.
+    void reduce_strengths(const Stage& stage) {
+        const StrengthReduction& reduction = *stage.strength_reduction;
+        if (work_.load_factor == 0.0) begin_reduction();
+        std::optional<double> failing;
+        while (!failing && work_.step_in_stage < stage.steps) {
+            const double target = static_cast<double>(work_.step_in_stage + 1) / stage.steps;
+            if (!stands_at(target, true)) failing = target;
+        }
+        if (!failing) {
+            report_.warnings.push_back(
+                fmt::format("the factor of safety is above {:g}, the largest strength factor of stage {}", reduction.to,
+                            work_.stage));
+            return;
+        }
+        const auto factor = [&](double load_factor) { return reduction.factor_at(load_factor); };
+        while (factor(*failing) - factor(work_.load_factor) > reduction.tolerance * factor(work_.load_factor)) {
+            const double middle = 0.5 * (work_.load_factor + *failing);
+            if (!stands_at(middle, false)) failing = middle;
+        }
+        report_.factor_of_safety = factor(work_.load_factor);
+        throw last_failure_;
+    }
+
+    /// The state that the stages before have left must stand by the closer look of this one.
+    void begin_reduction() {
+        step_balanced_ = true;
+        worst_share_ = 0.0;
+        advance(0.0, false);
+        accept();
+    }
+
+    /// Tries a load step; the state stays where it was if there is no equilibrium at its end.
+    bool stands_at(double target, bool regular) {
+        const StepRecord before = last_record_;
+        try {
+            load_step(target, regular && work_.step_in_stage + 1 == current_stage().steps, regular);
+            return true;
+        } catch (const NoEquilibrium& failure) {
+            if (failure.nothing_holds) throw;
+            last_failure_ = failure;
+            work_ = accepted_;
+            last_record_ = before;
+            waiting_equilibria_.clear();
+            waiting_cracks_.clear();
+            return false;
+        }
+    }
+
+    /// What was held back until the strengths of the step were known to suffice.
+    void report_waiting() {
+        for (const StepRecord& record : waiting_equilibria_) observer_.equilibrium(record);
+        for (const CrackRecord& crack : waiting_cracks_) observer_.crack(crack);
+        waiting_equilibria_.clear();
+        waiting_cracks_.clear();
+    }
+
+    // ---- load steps ------------------------------------------------------------------------------------------
 
     void next_stage() {
         leave_stage(model_, *loads_, problem_, last_residual_.forces, work_);
@@ -196,22 +288,23 @@ private:
         notify_step(record, false);
     }
 
-    void load_step(double target, bool last_of_stage) {
+    /// `regular`: one of the steps of the stage, and not one between two of them.
+    void load_step(double target, bool last_of_stage, bool regular = true) {
         iterations_at_start_ = report_.costs.open_close_iterations;
         if (options_.repeatable) open_close_.forget_factor();
         passes_ = 0;
         step_balanced_ = true;
         worst_share_ = 0.0;
         const bool check =
-            model_.has_potential_cracks && ((work_.step + 1) % std::max(1, cracks_.every) == 0 || last_of_stage);
+            model_.has_potential_cracks && ((work_.step + 1) % std::max(1, cracks_.every) == 0 || last_of_stage || reduces_strengths());
         const bool smooth = advance(target, check);
 
         work_.load_factor = target;
-        ++work_.step_in_stage;
+        if (regular) ++work_.step_in_stage;
         ++work_.step;
         work_.unbalanced_in_succession = step_balanced_ ? 0 : work_.unbalanced_in_succession + 1;
         if (!step_balanced_) ++report_.unbalanced_steps;
-        if (smooth) {
+        if (smooth && !reduces_strengths()) {
             work_.displacement_rate = (work_.displacement - accepted_.displacement) / (target - accepted_.load_factor);
         } else {
             work_.displacement_rate.resize(0);
@@ -224,6 +317,7 @@ private:
         record.balanced = step_balanced_;
         record.unbalanced_ratio = worst_share_;
         accept();
+        report_waiting();
         notify_step(record, last_of_stage);
         if (work_.unbalanced_in_succession >= options_.max_unbalanced_steps) {
             throw NoEquilibrium{last_worst_block_, record.unbalanced_ratio};
@@ -234,14 +328,13 @@ private:
     bool advance(double target, bool check) {
         bool smooth = true;
         const bool by_events = check && cracks_.update == CrackUpdate::event;
-        while (work_.load_factor < target) {
+        do {
             const double from = work_.load_factor;
             prepare();
             Trial trial = solve(target, predicted(target));
             if (!trial.balanced) {
                 smooth = false;
-                if (trial.converged()) commit(trial, from);
-                trial = relax(target, trial.summary.restless);
+                trial = recover(trial, target, from);
                 if (!trial.balanced && nothing_holds())
                     throw NoEquilibrium{last_worst_block_, trial.viscous_share, true};
             }
@@ -251,8 +344,23 @@ private:
             commit(trial, reached);
             record_equilibrium(trial);
             if (check && (by_events || reached >= target) && break_bonds(reached)) smooth = false;
-        }
+        } while (work_.load_factor < target);
         return smooth;
+    }
+
+    /// Where a solve has failed: relaxes from the work state, which stands at the load factor `at`. With reduced
+    /// strengths the result must stand without relaxation too.
+    Trial recover(const Trial& failed, double load_factor, double at) {
+        if (failed.converged()) commit(failed, at);
+        Trial trial = relax(load_factor, failed.summary.restless);
+        if (!reduces_strengths()) return trial;
+        if (trial.balanced) {
+            commit(trial, at);
+            prepare();
+            trial = solve(load_factor, work_.displacement);
+        }
+        if (!trial.balanced) throw NoEquilibrium{last_worst_block_, trial.viscous_share, nothing_holds()};
+        return trial;
     }
 
     [[nodiscard]] bool is_loaded_by_stress() const {
@@ -337,7 +445,10 @@ private:
         linear_.analyze(pattern_);
     }
 
-    void set_load(double load_factor) { apply_load(model_, *loads_, work_.stage, load_factor, problem_); }
+    void set_load(double load_factor) {
+        apply_load(model_, *loads_, work_.stage, load_factor, problem_);
+        if (reduces_strengths()) strengths_ = reduced_strengths(model_, work_.stage, load_factor);
+    }
 
     [[nodiscard]] Eigen::VectorXd predicted(double load_factor) const {
         if (work_.displacement_rate.size() == 0) return work_.displacement;
@@ -364,10 +475,12 @@ private:
         return force > 0.0 ? force / std::max(trial.summary.force_scale, 1e-300) : 0.0;
     }
 
-    /// The mass-like term must not change the answer: solve again from the result until its share is small.
+    /// The mass-like term must not change the answer: solve again from the result until its share is small. With reduced
+    /// strengths it must fall as well, for a body that slides has a share that stays, however small it is.
     void balance(Trial& trial) {
         trial.viscous_share = viscous_share(trial);
-        for (int round = 0; round < max_balance_rounds && trial.viscous_share > options_.balance; ++round) {
+        bool settles = !reduces_strengths() || trial.viscous_share <= rest_share_;
+        for (int round = 0; round < max_balance_rounds && (trial.viscous_share > balance_ || !settles); ++round) {
             problem_.start = trial.q;
             Trial next = trial;
             next.summary = open_close_.solve(problem_, pattern_, next.q);
@@ -376,9 +489,10 @@ private:
             next.viscous_share = viscous_share(next);
             const bool stalls = next.viscous_share > least_balance_progress * trial.viscous_share;
             trial = std::move(next);
+            settles = !reduces_strengths() || !stalls || trial.viscous_share <= rest_share_;
             if (stalls) break;
         }
-        trial.balanced = trial.viscous_share <= options_.balance;
+        trial.balanced = settles && trial.viscous_share <= balance_;
     }
 
     /// Pseudo-transient continuation at a load factor from the work state, which moves along: eta grows on the blocks
@@ -390,6 +504,7 @@ private:
         factor.resize(model_.system.blocks.size(), 1.0);
         (void)grow_eta(restless, factor);
         Trial last; // that the state moved to
+        RelaxationProgress progress;
         for (int attempt = 0; attempt < max_relaxation_attempts; ++attempt) {
             if (stop_) throw Interrupted{};
             prepare();
@@ -405,7 +520,7 @@ private:
             notify_progress(load_factor);
             trial.viscous_share = viscous_share(trial);
             const double harmless =
-                std::max(relaxed_tolerance * options_.balance, relaxed_residual * trial.viscous_share);
+                std::max(relaxed_tolerance * balance_, relaxed_residual * trial.viscous_share);
             if (!trial.converged() && trial.summary.residual_ratio > harmless) {
                 if (!grow_eta(trial.summary.restless, factor)) {
                     throw NoEquilibrium{trial.summary.worst_block, trial.summary.residual_ratio};
@@ -413,13 +528,14 @@ private:
                 continue;
             }
             if (!trial.converged()) trial.viscous_share += trial.summary.residual_ratio;
-            trial.balanced = trial.viscous_share <= options_.balance;
+            trial.balanced = trial.viscous_share <= balance_;
             if (trial.balanced) {
                 work_.viscosity_factor = factor;
                 return trial;
             }
             commit(trial, work_.load_factor);
-            if (is_falling()) throw NoEquilibrium{trial.summary.worst_block, trial.viscous_share, nothing_holds()};
+            const bool moves_on = reduces_strengths() && !progress.falls(trial.viscous_share);
+            if (moves_on || is_falling()) throw NoEquilibrium{trial.summary.worst_block, trial.viscous_share, nothing_holds()};
             if (trial.summary.iterations <= easy_relaxation) decay(factor);
             last = std::move(trial);
         }
@@ -478,9 +594,9 @@ private:
         ++report_.crack_checks;
         const auto stresses = block_stresses(model_.system, model_.moduli, q);
         if (cracks_.criterion == CrackCriterion::principal_stress) {
-            return crack_check(model_.system, bonded_, model_.strengths, stresses);
+            return crack_check(model_.system, bonded_, strengths_.strengths, stresses);
         }
-        return crack_check(model_.system, bonded_, model_.strengths, stresses, bond_tractions(model_, problem_, q));
+        return crack_check(model_.system, bonded_, strengths_.strengths, stresses, bond_tractions(model_, problem_, q));
     }
 
     double largest_index_at(const Eigen::VectorXd& q) {
@@ -496,7 +612,9 @@ private:
         const double goal = 1.0 + 0.5 * tolerance;
         double low = from;
         double high = to;
+        if (reduces_strengths()) set_load(from);
         double g_low = largest_index_at(work_.displacement) - goal;
+        if (reduces_strengths()) set_load(to);
         double g_high = f_high - goal;
         if (g_low >= 0.0) return to;
         for (int i = 0; i < max_event_trials; ++i) {
@@ -539,10 +657,7 @@ private:
             std::ranges::sort(work_.contacts, {}, &ContactMemory::key);
             prepare();
             Trial trial = solve(load_factor, work_.displacement);
-            if (!trial.balanced) {
-                if (trial.converged()) commit(trial, load_factor);
-                trial = relax(load_factor, trial.summary.restless);
-            }
+            if (!trial.balanced) trial = recover(trial, load_factor, load_factor);
             commit(trial, load_factor);
             record_equilibrium(trial);
         }
@@ -552,7 +667,11 @@ private:
         CrackRecord record = weaken(model_, candidate, work_);
         record.pass = passes_;
         record.axial_strain = last_record_.axial_strain;
-        observer_.crack(record);
+        if (reduces_strengths()) {
+            waiting_cracks_.push_back(record);
+        } else {
+            observer_.crack(record);
+        }
     }
 
     // ---- measurements and messages ---------------------------------------------------------------------------
@@ -564,6 +683,8 @@ private:
         record.crack_passes = passes_;
         record.unbalanced_ratio = share;
         record.elapsed_s = elapsed();
+        if (reduction_of(model_.loads, 0) != nullptr)
+            record.strength_factor = strength_factor(model_.loads, work_.stage, work_.load_factor);
         return record;
     }
 
@@ -572,6 +693,10 @@ private:
         last_record_.balanced = trial.balanced;
         step_balanced_ = step_balanced_ && trial.balanced;
         worst_share_ = std::max(worst_share_, trial.viscous_share);
+        if (reduces_strengths()) {
+            waiting_equilibria_.push_back(last_record_);
+            return;
+        }
         const Stopwatch watch(report_.costs.seconds.observers);
         observer_.equilibrium(last_record_);
     }
@@ -600,6 +725,12 @@ private:
     [[nodiscard]] std::string diagnose(const NoEquilibrium& failure) const {
         std::string text = fmt::format("no equilibrium in stage {} at load step {}: residual {:.2g} of the forces",
                                        work_.stage, work_.step + 1, failure.residual_ratio);
+        if (report_.factor_of_safety) {
+            text = fmt::format("factor of safety {:.6g}; beyond it {}", *report_.factor_of_safety, text);
+        } else if (reduction_of(model_.loads, work_.stage) != nullptr) {
+            text += fmt::format("; with the strengths divided by {:g}",
+                                strength_factor(model_.loads, work_.stage, work_.load_factor));
+        }
         if (failure.nothing_holds) text += "; nothing holds the body, which has neither a support nor a platen";
         if (failure.worst_block < 0) return text;
         const Block& block = model_.system.blocks[failure.worst_block];
@@ -625,6 +756,7 @@ private:
     OpenCloseSolver open_close_;
     std::vector<char> bonded_; ///< per interface of the work state
     BlockPattern pattern_;
+    ReducedStrengths strengths_; ///< of the load in place
     EquilibriumProblem problem_;
     std::optional<StageLoads> loads_;
     Residual last_residual_;
@@ -637,6 +769,11 @@ private:
     bool step_balanced_ = true;
     double worst_share_ = 0.0;
     int last_worst_block_ = -1;
+    double balance_ = 0.0;    ///< of the stage
+    double rest_share_ = 0.0; ///< of the mass-like term: with reduced strengths a body with less rests
+    NoEquilibrium last_failure_{};
+    std::vector<StepRecord> waiting_equilibria_;
+    std::vector<CrackRecord> waiting_cracks_;
 };
 
 } // namespace

@@ -6,6 +6,7 @@
 #include "kluft/contact/detection.hpp"
 #include "kluft/loading/loaded_body.hpp"
 #include "kluft/simulation/measurements.hpp"
+#include "kluft/simulation/strength_reduction.hpp"
 
 namespace kluft {
 
@@ -51,7 +52,8 @@ FieldRecord fields_of_state(const Model& model, const State& state) {
     LoadedBody body;
     body.system = &model.system;
     body.moduli = &model.moduli;
-    body.laws = &model.laws;
+    const auto reduced = reduced_strengths(model, state.stage, state.load_factor);
+    body.laws = &reduced.laws;
     place_bonds(model, state, body.bonds);
     body.contacts = state_contacts(model, state).points;
     return field_record(model, state, body);

@@ -53,6 +53,8 @@ public:
     OpenCloseSummary solve(const EquilibriumProblem& problem, const BlockPattern& pattern, Eigen::VectorXd& q,
                            bool unloaded = false, Aim aim = Aim::equilibrium);
 
+    void set_tolerance(double tolerance) { options_.tolerance = tolerance; }
+
     /// The next linear solve makes a new factor: what follows does not depend on what was solved before.
     void forget_factor() { reference_.forget(); }
 

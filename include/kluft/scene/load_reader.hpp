@@ -10,8 +10,9 @@
 namespace kluft {
 
 /// `root` is the whole scene; `boundaries` are the names of the geometry's boundaries, none if the domain could not be
-/// read (then references to boundaries are not checked).
+/// read (then references to boundaries are not checked). `interfaces`: the names of the interface types.
 [[nodiscard]] LoadProgram read_loads(const SceneSection& root, const std::vector<std::string>& boundaries,
-                                     bool has_gravity, ReadingContext& context);
+                                     const std::vector<std::string>& interfaces, bool has_gravity,
+                                     ReadingContext& context);
 
 } // namespace kluft

@@ -49,7 +49,8 @@ struct StepRecord {
     double unbalanced_ratio = 0.0;
     bool balanced = true;
     double elapsed_s = 0.0;
-    std::optional<MotionRecord> motion; ///< of explicit runs
+    std::optional<double> strength_factor; ///< F that strengths are divided by, of runs that reduce them
+    std::optional<MotionRecord> motion;    ///< of explicit runs
 };
 
 enum class CrackMode { tension, shear };
