@@ -96,7 +96,7 @@ RunOutcome outcome_of(const RunReport& report, const Model& model) {
                       {"refinements", report.costs.refinements},
                       {"relaxations", report.costs.relaxations},
                       {"events", report.costs.events}};
-    outcome.unknowns = n_block_unknowns * model.system.n_blocks();
+    outcome.unknowns = unknowns_per_block(model.kinematics) * model.system.n_blocks();
     outcome.elapsed_s = report.costs.elapsed_s;
     outcome.version = std::string(version());
     outcome.seconds = {{"detection", seconds.detection},
@@ -192,7 +192,7 @@ ExitCode run(const RunArguments& arguments) {
                          "velocities to go on with");
     const SceneModel built = build_scene_model(scene);
     const Model& model = built.model;
-    const int unknowns = n_block_unknowns * model.system.n_blocks();
+    const int unknowns = unknowns_per_block(model.kinematics) * model.system.n_blocks();
     const bool one_thread = scene.solver.repeatable || unknowns < unknowns_worth_threads;
     if (one_thread) {
         set_blas_threads(1);

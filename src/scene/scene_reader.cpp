@@ -24,6 +24,7 @@ namespace {
 void read_analysis(const SceneSection& root, Scene& scene) {
     const auto analysis = root.section("analysis");
     scene.plane = static_cast<Plane>(analysis.choice("plane"));
+    scene.kinematics = static_cast<Kinematics>(analysis.choice("kinematics"));
     const SceneNode* gravity = analysis.value("gravity");
     if (gravity == nullptr) return;
     if (gravity->is_list()) {
@@ -46,6 +47,8 @@ void read_integrator(const SceneSection& root, Scene& scene, ReadingContext& con
                 context.fail(analysis, key, "expected integrator: explicit beside it, found integrator: implicit");
         return;
     }
+    if (scene.kinematics == Kinematics::rigid)
+        context.fail(analysis, "kinematics", "expected affine beside integrator: explicit, found rigid");
     ExplicitOptions& options = scene.explicit_options;
     options.damping = analysis.number("damping");
     options.density_scaling = static_cast<DensityScaling>(analysis.choice("density_scaling"));

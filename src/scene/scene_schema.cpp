@@ -64,10 +64,14 @@ std::vector<KeyRule> analysis_rules() {
                 "effect."},
         {.path = "analysis.kinematics",
          .type = KeyType::choice,
-         .choices = {"affine"},
-         .unavailable = {"rigid"},
+         .choices = {"affine", "rigid"},
          .fallback = "affine",
-         .doc = "How a block moves and deforms: `affine` is six unknowns. Only `affine` in this version."},
+         .doc = "How a block moves and deforms: `affine` is six unknowns with a uniform strain, `rigid` three (two "
+                "displacements and a rotation of any size). The compliance of rigid blocks is that of their "
+                "interfaces: where those of the hexagons have no stiffness key, k_n d = 2K and k_s d = 4G - 2K give "
+                "the body the rock's `youngs_modulus` and `poissons_ratio` (less than 1/4 in plane strain, 1/3 in "
+                "plane stress), and `stiffness_ratio` and `shear_ratio` are not accepted there. Block stresses, also "
+                "for the potential cracks, follow from the forces on the block. For `integrator: implicit` only."},
         {.path = "analysis.gravity",
          .type = KeyType::gravity,
          .measure = Measure::acceleration,
@@ -400,7 +404,9 @@ std::vector<KeyRule> loading_rules() {
          .least_items = 1,
          .doc = "Loading, one stage after the other. Pressures, strains, stresses and displacements are positive in "
                 "compression (inward) and grow linearly over the steps of a stage."},
-        {.path = "stages.#", .type = KeyType::mapping, .doc = "One stage: a pressure, a platen, both, or a reduction of strengths."},
+        {.path = "stages.#",
+         .type = KeyType::mapping,
+         .doc = "One stage: a pressure, a platen, both, or a reduction of strengths."},
         {.path = "stages.#.name",
          .type = KeyType::text,
          .fallback_note = "`stage 0`, `stage 1`, ...",

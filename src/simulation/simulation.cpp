@@ -19,6 +19,7 @@
 #include "kluft/equilibrium/open_close_solver.hpp"
 #include "kluft/fracture/crack_check.hpp"
 #include "kluft/kinematics/affine.hpp"
+#include "kluft/kinematics/rigid.hpp"
 #include "kluft/simulation/measurements.hpp"
 #include "kluft/simulation/stage_loads.hpp"
 #include "kluft/simulation/state_points.hpp"
@@ -41,9 +42,9 @@ constexpr double relaxed_residual = 2.0;  ///< of the mass-like forces: the same
 constexpr int max_relaxation_attempts = 250;
 constexpr double collapse_motion = 0.5; ///< of a block in one load step, in lattice spacings
 constexpr int max_event_trials = 12;
-constexpr double reduction_balance = 0.1;    ///< of the tolerance of a factor of safety: largest `balance`
-constexpr double reduction_residual = 0.01;  ///< of it: largest `tolerance`, and the share of a body that rests
-constexpr int max_moving_attempts = 25;      ///< of a relaxation with reduced strengths, whose share does not fall
+constexpr double reduction_balance = 0.1;         ///< of the tolerance of a factor of safety: largest `balance`
+constexpr double reduction_residual = 0.01;       ///< of it: largest `tolerance`, and the share of a body that rests
+constexpr int max_moving_attempts = 25;           ///< of a relaxation with reduced strengths, whose share does not fall
 constexpr double least_relaxation_progress = 0.9; ///< of the share in as many attempts
 constexpr double largest_useful_index = 10.0; ///< of f in the search for an event: a strength of zero gives infinity
 
@@ -93,6 +94,7 @@ public:
           work_(state), gauges_(make_gauges(model)), open_close_(linear_, open_close_options(solver)) {
         for (const Stage& stage : model.loads.stages) n_steps_ += stage.steps;
         report_.costs = state.costs;
+        problem_.kinematics = model.kinematics;
         problem_.system = &model.system;
         problem_.moduli = &model.moduli;
         problem_.laws = &strengths_.laws;
@@ -295,8 +297,8 @@ private:
         passes_ = 0;
         step_balanced_ = true;
         worst_share_ = 0.0;
-        const bool check =
-            model_.has_potential_cracks && ((work_.step + 1) % std::max(1, cracks_.every) == 0 || last_of_stage || reduces_strengths());
+        const bool check = model_.has_potential_cracks &&
+                           ((work_.step + 1) % std::max(1, cracks_.every) == 0 || last_of_stage || reduces_strengths());
         const bool smooth = advance(target, check);
 
         work_.load_factor = target;
@@ -441,7 +443,7 @@ private:
         for (const Interface& interface : model_.system.interfaces) {
             pairs.emplace_back(interface.block_a, interface.block_b);
         }
-        pattern_ = BlockPattern(model_.system.n_blocks(), pairs);
+        pattern_ = BlockPattern(model_.system.n_blocks(), pairs, model_.kinematics);
         linear_.analyze(pattern_);
     }
 
@@ -461,6 +463,7 @@ private:
         problem_.start = work_.displacement;
         Trial trial;
         trial.q = std::move(guess);
+        if (model_.kinematics == Kinematics::rigid) make_rigid(model_.system, trial.q);
         trial.summary = open_close_.solve(problem_, pattern_, trial.q, work_.contacts.empty());
         report_.costs.open_close_iterations += trial.summary.iterations;
         last_worst_block_ = trial.summary.worst_block;
@@ -519,8 +522,7 @@ private:
             last_worst_block_ = trial.summary.worst_block;
             notify_progress(load_factor);
             trial.viscous_share = viscous_share(trial);
-            const double harmless =
-                std::max(relaxed_tolerance * balance_, relaxed_residual * trial.viscous_share);
+            const double harmless = std::max(relaxed_tolerance * balance_, relaxed_residual * trial.viscous_share);
             if (!trial.converged() && trial.summary.residual_ratio > harmless) {
                 if (!grow_eta(trial.summary.restless, factor)) {
                     throw NoEquilibrium{trial.summary.worst_block, trial.summary.residual_ratio};
@@ -535,7 +537,8 @@ private:
             }
             commit(trial, work_.load_factor);
             const bool moves_on = reduces_strengths() && !progress.falls(trial.viscous_share);
-            if (moves_on || is_falling()) throw NoEquilibrium{trial.summary.worst_block, trial.viscous_share, nothing_holds()};
+            if (moves_on || is_falling())
+                throw NoEquilibrium{trial.summary.worst_block, trial.viscous_share, nothing_holds()};
             if (trial.summary.iterations <= easy_relaxation) decay(factor);
             last = std::move(trial);
         }
@@ -592,7 +595,7 @@ private:
     std::vector<CrackCandidate> check_cracks(const Eigen::VectorXd& q) {
         const Stopwatch watch(report_.costs.seconds.crack_check);
         ++report_.crack_checks;
-        const auto stresses = block_stresses(model_.system, model_.moduli, q);
+        const auto stresses = block_stresses(problem_, q);
         if (cracks_.criterion == CrackCriterion::principal_stress) {
             return crack_check(model_.system, bonded_, strengths_.strengths, stresses);
         }

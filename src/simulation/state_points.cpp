@@ -6,6 +6,7 @@
 #include "kluft/contact/detection.hpp"
 #include "kluft/loading/loaded_body.hpp"
 #include "kluft/simulation/measurements.hpp"
+#include "kluft/simulation/stage_loads.hpp"
 #include "kluft/simulation/strength_reduction.hpp"
 
 namespace kluft {
@@ -50,12 +51,21 @@ StateContacts state_contacts(const Model& model, const State& state) {
 
 FieldRecord fields_of_state(const Model& model, const State& state) {
     LoadedBody body;
+    body.kinematics = model.kinematics;
     body.system = &model.system;
     body.moduli = &model.moduli;
     const auto reduced = reduced_strengths(model, state.stage, state.load_factor);
     body.laws = &reduced.laws;
     place_bonds(model, state, body.bonds);
     body.contacts = state_contacts(model, state).points;
+    if (model.kinematics == Kinematics::rigid) { // stresses come from the forces
+        State copy = state;
+        const StageLoads loads = enter_stage(model, copy);
+        body.constraints = loads.constraints();
+        body.pressure_edges = loads.edges();
+        if (model.gravity != Vec2::Zero()) body.densities = model.densities;
+        apply_load(model, loads, state.stage, state.load_factor, body);
+    }
     return field_record(model, state, body);
 }
 

@@ -8,6 +8,7 @@
 #include "kluft/constitutive/interface_law.hpp"
 #include "kluft/constitutive/lattice_stiffness.hpp"
 #include "kluft/constitutive/material.hpp"
+#include "kluft/kinematics/rigid.hpp"
 #include "kluft/loading/load_program.hpp"
 
 namespace kluft {
@@ -15,6 +16,7 @@ namespace kluft {
 struct Model {
     BlockSystem system;
     Plane plane = Plane::strain;
+    Kinematics kinematics = Kinematics::affine;
     Vec2 gravity = Vec2::Zero();       ///< m/s2
     std::vector<ElasticModuli> moduli; ///< of the blocks, per material
     std::vector<double> densities;     ///< per material (kg/m3)
@@ -31,6 +33,7 @@ struct Model {
 /// What a scene says of the mechanics.
 struct ModelInput {
     Plane plane = Plane::strain;
+    Kinematics kinematics = Kinematics::affine;
     Vec2 gravity = Vec2::Zero();
     std::vector<Material> materials;
     std::vector<InterfaceType> interface_types;
