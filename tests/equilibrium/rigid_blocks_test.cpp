@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "kluft/constitutive/lattice_stiffness.hpp"
+#include "kluft/core/diagnostics.hpp"
 #include "kluft/equilibrium/open_close_solver.hpp"
 #include "support/lattice_body.hpp"
 
@@ -103,6 +104,8 @@ TEST(RigidBlocks, BlockTurnedByARightAngleInStepsKeepsItsArea) {
     problem.moduli = &moduli;
     problem.laws = &laws;
     problem.eta = {1e6};
+    problem.densities = {2500.0};
+    problem.gravity = {0.0, -10.0};
     const BlockPattern pattern = pattern_of(problem);
     LinearSolver linear;
     linear.analyze(pattern);

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <numbers>
 
+#include <Eigen/LU>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -100,7 +101,7 @@ analysis: {{kinematics: {}}}
 materials: {{rock: {{youngs_modulus: 1 GPa, poissons_ratio: 0.2, cohesion: 0.15 MPa, friction_angle: 40, tensile_strength: 0.05 MPa}}}}
 interfaces:
   net: {{kind: potential_crack, fails_to: joint}}
-  joint: {{kind: fracture, normal_stiffness_times_spacing: 1 GPa, shear_stiffness_times_spacing: 0.5 GPa, friction_angle: 12, contact_rounding: 4 kPa}}
+  joint: {{kind: fracture, normal_stiffness_times_spacing: 1 GPa, shear_stiffness_times_spacing: 0.5 GPa, friction_angle: 38, contact_rounding: 4 kPa}}
 geometry:
   domain: {{rectangle: {{width: 0.4, height: 0.8}}}}
   fractures: [{{trace: [[-0.1, 0.1], [0.5, 0.7]], interface: joint}}]
@@ -108,27 +109,21 @@ geometry:
 boundaries: {{bottom: {{support: pinned}}}}
 stages:
   - {{name: pressure, pressure: {{left: 0.2 MPa, right: 0.2 MPa, top: 0.2 MPa}}, steps: 1}}
-  - {{name: platen, strain: {{boundary: top, value: 0.4 %}}, steps: 10}}
+  - {{name: platen, strain: {{boundary: top, value: 0.2 %}}, steps: 5}}
 )",
                        kinematics);
 }
 
-// The same body, loads and strengths: rigid hexagons with the compliance in their interfaces are about as stiff as
-// affine ones, and they crack. The first part of the curve of a body with one fracture differs by some per cent, for the
-// halves of hexagons at the outline are not those of a lattice.
+// The same body, loads and strengths: rigid hexagons with the compliance in their interfaces are as stiff as affine ones
+// but for the halves of hexagons at the outline, which are not those of a lattice, and they crack.
 TEST(RigidBlocksRun, BodyOfRigidHexagonsDeformsAndCracksAboutAsAnAffineOne) {
     const auto rigid = run_scene(hexagons_under_a_platen("rigid"));
     const auto affine = run_scene(hexagons_under_a_platen("affine"));
     ASSERT_EQ(rigid.report.status, RunStatus::done) << rigid.report.diagnosis;
     ASSERT_EQ(affine.report.status, RunStatus::done) << affine.report.diagnosis;
-    const auto peak = [](const SceneRun& run) {
-        double largest = 0.0;
-        for (const auto& record : run.equilibria)
-            largest = std::max(largest, record.balanced ? record.axial_stress : 0.0);
-        return largest;
-    };
+    EXPECT_NEAR(rigid.history[2].axial_stress, affine.history[2].axial_stress, 0.06 * affine.history[2].axial_stress);
     EXPECT_FALSE(rigid.cracks.empty());
-    EXPECT_NEAR(peak(rigid), peak(affine), 0.25 * peak(affine));
+    EXPECT_FALSE(affine.cracks.empty());
     for (int b = 0; b < rigid.model.system.n_blocks(); ++b) {
         const double size = rigid.model.system.blocks[b].size;
         EXPECT_NEAR(deformation_gradient(rigid.state.displacement, b, size).determinant(), 1.0, 1e-14);
@@ -152,7 +147,7 @@ TEST(RigidBlocksRun, FactorThatIsKeptLeadsToTheSameStateAsOneMadeAnew) {
 // A platen under a given stress: the sum of the forces on it is stress times width.
 TEST(RigidBlocksRun, PlatenUnderAGivenStressPressesRigidBlocksWithIt) {
     const auto run = run_scene(hexagons_under_a_platen("rigid"),
-                               {"stages.1.strain=", "stages.1.stress={boundary: top, value: 0.4 MPa}",
+                               {"stages.1.strain=null", "stages.1.stress={boundary: top, value: 0.4 MPa}",
                                 "solver.tolerance=1e-9", "solver.balance=1e-6"});
     ASSERT_TRUE(stands(run)) << run.report.diagnosis;
     EXPECT_NEAR(run.history.back().axial_stress, 0.4e6, 1.0);
