@@ -26,7 +26,7 @@ void print_blocks(const Scene& scene, const SceneModel& built) {
     fmt::print("body         {:.6g} m x {:.6g} m, plane {}\n", extent.x(), extent.y(),
                scene.plane == Plane::strain ? "strain" : "stress");
     fmt::print("blocks       {}\n", system.n_blocks());
-    fmt::print("unknowns     {}\n", n_block_unknowns * system.n_blocks());
+    fmt::print("unknowns     {}\n", unknowns_per_block(scene.kinematics) * system.n_blocks());
     fmt::print("interfaces   {}\n", system.n_interfaces());
     for (std::size_t t = 0; t < scene.interface_types.size(); ++t) {
         const auto count = std::ranges::count(system.interfaces, static_cast<int>(t), &Interface::interface_type);
@@ -61,7 +61,9 @@ void print_stiffness(const Scene& scene, const Model& model) {
     const InterfaceLaw& net = model.laws[scene.geometry.tessellation->interface_type];
     for (std::size_t m = 0; m < model.moduli.size(); ++m) {
         const auto lattice =
-            lattice_moduli(model.moduli[m], {net.normal_stiffness, net.shear_stiffness}, d, model.plane);
+            model.kinematics == Kinematics::rigid
+                ? rigid_lattice_moduli({net.normal_stiffness, net.shear_stiffness}, d, model.plane)
+                : lattice_moduli(model.moduli[m], {net.normal_stiffness, net.shear_stiffness}, d, model.plane);
         fmt::print("lattice      {}: E {:.4g} Pa, nu {:.4g}\n", scene.materials[m].name, lattice.youngs_modulus,
                    lattice.poissons_ratio);
     }
@@ -85,7 +87,7 @@ double estimated_memory(const Scene& scene, const Model& model, double factor) {
 void print_memory(const Scene& scene, const Model& model) {
     std::vector<std::pair<int, int>> pairs;
     for (const Interface& interface : model.system.interfaces) pairs.emplace_back(interface.block_a, interface.block_b);
-    const FactorCost cost = factor_cost(BlockPattern(model.system.n_blocks(), pairs));
+    const FactorCost cost = factor_cost(BlockPattern(model.system.n_blocks(), pairs, model.kinematics));
     const bool unsymmetric_factors = scene.solver.tangent == Tangent::unsymmetric && !scene.solver.reuse;
     const double factor = (unsymmetric_factors ? 3.0 : 1.0) * cost.bytes;
     fmt::print("memory       about {:.3g} MB, of which the factor {:.3g} MB ({:.3g} flops by Cholesky's method)\n",

@@ -213,7 +213,7 @@ int main(int argc, char** argv) {
                "  kluft run models/triaxial/case-3-all.yaml -o results/case-3-all\n"
                "  kluft run models/triaxial/case-3-all.yaml --set cracks.update=all --set stages.1.steps=200\n"
                "  kluft draw results/case-3-all -o picture.png\n"
-                "  kluft compare results/case-3 results/case-3-all\n"
+               "  kluft compare results/case-3 results/case-3-all\n"
                "  kluft envelope results/case-5-all results/case-3-all results/case-4-all results/case-6-all\n"
                "  kluft validate incline overturning");
     Command command;

@@ -24,6 +24,7 @@
 #include "kluft/simulation/measurements.hpp"
 #include "kluft/simulation/simulation.hpp"
 #include "kluft/simulation/state_points.hpp"
+#include "kluft/simulation/strength_reduction.hpp"
 
 namespace kluft {
 
@@ -74,6 +75,7 @@ RunWriterOptions writer_options(const Scene& scene, const Model& model) {
     const int platen_stage = make_gauges(model).first_platen_stage;
     if (platen_stage >= 0) options.platen_stage = platen_stage;
     options.plane = scene.plane;
+    options.strength_factor = reduction_of(model.loads, 0) != nullptr;
     options.motion = scene.integrator == Integrator::explicit_;
     options.history_columns = history_columns(model);
     for (const Material& material : scene.materials) options.material_names.push_back(material.name);
@@ -85,6 +87,7 @@ RunOutcome outcome_of(const RunReport& report, const Model& model) {
     RunOutcome outcome;
     outcome.status = report.status;
     outcome.message = report.diagnosis;
+    outcome.factor_of_safety = report.factor_of_safety;
     outcome.motion = report.motion;
     outcome.open_close_iterations = report.costs.open_close_iterations;
     outcome.counts = {{"factorizations", report.costs.factorizations},
@@ -94,7 +97,7 @@ RunOutcome outcome_of(const RunReport& report, const Model& model) {
                       {"refinements", report.costs.refinements},
                       {"relaxations", report.costs.relaxations},
                       {"events", report.costs.events}};
-    outcome.unknowns = n_block_unknowns * model.system.n_blocks();
+    outcome.unknowns = unknowns_per_block(model.kinematics) * model.system.n_blocks();
     outcome.elapsed_s = report.costs.elapsed_s;
     outcome.version = std::string(version());
     outcome.seconds = {{"detection", seconds.detection},
@@ -131,6 +134,7 @@ std::string closing_line(const RunReport& report, const RunSummary& summary, con
                             100.0 * summary.numbers.peak_strain.value_or(0.0),
                             summary.numbers.peak_reached ? "" : " (still rising)");
     }
+    if (report.factor_of_safety) text += fmt::format(", factor of safety {:.6g}", *report.factor_of_safety);
     const std::string work = report.motion ? fmt::format("{} time steps", report.motion->time_steps)
                                            : fmt::format("{} solves", summary.numbers.open_close_iterations);
     text += fmt::format(", {} tension and {} shear cracks, {}, {:.1f} s; results in {}", summary.numbers.cracks_tension,
@@ -153,6 +157,10 @@ ExitCode simulate(const Model& model, const Scene& scene, State& state, RunWrite
     RunObserver observer(writer, quiet);
     const RunReport report = integrate(model, scene, state, observer);
     observer.clear();
+    for (const auto& warning : report.warnings) {
+        log.warning(warning);
+        if (!quiet) fmt::print(stderr, "warning: {}\n", warning);
+    }
     if (!report.diagnosis.empty()) {
         log.error(report.diagnosis);
         fmt::print(stderr, "{}\n", report.diagnosis);
@@ -185,7 +193,7 @@ ExitCode run(const RunArguments& arguments) {
                          "velocities to go on with");
     const SceneModel built = build_scene_model(scene);
     const Model& model = built.model;
-    const int unknowns = n_block_unknowns * model.system.n_blocks();
+    const int unknowns = unknowns_per_block(model.kinematics) * model.system.n_blocks();
     const bool one_thread = scene.solver.repeatable || unknowns < unknowns_worth_threads;
     if (one_thread) {
         set_blas_threads(1);

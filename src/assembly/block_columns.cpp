@@ -14,8 +14,6 @@ namespace kluft {
 
 namespace {
 
-constexpr int nu = n_block_unknowns;
-
 /// METIS's new position of each block.
 std::vector<int> nested_dissection(const BlockPattern& pattern) {
     const int n = pattern.n_blocks();
@@ -100,20 +98,21 @@ std::vector<int> elimination_order(const BlockPattern& pattern) {
     return position;
 }
 
-void permute(const std::vector<int>& position, const Eigen::VectorXd& natural, double* permuted) {
+void permute(const std::vector<int>& position, int nu, const Eigen::VectorXd& natural, double* permuted) {
     for (std::size_t b = 0; b < position.size(); ++b) {
         std::copy_n(natural.data() + nu * b, nu, permuted + static_cast<std::size_t>(nu) * position[b]);
     }
 }
 
-void unpermute(const std::vector<int>& position, const double* permuted, Eigen::VectorXd& natural) {
+void unpermute(const std::vector<int>& position, int nu, const double* permuted, Eigen::VectorXd& natural) {
     natural.resize(static_cast<Eigen::Index>(nu * position.size()));
     for (std::size_t b = 0; b < position.size(); ++b) {
         std::copy_n(permuted + static_cast<std::size_t>(nu) * position[b], nu, natural.data() + nu * b);
     }
 }
 
-BlockColumns::BlockColumns(const BlockPattern& pattern, const std::vector<int>& position, Part part) : part_(part) {
+BlockColumns::BlockColumns(const BlockPattern& pattern, const std::vector<int>& position, Part part)
+    : part_(part), nu_(pattern.block_unknowns()) {
     const int n = pattern.n_blocks();
     const auto block_at = inverse_of(position);
     sources_.reserve(part == Part::all ? pattern.n_entries() : (pattern.n_entries() + n) / 2);
@@ -132,10 +131,15 @@ BlockColumns::BlockColumns(const BlockPattern& pattern, const std::vector<int>& 
     }
 }
 
-std::int64_t BlockColumns::size() const { return nu * (static_cast<std::int64_t>(source_starts_.size()) - 1); }
+std::int64_t BlockColumns::size() const { return nu_ * (static_cast<std::int64_t>(source_starts_.size()) - 1); }
 
 void BlockColumns::gather_structure() {
     if (!rows_.empty()) return;
+    if (nu_ == n_rigid_unknowns) return gather_structure_of<n_rigid_unknowns>();
+    gather_structure_of<n_block_unknowns>();
+}
+
+template <int nu> void BlockColumns::gather_structure_of() {
     const int n = static_cast<int>(source_starts_.size()) - 1;
     starts_.reserve(static_cast<std::size_t>(nu) * n + 1);
     starts_.push_back(0);
@@ -153,6 +157,11 @@ void BlockColumns::gather_structure() {
 
 void BlockColumns::gather(const BlockMatrix& matrix) {
     gather_structure();
+    if (matrix.is_rigid()) return gather_entries<n_rigid_unknowns>(matrix.rigid_values);
+    gather_entries<n_block_unknowns>(matrix.values);
+}
+
+template <int nu, class Entries> void BlockColumns::gather_entries(const Entries& entries) {
     values_.resize(rows_.size());
     const int n = static_cast<int>(source_starts_.size()) - 1;
     double* value = values_.data();
@@ -160,7 +169,7 @@ void BlockColumns::gather(const BlockMatrix& matrix) {
         for (int j = 0; j < nu; ++j) {
             for (int k = source_starts_[p]; k < source_starts_[p + 1]; ++k) {
                 const int first = first_row(p, sources_[k], j);
-                value = std::copy_n(matrix.values[sources_[k].entry].data() + nu * j + first, nu - first, value);
+                value = std::copy_n(entries[sources_[k].entry].data() + nu * j + first, nu - first, value);
             }
         }
     }

@@ -18,16 +18,13 @@ constexpr double max_rank_factor = 3.0; ///< of sqrt(unknowns); the design's fig
 constexpr int max_corrections = 3;      ///< restarts of the refinement, whose recurrence drifts
 constexpr double safe_share = 0.5;      ///< of the goal, for the recurrence
 
-double frobenius_norm(const BlockMatrix& matrix) {
-    double sum = 0.0;
-    for (const Mat6& block : matrix.values) sum += block.squaredNorm();
-    return std::sqrt(sum);
-}
+double frobenius_norm(const BlockMatrix& matrix) { return std::sqrt(matrix.squared_norm()); }
 
 } // namespace
 
 struct LinearSolver::Backend {
     std::vector<int> position; ///< of each block in the elimination order
+    int nu = n_block_unknowns; ///< unknowns per block
     CholeskyFactor cholesky;
     LuFactor lu;
     LowRankUpdate changes;
@@ -53,22 +50,22 @@ struct LinearSolver::Backend {
     bool factorize() {
         ++statistics.factorizations;
         if (kind == Factorization::lu) return lu.factorize();
-        changes.start(cholesky, position);
+        changes.start(cholesky, position, nu);
         return cholesky.factorize(kind == Factorization::cholesky ? Precision::full : Precision::single);
     }
 
     void solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
         right_side.resize(b.size());
-        permute(position, b, right_side.data());
+        permute(position, nu, b, right_side.data());
         if (kind == Factorization::lu) {
             lu.solve(right_side, solution);
-            unpermute(position, solution.data(), x);
+            unpermute(position, nu, solution.data(), x);
             return;
         }
         cholesky.solve_lower(right_side);
         changes.apply(right_side);
         cholesky.solve_upper(right_side);
-        unpermute(position, right_side.data(), x);
+        unpermute(position, nu, right_side.data(), x);
     }
 };
 
@@ -80,6 +77,7 @@ void LinearSolver::analyze(const BlockPattern& pattern) {
     Backend& k = *backend_;
     const Stopwatch watch(k.statistics.analyze_seconds);
     k.position = elimination_order(pattern);
+    k.nu = pattern.block_unknowns();
     k.cholesky.analyze(pattern, k.position);
     k.lu.analyze(pattern, k.position);
     ++k.statistics.analyses;
@@ -109,7 +107,7 @@ bool LinearSolver::update(const std::vector<StiffnessChange>& changes) {
 }
 
 int LinearSolver::max_rank() const {
-    const auto unknowns = static_cast<double>(n_block_unknowns * backend_->position.size());
+    const auto unknowns = static_cast<double>(backend_->nu * backend_->position.size());
     return static_cast<int>(max_rank_factor * std::sqrt(unknowns));
 }
 

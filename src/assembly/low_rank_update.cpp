@@ -10,7 +10,6 @@ namespace kluft {
 
 namespace {
 
-constexpr int nu = n_block_unknowns;
 constexpr double least_pivot_ratio =
     1e-11; ///< of the small matrix: below, the changed stiffness is as good as singular
 
@@ -21,9 +20,10 @@ bool counts(const StiffnessChange& change, int row) {
 
 } // namespace
 
-void LowRankUpdate::start(const CholeskyFactor& factor, const std::vector<int>& position) {
+void LowRankUpdate::start(const CholeskyFactor& factor, const std::vector<int>& position, int nu) {
     factor_ = &factor;
     position_ = &position;
+    nu_ = nu;
     patches_.clear();
     batches_.clear();
     rank_ = 0;
@@ -50,7 +50,7 @@ bool LowRankUpdate::set(const std::vector<StiffnessChange>& changes) {
         const int start = std::min((*position_)[change.block_a], (*position_)[change.block_b]);
         for (int row = 0; row < change.n_rows; ++row) {
             if (known[row] < 0 && counts(change, row))
-                rows.push_back({factor_->supernode_of_column(nu * start), c, row});
+                rows.push_back({factor_->supernode_of_column(static_cast<std::int64_t>(nu_) * start), c, row});
         }
     }
     // Neighbours in the postorder share most of their paths.
@@ -105,8 +105,8 @@ void LowRankUpdate::append(const std::vector<StiffnessChange>& changes, const st
 
     batch.w.setZero(length, width);
     const auto place = [&](int block, const auto& row, int column) {
-        const std::int64_t at = static_cast<std::int64_t>(nu) * (*position_)[block];
-        for (int i = 0; i < nu; ++i) { // the unknowns of a block may be in two supernodes
+        const std::int64_t at = static_cast<std::int64_t>(nu_) * (*position_)[block];
+        for (int i = 0; i < nu_; ++i) { // the unknowns of a block may be in two supernodes
             const int k = factor_->supernode_of_column(at + i);
             batch.w(packed_of_[k] + static_cast<int>(at + i - factor_->supernode(k).first_column), column) += row[i];
         }

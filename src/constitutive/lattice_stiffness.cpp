@@ -96,6 +96,26 @@ LatticeModuli lattice_moduli(const ElasticModuli& blocks, const InterfaceStiffne
     return engineering_moduli(moduli_from(0.5 / bulk_compliance, 0.5 / shear_compliance), plane);
 }
 
+LatticeModuli rigid_lattice_moduli(const InterfaceStiffness& interfaces, double spacing, Plane plane) {
+    return engineering_moduli(
+        moduli_from(0.5 * spacing * interfaces.normal, 0.25 * spacing * (interfaces.normal + interfaces.shear)), plane);
+}
+
+InterfaceStiffness rigid_lattice_stiffness(double youngs_modulus_of_rock, double poissons_ratio_of_rock, Plane plane,
+                                           double spacing) {
+    const ElasticModuli rock = plane_moduli(youngs_modulus_of_rock, poissons_ratio_of_rock, plane);
+    const double normal = 2.0 * bulk_modulus(rock);
+    const double shear = 4.0 * rock.mu - normal;
+    if (!(shear > 1e-12 * normal))
+        throw InputError(fmt::format(
+            "poissons_ratio: {:g} is too large for hexagons of rigid blocks, whose interfaces would need a negative "
+            "shear stiffness; it must be less than {} in plane {}, or give the interfaces' stiffnesses, or take "
+            "kinematics: affine",
+            poissons_ratio_of_rock, plane == Plane::strain ? "1/4" : "1/3",
+            plane == Plane::strain ? "strain" : "stress"));
+    return {.normal = normal / spacing, .shear = shear / spacing};
+}
+
 double smallest_stiffness_ratio(double poissons_ratio_of_rock, Plane plane, double shear_ratio) {
     const ElasticModuli rock = plane_moduli(1.0, poissons_ratio_of_rock, plane);
     return std::max(2.0 * bulk_modulus(rock), 4.0 * rock.mu / (1.0 + shear_ratio));

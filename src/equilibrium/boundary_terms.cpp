@@ -1,5 +1,7 @@
 #include "kluft/equilibrium/boundary_terms.hpp"
 
+#include <vector>
+
 namespace kluft {
 
 void add_pressure_tangent(const PressureEdge& edge, double pressure, Mat6& diagonal) {
@@ -13,16 +15,29 @@ void add_pressure_tangent(const PressureEdge& edge, double pressure, Mat6& diago
     }
 }
 
+namespace {
+
+template <class Block>
+void project_block(const BlockPattern& pattern, int b, const Block& projector, double scale,
+                   std::vector<Block>& values) {
+    for (int entry = pattern.row_start(b); entry < pattern.row_start(b + 1); ++entry) {
+        Block& right = values[entry];
+        right = (projector * right).eval();
+        Block& below = values[pattern.find(pattern.column(entry), b)];
+        below = (below * projector).eval();
+    }
+    values[pattern.find(b, b)] += scale * (Block::Identity() - projector);
+}
+
+} // namespace
+
 void project(const Constraints& constraints, BlockMatrix& matrix, double scale) {
-    const BlockPattern& pattern = *matrix.pattern;
     for (const ConstrainedBlock& c : constraints.blocks()) {
-        for (int entry = pattern.row_start(c.block); entry < pattern.row_start(c.block + 1); ++entry) {
-            Mat6& right = matrix.values[entry];
-            right = (c.projector * right).eval();
-            Mat6& below = matrix.values[pattern.find(pattern.column(entry), c.block)];
-            below = (below * c.projector).eval();
+        if (matrix.is_rigid()) {
+            project_block(*matrix.pattern, c.block, c.rigid_projector, scale, matrix.rigid_values);
+        } else {
+            project_block(*matrix.pattern, c.block, c.projector, scale, matrix.values);
         }
-        matrix.values[pattern.find(c.block, c.block)] += scale * (Mat6::Identity() - c.projector);
     }
 }
 

@@ -111,6 +111,18 @@ Mat2 point_tangent(const EquilibriumProblem& problem, const ContactPoint& point,
     return kind == TangentKind::symmetric ? symmetric_tangent(traction) : traction.tangent;
 }
 
+/// Sums of magnitudes on the unknowns of rigid blocks.
+Eigen::VectorXd rigid_magnitudes(const BlockSystem& system, const Eigen::VectorXd& q,
+                                 const Eigen::VectorXd& magnitudes) {
+    Eigen::VectorXd reduced(n_rigid_unknowns * system.n_blocks());
+    for (int b = 0; b < system.n_blocks(); ++b) {
+        reduced.segment<n_rigid_unknowns>(n_rigid_unknowns * b) =
+            rigid_motion(q, b, system.blocks[b].size).cwiseAbs().transpose() *
+            magnitudes.segment<n_block_unknowns>(n_block_unknowns * b);
+    }
+    return reduced;
+}
+
 } // namespace
 
 Mat6 mass_matrix(const Block& block, double least_area) {
@@ -130,7 +142,9 @@ void EquilibriumEvaluator::residual(const Eigen::VectorXd& q, Residual& result) 
     body_forces(problem_, q, body_forces_);
     result.forces.swap(body_forces_.forces);
     if (!problem_.eta.empty()) add_mass_forces(q, result.forces);
-    result.force_scale = body_forces_.magnitudes.norm();
+    result.force_scale = problem_.kinematics == Kinematics::rigid
+                             ? rigid_magnitudes(*problem_.system, q, body_forces_.magnitudes).norm()
+                             : body_forces_.magnitudes.norm();
     result.roundoff = 64.0 * std::numeric_limits<double>::epsilon() * body_forces_.stiffest *
                       q.lpNorm<Eigen::Infinity>() * std::sqrt(static_cast<double>(q.size()));
 }
@@ -151,11 +165,40 @@ void EquilibriumEvaluator::tangent(const Eigen::VectorXd& q, TangentKind kind, B
     set_bond_tangents(matrix);
     add_block_tangents(q, kind, matrix);
     add_contact_tangents(q, kind, matrix);
-    if (kind != TangentKind::exact) return;
-    for (const PressureEdge& edge : problem_.pressure_edges) {
-        const double pressure = problem_.pressures[edge.boundary];
-        if (pressure == 0.0) continue;
-        add_pressure_tangent(edge, pressure, matrix.values[pattern_.diagonal(edge.block)]);
+    if (kind == TangentKind::exact) {
+        for (const PressureEdge& edge : problem_.pressure_edges) {
+            const double pressure = problem_.pressures[edge.boundary];
+            if (pressure == 0.0) continue;
+            add_pressure_tangent(edge, pressure, matrix.values[pattern_.diagonal(edge.block)]);
+        }
+    }
+    if (problem_.kinematics == Kinematics::rigid) reduce_to_rigid(q, kind, matrix);
+}
+
+/// d2q/dw2 = -R/h in the numbers of D: under compression the forces on D push a turning block on, and that part of the
+/// stiffness is negative; only the exact tangent has it.
+void EquilibriumEvaluator::reduce_to_rigid(const Eigen::VectorXd& q, TangentKind kind, BlockMatrix& matrix) const {
+    const BlockSystem& system = *problem_.system;
+    std::vector<Mat63> motions;
+    motions.reserve(system.blocks.size());
+    for (int b = 0; b < system.n_blocks(); ++b) motions.push_back(rigid_motion(q, b, system.blocks[b].size));
+    matrix.rigid_values.resize(matrix.values.size());
+    for (int row = 0; row < pattern_.n_blocks(); ++row) {
+        for (int entry = pattern_.row_start(row); entry < pattern_.row_start(row + 1); ++entry) {
+            matrix.rigid_values[entry].noalias() =
+                motions[row].transpose() * (matrix.values[entry] * motions[pattern_.column(entry)]);
+        }
+    }
+    BodyForces sum;
+    body_forces(problem_, q, sum);
+    if (!problem_.eta.empty()) add_mass_forces(q, sum.forces);
+    for (int b = 0; b < system.n_blocks(); ++b) {
+        const double size = system.blocks[b].size;
+        const Mat2 rotation = deformation_gradient(q, b, size);
+        const Eigen::Map<const Mat2> moments(sum.forces.data() + n_block_unknowns * b + 2);
+        const double curvature = -rotation.cwiseProduct(moments).sum() / size;
+        matrix.rigid_values[pattern_.diagonal(b)](2, 2) +=
+            kind == TangentKind::exact ? curvature : std::max(0.0, curvature);
     }
 }
 
@@ -165,6 +208,7 @@ void EquilibriumEvaluator::add_block_tangents(const Eigen::VectorXd& q, TangentK
         const Block& block = system.blocks[b];
         Mat6& diagonal = matrix.values[pattern_.diagonal(b)];
         if (!problem_.eta.empty()) diagonal += problem_.eta[b] * mass_matrix(block, problem_.least_mass_area);
+        if (problem_.kinematics == Kinematics::rigid) continue;
         diagonal.block<4, 4>(2, 2) += elastic_tangent(deformation_gradient(q, b, block.size),
                                                       (*problem_.moduli)[block.material], kind != TangentKind::exact);
     }
@@ -200,7 +244,13 @@ double viscous_force(const EquilibriumProblem& problem, const Eigen::VectorXd& q
     for (int b = 0; b < problem.system->n_blocks(); ++b) {
         const Vec6 moved = q.segment<n_block_unknowns>(n_block_unknowns * b) -
                            problem.start.segment<n_block_unknowns>(n_block_unknowns * b);
-        sum += (problem.eta[b] * mass_matrix(problem.system->blocks[b], problem.least_mass_area) * moved).squaredNorm();
+        const Block& block = problem.system->blocks[b];
+        if (problem.kinematics == Kinematics::rigid) {
+            const Vec6 force = problem.eta[b] * (mass_matrix(block, problem.least_mass_area) * moved);
+            sum += (rigid_motion(q, b, block.size).transpose() * force).squaredNorm();
+            continue;
+        }
+        sum += (problem.eta[b] * mass_matrix(block, problem.least_mass_area) * moved).squaredNorm();
     }
     return std::sqrt(sum);
 }

@@ -28,16 +28,20 @@ constexpr double relaxed_share = 0.2;                 ///< of the mass-like forc
 
 double typical_diagonal(const BlockMatrix& matrix) {
     const BlockPattern& pattern = *matrix.pattern;
-    double sum = 0.0;
-    for (int b = 0; b < pattern.n_blocks(); ++b) sum += matrix.values[pattern.find(b, b)].trace();
-    return sum / (n_block_unknowns * pattern.n_blocks());
+    return matrix.trace() / (pattern.block_unknowns() * pattern.n_blocks());
 }
 
-int largest_block(const Eigen::VectorXd& forces) {
+/// The square of the norm of a block's part of a vector with `nu` unknowns per block.
+double squared_norm(const Eigen::VectorXd& v, int nu, int b) {
+    if (nu == n_rigid_unknowns) return v.segment<n_rigid_unknowns>(n_rigid_unknowns * b).squaredNorm();
+    return v.segment<n_block_unknowns>(n_block_unknowns * b).squaredNorm();
+}
+
+int largest_block(const Eigen::VectorXd& forces, int nu) {
     int worst = 0;
     double largest = -1.0;
-    for (int b = 0; b < forces.size() / n_block_unknowns; ++b) {
-        const double size = forces.segment<n_block_unknowns>(n_block_unknowns * b).squaredNorm();
+    for (int b = 0; b < forces.size() / nu; ++b) {
+        const double size = squared_norm(forces, nu, b);
         if (size > largest) {
             largest = size;
             worst = b;
@@ -47,11 +51,11 @@ int largest_block(const Eigen::VectorXd& forces) {
 }
 
 /// The blocks that have a large part of the forces, or that limited the increment.
-std::vector<int> restless_blocks(const Eigen::VectorXd& forces, const std::vector<int>& limited) {
+std::vector<int> restless_blocks(const Eigen::VectorXd& forces, int nu, const std::vector<int>& limited) {
     std::vector<int> restless = limited;
     const double least = restless_share * forces.norm();
-    for (int b = 0; b < forces.size() / n_block_unknowns; ++b) {
-        if (forces.segment<n_block_unknowns>(n_block_unknowns * b).norm() >= least) restless.push_back(b);
+    for (int b = 0; b < forces.size() / nu; ++b) {
+        if (std::sqrt(squared_norm(forces, nu, b)) >= least) restless.push_back(b);
     }
     return restless;
 }
@@ -77,8 +81,8 @@ void OpenCloseSolver::keep_free_part(const EquilibriumProblem& problem, const Ei
 
 double OpenCloseSolver::slope_at(const EquilibriumProblem& problem, EquilibriumEvaluator& evaluator,
                                  const Eigen::VectorXd& q, double s) {
-    position_ = q + s * increment_;
-    evaluate(evaluator, position_, trial_);
+    move_to(problem, q, s);
+    evaluate(problem, evaluator, position_, trial_);
     keep_free_part(problem, position_, trial_.forces);
     return trial_.forces.dot(increment_);
 }
@@ -118,8 +122,8 @@ double OpenCloseSolver::step_by_halving(const EquilibriumProblem& problem, Equil
     double best_norm = -1.0;
     double s = 1.0;
     for (int i = 0; i < max_search_residuals; ++i, s *= 0.5) {
-        position_ = q + s * increment_;
-        evaluate(evaluator, position_, trial_);
+        move_to(problem, q, s);
+        evaluate(problem, evaluator, position_, trial_);
         keep_free_part(problem, position_, trial_.forces);
         const double norm = trial_.forces.norm();
         if (i == 0) full_step_forces_ = trial_.forces;
@@ -138,17 +142,41 @@ void OpenCloseSolver::limit_increment(const BlockSystem& system) {
     const double limit = options_.motion_limit * system.spacing;
     double largest = 0.0;
     for (int b = 0; b < system.n_blocks(); ++b) {
-        const auto block = increment_.segment<n_block_unknowns>(n_block_unknowns * b);
-        const double motion = std::max(block.head<2>().norm(), block.tail<4>().norm());
+        double motion = 0.0;
+        if (nu_ == n_rigid_unknowns) {
+            const auto block = increment_.segment<n_rigid_unknowns>(n_rigid_unknowns * b);
+            motion = std::max(block.head<2>().norm(), std::sqrt(2.0) * std::abs(block[2]));
+        } else {
+            const auto block = increment_.segment<n_block_unknowns>(n_block_unknowns * b);
+            motion = std::max(block.head<2>().norm(), block.tail<4>().norm());
+        }
         if (motion > limit) limited_.push_back(b);
         largest = std::max(largest, motion);
     }
     if (largest > limit) increment_ *= limit / largest;
 }
 
-void OpenCloseSolver::evaluate(EquilibriumEvaluator& evaluator, const Eigen::VectorXd& q, Residual& residual) {
+/// Forces on the unknowns, from those on the six numbers of each block.
+Eigen::VectorXd OpenCloseSolver::unknowns_of(const EquilibriumProblem& problem, const Eigen::VectorXd& q,
+                                             const Eigen::VectorXd& forces) const {
+    return nu_ == n_rigid_unknowns ? rigid_forces(*problem.system, q, forces) : forces;
+}
+
+/// position_ := q moved by s times the increment.
+void OpenCloseSolver::move_to(const EquilibriumProblem& problem, const Eigen::VectorXd& q, double s) {
+    if (nu_ != n_rigid_unknowns) {
+        position_ = q + s * increment_;
+        return;
+    }
+    position_ = q;
+    move_rigid(*problem.system, s * increment_, position_);
+}
+
+void OpenCloseSolver::evaluate(const EquilibriumProblem& problem, EquilibriumEvaluator& evaluator,
+                               const Eigen::VectorXd& q, Residual& residual) {
     const Stopwatch watch(assembly_seconds_);
     evaluator.residual(q, residual);
+    if (nu_ == n_rigid_unknowns) residual.forces = rigid_forces(*problem.system, q, residual.forces);
 }
 
 /// The tangent at q, with the prescribed motions taken out.
@@ -159,7 +187,7 @@ void OpenCloseSolver::assemble(const EquilibriumProblem& problem, EquilibriumEva
     if (problem.platen_force) {
         matrix_.multiply(travel_, travel_column_);
         matrix_.multiply_transposed(travel_, travel_row_);
-        travel_row_ -= problem.platen_force->stress * problem.platen_force->widening;
+        travel_row_ -= problem.platen_force->stress * unknowns_of(problem, q, problem.platen_force->widening);
         travel_column_ *= -1.0;
         problem.constraints.project(travel_column_);
     }
@@ -274,15 +302,16 @@ OpenCloseSummary OpenCloseSolver::solve(const EquilibriumProblem& problem, const
     const int max_iterations =
         relaxes ? std::min(relaxation_iterations, options_.max_iterations) : options_.max_iterations;
     EquilibriumEvaluator evaluator(problem, pattern);
+    nu_ = unknowns_per_block(problem.kinematics);
     OpenCloseSummary summary;
     full_step_forces_.resize(0);
     for (auto& blocks : restless_) blocks.clear();
     int short_steps = 0; // in succession
     double previous_norm = -1.0;
-    if (problem.platen_force) travel_ = problem.constraints.travel_motion(q.size());
+    if (problem.platen_force) travel_ = problem.constraints.travel_motion(nu_ * problem.system->n_blocks());
     Eigen::VectorXd free_forces;
     for (;;) {
-        evaluate(evaluator, q, residual_);
+        evaluate(problem, evaluator, q, residual_);
         problem.constraints.correction(q, prescribed_);
         free_forces = residual_.forces;
         keep_free_part(problem, q, free_forces);
@@ -295,7 +324,7 @@ OpenCloseSummary OpenCloseSolver::solve(const EquilibriumProblem& problem, const
             summary.termination = Termination::converged;
             return summary;
         }
-        summary.worst_block = largest_block(free_forces);
+        summary.worst_block = largest_block(free_forces, nu_);
         if (relaxes && held && summary.iterations > 0 && norm <= relaxed_share * viscous_force(problem, q)) {
             summary.termination = Termination::relaxed;
             return summary;
@@ -320,9 +349,13 @@ OpenCloseSummary OpenCloseSolver::solve(const EquilibriumProblem& problem, const
             s = slope < 0.0 && !stalls ? step_along_root(problem, evaluator, q, slope)
                                        : step_by_halving(problem, evaluator, q, norm);
         }
-        restless_[summary.iterations % restless_.size()] = restless_blocks(full_step_forces_, limited_);
+        restless_[summary.iterations % restless_.size()] = restless_blocks(full_step_forces_, nu_, limited_);
         short_steps = s < short_step ? short_steps + 1 : 0;
-        q += s * increment_;
+        if (nu_ == n_rigid_unknowns) {
+            move_rigid(*problem.system, s * increment_, q);
+        } else {
+            q += s * increment_;
+        }
         previous_norm = norm;
     }
 }

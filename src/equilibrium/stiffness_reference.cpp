@@ -14,13 +14,23 @@ namespace {
 constexpr double least_change = 0.02;     ///< of the largest stiffness of the patch
 constexpr double least_mass_change = 0.2; ///< of the block's stiffness
 
-void set_rows(const ContactPoint& point, const Constraints& constraints, int first, StiffnessChange& change) {
+/// A row over the unknowns of a block, in the free motions; that of a rigid block in the first three places.
+void make_free(const EquilibriumProblem& problem, const Eigen::VectorXd& q, int block, Vec6& row) {
+    if (problem.kinematics == Kinematics::rigid) {
+        const Vec3 reduced = rigid_motion(q, block, problem.system->blocks[block].size).transpose() * row;
+        row << reduced, 0.0, 0.0, 0.0;
+    }
+    problem.constraints.project(block, row);
+}
+
+void set_rows(const EquilibriumProblem& problem, const Eigen::VectorXd& q, const ContactPoint& point, int first,
+              StiffnessChange& change) {
     const std::array<Vec2, 2> directions{point.normal, point.tangent};
     for (int i = 0; i < 2; ++i) {
         Vec6 on_a = -displacement_row(directions[i], point.xi_a);
         Vec6 on_b = displacement_row(directions[i], point.xi_b);
-        constraints.project(point.block_a, on_a);
-        constraints.project(point.block_b, on_b);
+        make_free(problem, q, point.block_a, on_a);
+        make_free(problem, q, point.block_b, on_b);
         change.rows_a.row(first + i) = on_a;
         change.rows_b.row(first + i) = on_b;
     }
@@ -59,11 +69,11 @@ void StiffnessReference::collect(const EquilibriumProblem& problem, const Eigen:
         patch.scale += point.weight * (*problem.laws)[point.law].normal_stiffness;
         const Mat2 stiffness = point.weight * symmetric_tangent(contact_traction(problem, i, q));
         if (point.key.point < 0) {
-            set_rows(point, problem.constraints, 0, patch.change);
+            set_rows(problem, q, point, 0, patch.change);
             patch.change.stiffness.topLeftCorner<2, 2>() += stiffness;
             continue;
         }
-        if (point.key.point != 1) set_rows(point, problem.constraints, point.key.point, patch.change);
+        if (point.key.point != 1) set_rows(problem, q, point, point.key.point, patch.change);
         add_at(overlap_positions[point.key.point], stiffness, patch.change.stiffness);
     }
 }
@@ -71,10 +81,15 @@ void StiffnessReference::collect(const EquilibriumProblem& problem, const Eigen:
 void StiffnessReference::take(const EquilibriumProblem& problem, const Eigen::VectorXd& q, const BlockMatrix& tangent) {
     taken_ = true;
     eta_ = problem.eta;
-    diagonal_.resize(q.size());
+    const int nu = tangent.pattern->block_unknowns();
+    diagonal_.resize(nu * tangent.pattern->n_blocks());
     for (int b = 0; b < tangent.pattern->n_blocks(); ++b) {
-        diagonal_.segment<n_block_unknowns>(n_block_unknowns * b) =
-            tangent.values[tangent.pattern->diagonal(b)].diagonal();
+        const int entry = tangent.pattern->diagonal(b);
+        if (tangent.is_rigid()) {
+            diagonal_.segment(nu * b, nu) = tangent.rigid_values[entry].diagonal();
+        } else {
+            diagonal_.segment(nu * b, nu) = tangent.values[entry].diagonal();
+        }
     }
     collect(problem, q, reference_);
     bonded_.clear();
@@ -130,19 +145,26 @@ const std::vector<StiffnessChange>& StiffnessReference::changes(const Equilibriu
         }
     }
     for (; before != reference_.end(); ++before) keep(*before, -before->change.stiffness, before->scale);
-    add_masses(problem);
+    add_masses(problem, q);
     return changes_;
 }
 
 /// Relaxation changes eta by powers of four on single blocks. A loose block has no other stiffness.
-void StiffnessReference::add_masses(const EquilibriumProblem& problem) {
+void StiffnessReference::add_masses(const EquilibriumProblem& problem, const Eigen::VectorXd& q) {
+    const bool rigid = problem.kinematics == Kinematics::rigid;
+    const int nu = unknowns_per_block(problem.kinematics);
     const auto eta_at = [](const std::vector<double>& eta, int b) { return eta.empty() ? 0.0 : eta[b]; };
     for (int b = 0; b < problem.system->n_blocks(); ++b) {
         const double change = eta_at(problem.eta, b) - eta_at(eta_, b);
         if (change == 0.0) continue;
-        const Mat6 mass = change * mass_matrix(problem.system->blocks[b], problem.least_mass_area);
-        const auto diagonal = diagonal_.segment<n_block_unknowns>(n_block_unknowns * b);
-        for (const auto& [first, n] : {std::pair{0, 2}, std::pair{2, 4}}) { // u and D
+        const Block& block = problem.system->blocks[b];
+        Mat6 mass = change * mass_matrix(block, problem.least_mass_area);
+        if (rigid) {
+            const Mat63 motion = rigid_motion(q, b, block.size);
+            mass.topLeftCorner<n_rigid_unknowns, n_rigid_unknowns>() = (motion.transpose() * mass * motion).eval();
+        }
+        const auto diagonal = diagonal_.segment(nu * b, nu);
+        for (const auto& [first, n] : {std::pair{0, 2}, std::pair{2, nu - 2}}) { // u, and D or w
             const auto stiffness = mass.block(first, first, n, n);
             const auto share = stiffness.diagonal().cwiseQuotient(diagonal.segment(first, n)).cwiseAbs();
             if (share.maxCoeff() <= least_mass_change) continue;

@@ -14,6 +14,19 @@ namespace {
 /// Rows of a block whose singular values are below this part of the largest are taken as dependent.
 constexpr double rank_tolerance = 1e-8;
 
+/// Projector onto the null space of the rows of `matrix`, and its pseudo-inverse.
+template <int n>
+void decompose(const Eigen::MatrixXd& matrix, Eigen::Matrix<double, n, n>& projector,
+               Eigen::Matrix<double, n, Eigen::Dynamic>& inverse) {
+    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(matrix, Eigen::ComputeThinU | Eigen::ComputeFullV);
+    const auto& singular = svd.singularValues();
+    const auto rank = (singular.array() > rank_tolerance * singular[0]).count();
+    const Eigen::MatrixXd range = svd.matrixV().leftCols(rank);
+    projector.setZero(); // exactly, where nothing is left free
+    if (rank < n) projector = Eigen::Matrix<double, n, n>::Identity() - range * range.transpose();
+    inverse = range * singular.head(rank).cwiseInverse().asDiagonal() * svd.matrixU().leftCols(rank).transpose();
+}
+
 } // namespace
 
 std::vector<PressureEdge> pressure_edges(const BlockSystem& system, int boundary) {
@@ -43,20 +56,30 @@ Constraints::Constraints(std::vector<PrescribedDisplacement> rows) : rows_(std::
             const auto& row = rows_[indices[i]];
             matrix.row(i) = displacement_row(row.direction, row.xi).transpose();
         }
-        const Eigen::JacobiSVD<Eigen::MatrixXd> svd(matrix, Eigen::ComputeThinU | Eigen::ComputeFullV);
-        const auto& singular = svd.singularValues();
-        const auto rank = (singular.array() > rank_tolerance * singular[0]).count();
-        const Eigen::MatrixXd range = svd.matrixV().leftCols(rank);
-        ConstrainedBlock constrained{block, indices, Mat6::Zero(), {}};
-        if (rank < n_block_unknowns) constrained.projector = Mat6::Identity() - range * range.transpose();
-        constrained.inverse =
-            range * singular.head(rank).cwiseInverse().asDiagonal() * svd.matrixU().leftCols(rank).transpose();
-        blocks_.push_back(std::move(constrained));
+        ConstrainedBlock& constrained = blocks_.emplace_back();
+        constrained.block = block;
+        constrained.rows = indices;
+        decompose<n_block_unknowns>(matrix, constrained.projector, constrained.inverse);
+    }
+}
+
+Constraints::Constraints(std::vector<PrescribedDisplacement> rows, const BlockSystem& system, const Eigen::VectorXd& q)
+    : Constraints(std::move(rows)) {
+    kinematics_ = Kinematics::rigid;
+    for (ConstrainedBlock& c : blocks_) {
+        c.motion = rigid_motion(q, c.block, system.blocks[c.block].size);
+        Eigen::MatrixXd matrix(c.rows.size(), n_rigid_unknowns);
+        for (std::size_t i = 0; i < c.rows.size(); ++i) {
+            const auto& row = rows_[c.rows[i]];
+            matrix.row(i) = displacement_row(row.direction, row.xi).transpose() * c.motion;
+        }
+        decompose<n_rigid_unknowns>(matrix, c.rigid_projector, c.rigid_inverse);
     }
 }
 
 void Constraints::correction(const Eigen::VectorXd& q, Eigen::VectorXd& dq) const {
-    dq.setZero(q.size());
+    const bool rigid = kinematics_ == Kinematics::rigid;
+    dq.setZero(rigid ? q.size() / n_block_unknowns * n_rigid_unknowns : q.size());
     const auto missing_at = [&](const PrescribedDisplacement& row) {
         return row.target - row.direction.dot(displacement_at(q, row.block, row.xi));
     };
@@ -73,7 +96,11 @@ void Constraints::correction(const Eigen::VectorXd& q, Eigen::VectorXd& dq) cons
             const auto& row = rows_[c.rows[i]];
             missing[i] = missing_at(row) + row.rate * travel;
         }
-        dq.segment<n_block_unknowns>(n_block_unknowns * c.block) = c.inverse * missing;
+        if (rigid) {
+            dq.segment<n_rigid_unknowns>(n_rigid_unknowns * c.block) = c.rigid_inverse * missing;
+        } else {
+            dq.segment<n_block_unknowns>(n_block_unknowns * c.block) = c.inverse * missing;
+        }
     }
 }
 
@@ -82,13 +109,22 @@ Eigen::VectorXd Constraints::travel_motion(Eigen::Index n) const {
     for (const ConstrainedBlock& c : blocks_) {
         Eigen::VectorXd rates(c.rows.size());
         for (std::size_t i = 0; i < c.rows.size(); ++i) rates[i] = rows_[c.rows[i]].rate;
-        motion.segment<n_block_unknowns>(n_block_unknowns * c.block) = c.inverse * rates;
+        if (kinematics_ == Kinematics::rigid) {
+            motion.segment<n_rigid_unknowns>(n_rigid_unknowns * c.block) = c.rigid_inverse * rates;
+        } else {
+            motion.segment<n_block_unknowns>(n_block_unknowns * c.block) = c.inverse * rates;
+        }
     }
     return motion;
 }
 
 void Constraints::project(Eigen::VectorXd& v) const {
     for (const ConstrainedBlock& c : blocks_) {
+        if (kinematics_ == Kinematics::rigid) {
+            auto segment = v.segment<n_rigid_unknowns>(n_rigid_unknowns * c.block);
+            segment = (c.rigid_projector * segment).eval();
+            continue;
+        }
         auto segment = v.segment<n_block_unknowns>(n_block_unknowns * c.block);
         segment = (c.projector * segment).eval();
     }
@@ -96,17 +132,38 @@ void Constraints::project(Eigen::VectorXd& v) const {
 
 void Constraints::project(int block, Vec6& v) const {
     const auto at = std::ranges::lower_bound(blocks_, block, {}, &ConstrainedBlock::block);
-    if (at != blocks_.end() && at->block == block) v = (at->projector * v).eval();
+    if (at == blocks_.end() || at->block != block) return;
+    if (kinematics_ == Kinematics::rigid) {
+        v.head<n_rigid_unknowns>() = (at->rigid_projector * v.head<n_rigid_unknowns>()).eval();
+    } else {
+        v = (at->projector * v).eval();
+    }
+}
+
+/// The force along each row that the support exerts.
+Eigen::VectorXd Constraints::multipliers(const ConstrainedBlock& c, const Eigen::VectorXd& residual) const {
+    const auto forces = residual.segment<n_block_unknowns>(n_block_unknowns * c.block);
+    if (kinematics_ == Kinematics::rigid) return c.rigid_inverse.transpose() * (c.motion.transpose() * forces);
+    return c.inverse.transpose() * forces;
+}
+
+void Constraints::add_reactions(Eigen::VectorXd& residual) const {
+    for (const ConstrainedBlock& c : blocks_) {
+        const Eigen::VectorXd along = multipliers(c, residual);
+        for (std::size_t i = 0; i < c.rows.size(); ++i) {
+            const auto& row = rows_[c.rows[i]];
+            add_force(residual, c.block, row.xi, -along[i] * row.direction);
+        }
+    }
 }
 
 Vec2 Constraints::reaction(const Eigen::VectorXd& residual, int boundary) const {
     Vec2 sum = Vec2::Zero();
     for (const ConstrainedBlock& c : blocks_) {
-        const Eigen::VectorXd multipliers =
-            c.inverse.transpose() * residual.segment<n_block_unknowns>(n_block_unknowns * c.block);
+        const Eigen::VectorXd along = multipliers(c, residual);
         for (std::size_t i = 0; i < c.rows.size(); ++i) {
             const auto& row = rows_[c.rows[i]];
-            if (row.boundary == boundary) sum += multipliers[i] * row.direction;
+            if (row.boundary == boundary) sum += along[i] * row.direction;
         }
     }
     return sum;

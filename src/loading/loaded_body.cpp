@@ -38,13 +38,15 @@ public:
         const BlockSystem& system = *body.system;
         for (int b = 0; b < system.n_blocks(); ++b) {
             const Block& block = system.blocks[b];
-            const ElasticModuli& moduli = (*body.moduli)[block.material];
-            const Mat2 force = block.size * stress_of_gradient(displacement_gradient(q, b, block.size), moduli);
-            const Eigen::Map<const Eigen::Vector4d> columns(force.data());
-            result_.forces.segment<4>(n_block_unknowns * b + 2) += columns;
-            if constexpr (with_magnitudes)
-                result_.magnitudes.segment<4>(n_block_unknowns * b + 2) += columns.cwiseAbs();
-            raise_stiffest(2.0 * moduli.mu + moduli.lambda);
+            if (body.kinematics == Kinematics::affine) {
+                const ElasticModuli& moduli = (*body.moduli)[block.material];
+                const Mat2 force = block.size * stress_of_gradient(displacement_gradient(q, b, block.size), moduli);
+                const Eigen::Map<const Eigen::Vector4d> columns(force.data());
+                result_.forces.segment<4>(n_block_unknowns * b + 2) += columns;
+                if constexpr (with_magnitudes)
+                    result_.magnitudes.segment<4>(n_block_unknowns * b + 2) += columns.cwiseAbs();
+                raise_stiffest(2.0 * moduli.mu + moduli.lambda);
+            }
             if (!body.densities.empty()) {
                 const Vec2 weight = weight_of(body, b);
                 result_.forces.segment<2>(n_block_unknowns * b) -= weight;
@@ -143,6 +145,23 @@ std::vector<Mat2> block_stresses(const BlockSystem& system, const std::vector<El
     for (int b = 0; b < system.n_blocks(); ++b) {
         const Block& block = system.blocks[b];
         stresses.push_back(cauchy_stress(deformation_gradient(q, b, block.size), moduli[block.material]));
+    }
+    return stresses;
+}
+
+/// The forces on D of a block add up to -h P of a stress that would balance them, and sigma = P R' for a rigid block.
+std::vector<Mat2> block_stresses(const LoadedBody& body, const Eigen::VectorXd& q) {
+    if (body.kinematics == Kinematics::affine) return block_stresses(*body.system, *body.moduli, q);
+    BodyForces sum;
+    body_forces(body, q, sum);
+    body.constraints.add_reactions(sum.forces);
+    std::vector<Mat2> stresses;
+    stresses.reserve(body.system->blocks.size());
+    for (int b = 0; b < body.system->n_blocks(); ++b) {
+        const double size = body.system->blocks[b].size;
+        const Eigen::Map<const Mat2> moments(sum.forces.data() + n_block_unknowns * b + 2);
+        const Mat2 stress = -moments * deformation_gradient(q, b, size).transpose() / size;
+        stresses.push_back(0.5 * (stress + stress.transpose()));
     }
     return stresses;
 }

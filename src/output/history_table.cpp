@@ -188,7 +188,9 @@ std::string history_header() { return header_of<StepRecord>(); }
 std::string motion_header() { return header_of<MotionRecord>(); }
 std::string cracks_header() { return header_of<CrackRecord>(); }
 std::string table_row(const StepRecord& record) {
-    return record.motion ? row_of(record) + ',' + row_of(*record.motion) : row_of(record);
+    std::string row = row_of(record);
+    if (record.strength_factor) row += ',' + cell(*record.strength_factor);
+    return record.motion ? row + ',' + row_of(*record.motion) : row;
 }
 std::string table_row(const CrackRecord& crack) { return row_of(crack); }
 std::string histories_header(const std::vector<std::string>& columns) {

@@ -100,7 +100,9 @@ RunWriter::RunWriter(fs::path directory, const BlockSystem& system, RunWriterOpt
     const fs::path cracks = directory_ / "cracks.csv";
     const fs::path histories = directory_ / "histories.csv";
     const std::string histories_columns = histories_header(options_.history_columns);
-    const std::string header = options_.motion ? history_header() + ',' + motion_header() : history_header();
+    std::string header = history_header();
+    if (options_.strength_factor) header += ",strength_factor";
+    if (options_.motion) header += ',' + motion_header();
     if (options_.resumed_step) {
         const int last = *options_.resumed_step;
         remove_results_but_tables_and_state(directory_);
@@ -195,6 +197,7 @@ RunSummary RunWriter::summary_of(const RunOutcome& outcome) const {
     summary.version = outcome.version;
     summary.seconds = outcome.seconds;
     summary.message = outcome.message;
+    summary.factor_of_safety = outcome.factor_of_safety;
     summary.motion = outcome.motion;
     return summary;
 }

@@ -189,6 +189,7 @@ RunSummary summary_in(const Json& json) {
     for (const auto& [stage, seconds] : json.at("seconds").items())
         summary.seconds[stage] = seconds.is_null() ? 0.0 : seconds.get<double>();
     json.at("message").get_to(summary.message);
+    if (json.contains("factor_of_safety")) summary.factor_of_safety = optional_number(json, "factor_of_safety");
     if (json.value("integrator", "implicit") == "explicit") {
         summary.motion =
             MotionReport{json.at("time_steps").get<long>(), optional_number(json, "time_step").value_or(0.0),
@@ -251,6 +252,7 @@ std::string summary_json(const RunSummary& summary) {
     json["poissons_ratio"] = number(numbers.poissons_ratio);
     json["axial_modulus"] = number(numbers.axial_modulus);
     json["lateral_ratio"] = number(numbers.lateral_ratio);
+    json["factor_of_safety"] = number(summary.factor_of_safety);
     json["cracks_tension"] = numbers.cracks_tension;
     json["cracks_shear"] = numbers.cracks_shear;
     json["blocks"] = summary.blocks;

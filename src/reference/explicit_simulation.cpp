@@ -246,8 +246,8 @@ private:
     // ---- cracks ----------------------------------------------------------------------------------------------
 
     void break_bonds() {
-        const auto broken = chosen_to_fail(
-            cracks_, check_cracks(course_, cracks_.criterion, bonded_, motion_.body(), motion_.displacement()));
+        const auto broken = chosen_to_fail(cracks_, check_cracks(course_, cracks_.criterion, bonded_, model_.strengths,
+                                                                 motion_.body(), motion_.displacement()));
         if (broken.empty()) return;
         if (!std::isfinite(motion_.unbalanced_force())) return; // watch_motion ends the run
         keep_state();

@@ -20,9 +20,10 @@ constexpr std::array<std::string_view, 3> platen_keys{"displacement", "strain", 
 
 class LoadReader {
 public:
-    LoadReader(const std::vector<std::string>& boundaries, const std::vector<std::string>& blocks, bool has_gravity,
-               ReadingContext& context)
-        : boundaries_(boundaries), blocks_(blocks), context_(context), has_gravity_(has_gravity) {}
+    LoadReader(const std::vector<std::string>& boundaries, const std::vector<std::string>& blocks,
+               const std::vector<std::string>& interfaces, bool has_gravity, ReadingContext& context)
+        : boundaries_(boundaries), blocks_(blocks), interfaces_(interfaces), context_(context),
+          has_gravity_(has_gravity) {}
 
     void read_supports(const std::vector<SceneSection>& sections) {
         loads_.supports.assign(boundaries_.size(), Support::none);
@@ -42,6 +43,11 @@ public:
         has_gravity_ = has_gravity_ || stage.gravity.has_value();
         for (const auto& force : section.sections("forces")) read_force(force, stage);
         read_platen(section, stage);
+        if (section.has("strength_reduction")) {
+            read_strength_reduction(section, stage);
+            loads_.stages.push_back(std::move(stage));
+            return;
+        }
         const bool has_platen =
             std::any_of(platen_keys.begin(), platen_keys.end(), [&](auto key) { return section.has(key); });
         const bool has_pressure = section.has("pressure") && !section.value("pressure")->items.empty();
@@ -113,6 +119,32 @@ private:
         }
     }
 
+    /// The loads stay: it is not the first stage, and has none of its own.
+    void read_strength_reduction(const SceneSection& stage_section, Stage& stage) {
+        const auto section = stage_section.section("strength_reduction");
+        StrengthReduction reduction;
+        reduction.from = section.number("from");
+        reduction.to = section.number("to");
+        reduction.tolerance = section.number("tolerance");
+        if (section.has("to") && !(reduction.to > reduction.from))
+            context_.fail(section, "to", fmt::format("expected a number > from ({:g})", reduction.from));
+        if (const SceneNode* names = section.value("interfaces"); names != nullptr && names->is_list()) {
+            for (const SceneNode& name : names->items) {
+                if (!name.is_scalar()) continue;
+                const auto type = context_.index_of(section, "interfaces", name.text, interfaces_, "an interface");
+                if (type) reduction.interface_types.push_back(*type);
+            }
+        }
+        if (loads_.stages.empty())
+            context_.fail(stage_section, "strength_reduction",
+                          "expected a stage before it that brings up the loads, found the first stage");
+        for (const auto key : {"pressure", "displacement", "strain", "stress", "forces", "gravity"})
+            if (stage_section.has(key))
+                context_.fail(stage_section, key,
+                              "expected no load in a stage with a strength_reduction, in which loads stay");
+        stage.strength_reduction = std::move(reduction);
+    }
+
     void check_platen(const SceneSection& platen, const std::string& name, const Stage& stage) {
         if (stage.pressure.contains(stage.motion->boundary))
             context_.fail(platen, "boundary",
@@ -123,6 +155,7 @@ private:
 
     const std::vector<std::string>& boundaries_;
     const std::vector<std::string>& blocks_;
+    const std::vector<std::string>& interfaces_;
     ReadingContext& context_;
     bool has_gravity_; ///< in the analysis or a stage so far
     LoadProgram loads_;
@@ -131,8 +164,9 @@ private:
 } // namespace
 
 LoadProgram read_loads(const SceneSection& root, const std::vector<std::string>& boundaries,
-                       const std::vector<std::string>& blocks, bool has_gravity, ReadingContext& context) {
-    LoadReader reader(boundaries, blocks, has_gravity, context);
+                       const std::vector<std::string>& blocks, const std::vector<std::string>& interfaces,
+                       bool has_gravity, ReadingContext& context) {
+    LoadReader reader(boundaries, blocks, interfaces, has_gravity, context);
     reader.read_supports(root.sections("boundaries"));
     for (const auto& section : root.sections("stages")) reader.read_stage(section);
     return reader.take();

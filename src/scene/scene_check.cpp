@@ -57,11 +57,7 @@ std::string integer_problem(const SceneNode& node, const Range& range) {
 }
 
 std::string choice_problem(const SceneNode& node, const KeyRule& rule) {
-    const auto is_in = [&](const auto& names) {
-        return std::find(names.begin(), names.end(), node.text) != names.end();
-    };
-    if (is_in(rule.choices)) return {};
-    if (is_in(rule.unavailable)) return found_text(node) + ", which is not available in this version";
+    if (std::find(rule.choices.begin(), rule.choices.end(), node.text) != rule.choices.end()) return {};
     return found_text(node) + suggestion(node.text, rule.choices);
 }
 

@@ -8,6 +8,7 @@ SceneModel build_scene_model(const Scene& scene) {
     CutBody body = cut_blocks(scene.geometry);
     ModelInput input;
     input.plane = scene.plane;
+    input.kinematics = scene.kinematics;
     input.gravity = {scene.gravity_x, scene.gravity_y};
     input.materials = scene.materials;
     input.interface_types = scene.interface_types;

@@ -25,6 +25,7 @@ namespace {
 void read_analysis(const SceneSection& root, Scene& scene) {
     const auto analysis = root.section("analysis");
     scene.plane = static_cast<Plane>(analysis.choice("plane"));
+    scene.kinematics = static_cast<Kinematics>(analysis.choice("kinematics"));
     const Vec2 gravity = analysis.given_gravity("gravity").value_or(Vec2::Zero());
     scene.gravity_x = gravity.x();
     scene.gravity_y = gravity.y();
@@ -41,6 +42,8 @@ void read_integrator(const SceneSection& root, Scene& scene, ReadingContext& con
                 context.fail(analysis, key, "expected integrator: explicit beside it, found integrator: implicit");
         return;
     }
+    if (scene.kinematics == Kinematics::rigid)
+        context.fail(analysis, "kinematics", "expected affine beside integrator: explicit, found rigid");
     ExplicitOptions& options = scene.explicit_options;
     options.damping = analysis.number("damping");
     options.density_scaling = static_cast<DensityScaling>(analysis.choice("density_scaling"));
@@ -51,6 +54,15 @@ void read_integrator(const SceneSection& root, Scene& scene, ReadingContext& con
         if (!(section.given_number("density").value_or(0.0) > 0.0))
             context.fail(section, "density",
                          "expected a number > 0 in kg/m3 because of density_scaling: none, found none");
+}
+
+/// A factor of safety is sought between equilibria.
+void refuse_explicit_reduction(const SceneSection& root, const Scene& scene, ReadingContext& context) {
+    if (scene.integrator == Integrator::implicit) return;
+    for (const auto& stage : root.sections("stages"))
+        if (stage.has("strength_reduction"))
+            context.fail(stage, "strength_reduction",
+                         "expected integrator: implicit beside it, found integrator: explicit");
 }
 
 CrackOptions read_crack_options(const SceneSection& section) {
@@ -183,8 +195,9 @@ Scene convert(const SceneSection& root, ReadingContext& context) {
     scene.materials = read_materials(root, context);
     scene.interface_types = read_interface_types(root, context);
     scene.geometry = read_geometry(root, names_of(scene.materials), names_of(scene.interface_types), context);
-    scene.loads =
-        read_loads(root, names_of(scene.geometry.boundaries), block_names(scene.geometry), has_gravity(scene), context);
+    scene.loads = read_loads(root, names_of(scene.geometry.boundaries), block_names(scene.geometry),
+                             names_of(scene.interface_types), has_gravity(scene), context);
+    refuse_explicit_reduction(root, scene, context);
     scene.cracks = read_crack_options(root.section("cracks"));
     scene.solver = read_solver_options(root.section("solver"));
     scene.output = read_output_options(root.section("output"));

@@ -64,10 +64,14 @@ std::vector<KeyRule> analysis_rules() {
                 "effect."},
         {.path = "analysis.kinematics",
          .type = KeyType::choice,
-         .choices = {"affine"},
-         .unavailable = {"rigid"},
+         .choices = {"affine", "rigid"},
          .fallback = "affine",
-         .doc = "How a block moves and deforms: `affine` is six unknowns. Only `affine` in this version."},
+         .doc = "How a block moves and deforms: `affine` is six unknowns with a uniform strain, `rigid` three (two "
+                "displacements and a rotation of any size). The compliance of rigid blocks is that of their "
+                "interfaces: where those of the hexagons have no stiffness key, k_n d = 2K and k_s d = 4G - 2K give "
+                "the body the rock's `youngs_modulus` and `poissons_ratio` (less than 1/4 in plane strain, 1/3 in "
+                "plane stress), and `stiffness_ratio` and `shear_ratio` are not accepted there. Block stresses, also "
+                "for the potential cracks, follow from the forces on the block. For `integrator: implicit` only."},
         {.path = "analysis.gravity",
          .type = KeyType::gravity,
          .measure = Measure::acceleration,
@@ -463,7 +467,7 @@ std::vector<KeyRule> loading_rules() {
                 "compression (inward) and grow linearly over the steps of a stage."},
         {.path = "stages.#",
          .type = KeyType::mapping,
-         .doc = "One stage: pressures, forces, gravity and a platen, or some of them."},
+         .doc = "One stage: pressures, forces, gravity and a platen, or some of them; or a reduction of strengths."},
         {.path = "stages.#.name",
          .type = KeyType::text,
          .fallback_note = "`stage 0`, `stage 1`, ...",
@@ -531,6 +535,40 @@ std::vector<KeyRule> loading_rules() {
          .choices = {"smooth", "rough"},
          .fallback = "smooth",
          .doc = "`smooth` platens leave the tangential motion free, to `rough` ones the body sticks."},
+        {.path = "stages.#.strength_reduction",
+         .type = KeyType::mapping,
+         .doc = "Seeks the factor of safety. Loads stay; tan(phi) and cohesion of fractures, and of the strength of "
+                "potential cracks, are divided by a factor that grows over the steps of the stage. Where a step finds "
+                "no equilibrium, the factor between the last one that stands and the first one that does not is found "
+                "by halving, and the run ends (`collapsed`, exit 0) with `factor_of_safety` in summary.json: null, "
+                "with a warning, if the body stands at `to`. Tensile strengths stay; dilation is cut to the friction "
+                "that is left. Not in the first stage, and for `integrator: implicit` only. `solver.balance` is at "
+                "most a tenth, `solver.tolerance` a hundredth of its tolerance here."},
+        {.path = "stages.#.strength_reduction.from",
+         .type = KeyType::number,
+         .range = positive,
+         .fallback = "1",
+         .doc = "Factor at the start of the stage, and in the stages before it (since an earlier reduction). Less than "
+                "1 strengthens: for bodies that would not stand under their loads."},
+        {.path = "stages.#.strength_reduction.to",
+         .type = KeyType::number,
+         .range = positive,
+         .required = true,
+         .doc = "Factor at the end of the stage, more than `from`."},
+        {.path = "stages.#.strength_reduction.tolerance",
+         .type = KeyType::number,
+         .range = between_zero_and_one,
+         .fallback = "1e-4",
+         .doc = "Of the factor of safety, relative."},
+        {.path = "stages.#.strength_reduction.interfaces",
+         .type = KeyType::list,
+         .fallback_note = "all",
+         .least_items = 1,
+         .doc = "Interfaces whose strengths are divided."},
+        {.path = "stages.#.strength_reduction.interfaces.#",
+         .type = KeyType::text,
+         .required = true,
+         .doc = "Name of an interface."},
         {.path = "stages.#.steps",
          .type = KeyType::integer,
          .range = positive_integer,

@@ -159,7 +159,7 @@ FieldRecord field_record(const Model& model, const State& state, const LoadedBod
     const BlockSystem& system = model.system;
     const Eigen::VectorXd& q = state.displacement;
     FieldRecord fields;
-    fields.stress = block_stresses(system, model.moduli, q);
+    fields.stress = block_stresses(body, q);
     for (int b = 0; b < system.n_blocks(); ++b) {
         for (const Edge& edge : system.blocks[b].edges) {
             const Vec2 xi = block_coordinates(system.blocks[b], edge_start(system, edge));

@@ -92,6 +92,17 @@ void refuse_moved_fixed_blocks(const BlockSystem& system, const LoadProgram& loa
     }
 }
 
+/// Rigid blocks leave no choice to the interfaces of the net: E and nu of the rock give both stiffnesses. With several
+/// materials those of the stiffest count.
+InterfaceStiffness net_of_rigid_blocks(const InterfaceType& type, const BlockSystem& system, const ModelInput& input) {
+    if (type.stiffness_ratio || type.shear_ratio)
+        throw InputError("interfaces." + type.name + "." + (type.stiffness_ratio ? "stiffness_ratio" : "shear_ratio") +
+                         ": expected none with kinematics: rigid, where youngs_modulus and poissons_ratio give both "
+                         "stiffnesses of the hexagons' interfaces; found one");
+    const auto stiffest = std::ranges::max_element(input.materials, {}, &Material::youngs_modulus);
+    return rigid_lattice_stiffness(stiffest->youngs_modulus, stiffest->poissons_ratio, input.plane, system.spacing);
+}
+
 Strength strength_of(const Interface& interface, const BlockSystem& system, const ModelInput& input) {
     const InterfaceType& type = input.interface_types[interface.interface_type];
     if (type.strength) return *type.strength;
@@ -107,11 +118,20 @@ Strength strength_of(const Interface& interface, const BlockSystem& system, cons
     return weaker(*a.strength, *b.strength);
 }
 
+LatticeModuli moduli_of_body(const ElasticModuli& blocks, const ModelInput& input,
+                             const std::vector<InterfaceStiffness>& stiffnesses, double spacing) {
+    if (input.tessellation_type < 0) return engineering_moduli(blocks, input.plane);
+    const InterfaceStiffness& net = stiffnesses[input.tessellation_type];
+    if (input.kinematics == Kinematics::rigid) return rigid_lattice_moduli(net, spacing, input.plane);
+    return lattice_moduli(blocks, net, spacing, input.plane);
+}
+
 } // namespace
 
 Model build_model(BlockSystem system, const ModelInput& input) {
     Model model;
     model.plane = input.plane;
+    model.kinematics = input.kinematics;
     model.gravity = input.gravity;
     model.loads = input.loads;
     model.loads.supports.resize(system.boundaries.size(), Support::none);
@@ -125,7 +145,10 @@ Model build_model(BlockSystem system, const ModelInput& input) {
     std::vector<InterfaceStiffness> stiffnesses;
     for (int t = 0; t < static_cast<int>(input.interface_types.size()); ++t) {
         const InterfaceType& type = input.interface_types[t];
-        stiffnesses.push_back(resolve_stiffness(type, system.spacing, stiffest_rock));
+        const bool rigid_net =
+            input.kinematics == Kinematics::rigid && t == input.tessellation_type && stiffness_from_ratio(type);
+        stiffnesses.push_back(rigid_net ? net_of_rigid_blocks(type, system, input)
+                                        : resolve_stiffness(type, system.spacing, stiffest_rock));
         model.laws.push_back(resolve_law(type, stiffnesses.back(), boundary_stress));
         model.bonds.push_back(type.kind == InterfaceKind::potential_crack ? 1 : 0);
         model.fracture_law.push_back(type.fails_to >= 0 ? type.fails_to : t);
@@ -136,16 +159,13 @@ Model build_model(BlockSystem system, const ModelInput& input) {
         auto moduli = plane_moduli(material.youngs_modulus, material.poissons_ratio, input.plane);
         if (input.tessellation_type >= 0) {
             const InterfaceType& type = input.interface_types[input.tessellation_type];
-            if (stiffness_from_ratio(type)) {
+            if (stiffness_from_ratio(type) && input.kinematics == Kinematics::affine) {
                 moduli = block_moduli(material.youngs_modulus, material.poissons_ratio, input.plane,
                                       type.stiffness_ratio.value_or(default_stiffness_ratio),
                                       type.shear_ratio.value_or(default_shear_ratio));
             }
         }
-        const auto effective =
-            input.tessellation_type >= 0
-                ? lattice_moduli(moduli, stiffnesses[input.tessellation_type], system.spacing, input.plane)
-                : engineering_moduli(moduli, input.plane);
+        const auto effective = moduli_of_body(moduli, input, stiffnesses, system.spacing);
         model.effective_modulus = std::max(model.effective_modulus, effective.youngs_modulus);
         model.moduli.push_back(moduli);
     }
@@ -180,6 +200,7 @@ bool has_gravity(const Model& model) {
 std::string fingerprint(const Model& model) {
     Digest digest;
     digest.add(model.gravity.x(), model.gravity.y());
+    if (model.kinematics == Kinematics::rigid) digest.add(static_cast<int>(model.kinematics));
     for (const Vec2& vertex : model.system.vertices) digest.add(vertex.x(), vertex.y());
     for (int b = 0; b < model.system.n_blocks(); ++b)
         if (model.system.blocks[b].fixed) digest.add(b);
@@ -203,6 +224,11 @@ std::string fingerprint(const Model& model) {
         for (const auto& [i, force] : stage.forces) digest.add(i, force.x(), force.y());
         if (stage.motion) {
             digest.add(static_cast<int>(stage.motion->control), stage.motion->boundary, stage.motion->value);
+        }
+        if (stage.strength_reduction) {
+            const StrengthReduction& reduction = *stage.strength_reduction;
+            digest.add(reduction.from, reduction.to, reduction.tolerance);
+            for (const int type : reduction.interface_types) digest.add(type);
         }
     }
     return digest.text();

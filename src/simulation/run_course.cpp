@@ -14,13 +14,6 @@ namespace kluft {
 
 namespace {
 
-/// All or nothing, also out of memory.
-void accept(RunCourse& course, const LoadSteps& steps) {
-    course.work.costs = steps.costs();
-    State next = course.work;
-    course.accepted = std::move(next);
-}
-
 void notify_step(RunCourse& course, const LoadSteps& steps, const StepRecord& record, bool last_of_stage) {
     course.last_record = record;
     const Stopwatch watch(course.report.costs.seconds.observers);
@@ -45,6 +38,7 @@ void run_to_the_end(RunCourse& course, const LoadSteps& steps) {
         course.loads.emplace(enter_stage(course.model, work));
         steps.begin_stage();
         if (work.step == 0 && work.stage == 0) report_initial_state(course, steps);
+        if (course.stage().strength_reduction) steps.reduce_strengths();
         while (work.step_in_stage < n_steps) {
             const double load_factor = static_cast<double>(work.step_in_stage + 1) / n_steps;
             const bool last_of_stage = work.step_in_stage + 1 == n_steps;
@@ -81,6 +75,12 @@ bool RunCourse::is_platen_loaded_by_stress() const {
 
 bool RunCourse::is_loaded_by_stress() const { return !stage().motion || is_platen_loaded_by_stress(); }
 
+void accept(RunCourse& course, const LoadSteps& steps) {
+    course.work.costs = steps.costs();
+    State next = course.work;
+    course.accepted = std::move(next);
+}
+
 RunReport run_stages(RunCourse& course, const LoadSteps& steps) {
     RunReport& report = course.report;
     try {
@@ -88,10 +88,14 @@ RunReport run_stages(RunCourse& course, const LoadSteps& steps) {
     } catch (const Interrupted&) {
         report.status = RunStatus::interrupted;
     } catch (const LostEquilibrium& failure) {
-        const bool is_limit = failure.may_be_collapse && course.is_loaded_by_stress() && course.accepted.step > 0;
+        const bool is_limit = report.factor_of_safety ||
+                              (failure.may_be_collapse && course.is_loaded_by_stress() && course.accepted.step > 0);
         report.status = is_limit ? RunStatus::collapsed : RunStatus::no_equilibrium;
         report.diagnosis = fmt::format("no equilibrium in stage {} at load step {}: {}", course.work.stage,
                                        course.work.step + 1, failure.what);
+        if (report.factor_of_safety)
+            report.diagnosis =
+                fmt::format("factor of safety {:.6g}; beyond it {}", *report.factor_of_safety, report.diagnosis);
     } catch (const ResourceError& error) {
         end_out_of_resources(report, error.what());
     } catch (const std::bad_alloc&) {
@@ -102,10 +106,10 @@ RunReport run_stages(RunCourse& course, const LoadSteps& steps) {
 }
 
 void commit_load_step(RunCourse& course, const LoadSteps& steps, StepRecord record, double load_factor,
-                      bool last_of_stage) {
+                      bool last_of_stage, bool regular) {
     State& work = course.work;
     work.load_factor = load_factor;
-    ++work.step_in_stage;
+    if (regular) ++work.step_in_stage;
     ++work.step;
     work.unbalanced_in_succession = record.balanced ? 0 : work.unbalanced_in_succession + 1;
     if (!record.balanced) ++course.report.unbalanced_steps;
@@ -113,10 +117,16 @@ void commit_load_step(RunCourse& course, const LoadSteps& steps, StepRecord reco
     record.load_factor = load_factor;
     record.crack_passes = course.passes;
     accept(course, steps);
+    for (const StepRecord& waiting : std::exchange(course.waiting_equilibria, {})) course.observer.equilibrium(waiting);
+    for (const CrackRecord& waiting : std::exchange(course.waiting_cracks, {})) course.observer.crack(waiting);
     notify_step(course, steps, record, last_of_stage);
 }
 
 void notify_equilibrium(RunCourse& course, const StepRecord& record) {
+    if (course.holds_back) {
+        course.waiting_equilibria.push_back(record);
+        return;
+    }
     const Stopwatch watch(course.report.costs.seconds.observers);
     course.observer.equilibrium(record);
 }
@@ -137,14 +147,14 @@ void notify_progress(RunCourse& course, double load_factor, int n_solves) {
 }
 
 std::vector<CrackCandidate> check_cracks(RunCourse& course, CrackCriterion criterion, const std::vector<char>& bonded,
-                                         const LoadedBody& body, const Eigen::VectorXd& q) {
+                                         const std::vector<Strength>& strengths, const LoadedBody& body,
+                                         const Eigen::VectorXd& q) {
     const Stopwatch watch(course.report.costs.seconds.crack_check);
     ++course.report.crack_checks;
     const Model& model = course.model;
-    const auto stresses = block_stresses(model.system, model.moduli, q);
-    if (criterion == CrackCriterion::principal_stress)
-        return crack_check(model.system, bonded, model.strengths, stresses);
-    return crack_check(model.system, bonded, model.strengths, stresses, bond_tractions(model, body, q));
+    const auto stresses = block_stresses(body, q);
+    if (criterion == CrackCriterion::principal_stress) return crack_check(model.system, bonded, strengths, stresses);
+    return crack_check(model.system, bonded, strengths, stresses, bond_tractions(model, body, q));
 }
 
 void weaken_together(RunCourse& course, const std::vector<CrackCandidate>& broken, double axial_strain) {
@@ -154,7 +164,11 @@ void weaken_together(RunCourse& course, const std::vector<CrackCandidate>& broke
         CrackRecord record = weaken(course.model, candidate, course.work);
         record.pass = course.passes;
         record.axial_strain = axial_strain;
-        course.observer.crack(record);
+        if (course.holds_back) {
+            course.waiting_cracks.push_back(record);
+        } else {
+            course.observer.crack(record);
+        }
     }
     std::ranges::sort(course.work.contacts, {}, &ContactMemory::key);
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -16,9 +17,11 @@
 #include "kluft/equilibrium/open_close_solver.hpp"
 #include "kluft/fracture/crack_check.hpp"
 #include "kluft/kinematics/affine.hpp"
+#include "kluft/kinematics/rigid.hpp"
 #include "kluft/simulation/measurements.hpp"
 #include "kluft/simulation/run_course.hpp"
 #include "kluft/simulation/state_points.hpp"
+#include "kluft/simulation/strength_reduction.hpp"
 #include "kluft/simulation/weakening.hpp"
 
 namespace kluft {
@@ -38,6 +41,10 @@ constexpr int max_relaxation_attempts = 250;
 constexpr double collapse_motion = 0.5; ///< of a block in one load step, in lattice spacings
 constexpr int quick_event_trials = 12;  ///< then the interval is halved: f may have a kink that Illinois creeps up to
 constexpr int max_event_trials = 60;
+constexpr double reduction_balance = 0.1;         ///< of the tolerance of a factor of safety: largest `balance`
+constexpr double reduction_residual = 0.01;       ///< of it: largest `tolerance`, and the share of a body that rests
+constexpr int max_moving_attempts = 25;           ///< of a relaxation with reduced strengths, whose share does not fall
+constexpr double least_relaxation_progress = 0.9; ///< of the share in as many attempts
 constexpr double largest_useful_index = 10.0; ///< of f in the search for an event: a strength of zero gives infinity
 
 /// True if the constraints stop every rigid motion of every group of bonded blocks.
@@ -75,32 +82,31 @@ public:
         StepObserver& observer, const std::atomic<bool>& stop)
         : model_(model), cracks_(cracks), options_(solver), course_(model, state, observer, stop),
           open_close_(linear_, open_close_options(solver)) {
+        problem_.kinematics = model.kinematics;
         problem_.system = &model.system;
         problem_.moduli = &model.moduli;
-        problem_.laws = &model.laws;
+        problem_.laws = &strengths_.laws;
         if (has_gravity(model)) problem_.densities = model.densities;
         problem_.least_mass_area = std::sqrt(0.75) * model.system.spacing * model.system.spacing;
     }
 
     RunReport run() {
-        LoadSteps steps;
-        steps.begin_stage = [this] {
-            if (work_.step_in_stage == 0) work_.displacement_rate.resize(0);
-        };
-        steps.initial_record = [this] {
+        steps_.begin_stage = [this] { begin_stage(); };
+        steps_.initial_record = [this] {
             prepare();
             set_load(0.0);
             return measure(work_.displacement, 0.0);
         };
-        steps.load_step = [this](double target, bool last_of_stage) { return load_step(target, last_of_stage); };
-        steps.look_back = [this](const StepRecord& record) {
+        steps_.load_step = [this](double target, bool last_of_stage) { return load_step(target, last_of_stage); };
+        steps_.reduce_strengths = [this] { reduce_strengths(); };
+        steps_.look_back = [this](const StepRecord& record) {
             if (work_.unbalanced_in_succession >= options_.max_unbalanced_steps)
                 throw no_equilibrium(last_worst_block_, record.unbalanced_ratio);
         };
-        steps.end_stage = [this] { leave_stage(model_, *course_.loads, problem_, last_residual_.forces, work_); };
-        steps.costs = [this] { return costs(); };
-        steps.fields = [this] { return field_record(model_, work_, problem_); };
-        return run_stages(course_, steps);
+        steps_.end_stage = [this] { leave_stage(model_, *course_.loads, problem_, last_residual_.forces, work_); };
+        steps_.costs = [this] { return costs(); };
+        steps_.fields = [this] { return field_record(model_, work_, problem_); };
+        return run_stages(course_, steps_);
     }
 
 private:
@@ -110,6 +116,19 @@ private:
         double viscous_share = 0.0;
         bool balanced = false;
         [[nodiscard]] bool converged() const { return summary.converged(); }
+    };
+
+    /// Whether the viscous share of a relaxation falls, with patience.
+    struct RelaxationProgress {
+        double least = std::numeric_limits<double>::infinity();
+        int attempts = 0; ///< since then
+        bool falls(double share) {
+            if (share < least_relaxation_progress * least) {
+                least = share;
+                attempts = 0;
+            }
+            return ++attempts <= max_moving_attempts;
+        }
     };
 
     static OpenCloseOptions open_close_options(const SolverOptions& solver) {
@@ -139,6 +158,74 @@ private:
         return costs;
     }
 
+    void begin_stage() {
+        if (work_.step_in_stage == 0) work_.displacement_rate.resize(0);
+        strengths_ = reduced_strengths(model_, work_.stage, work_.load_factor);
+        course_.holds_back = reduces_strengths();
+        const double tolerance = reduces_strengths() ? course_.stage().strength_reduction->tolerance : 0.0;
+        rest_share_ = reduction_residual * tolerance;
+        balance_ = reduces_strengths() ? std::min(options_.balance, reduction_balance * tolerance) : options_.balance;
+        open_close_.set_tolerance(reduces_strengths() ? std::min(options_.tolerance, rest_share_) : options_.tolerance);
+    }
+
+    [[nodiscard]] bool reduces_strengths() const { return course_.stage().strength_reduction.has_value(); }
+
+    // ---- factor of safety ------------------------------------------------------------------------------------
+
+    /// Divides the strengths by larger and larger factors. Where no equilibrium is found, the interval between the last
+    /// one with equilibrium and the first one without is halved, always from the last equilibrium, and the run ends.
+    void reduce_strengths() {
+        const StrengthReduction& reduction = *course_.stage().strength_reduction;
+        const int n_steps = course_.stage().steps;
+        if (work_.load_factor == 0.0) begin_reduction();
+        std::optional<double> failing;
+        while (!failing && work_.step_in_stage < n_steps) {
+            const double target = static_cast<double>(work_.step_in_stage + 1) / n_steps;
+            if (!stands_at(target, true)) failing = target;
+        }
+        if (!failing) {
+            report_.warnings.push_back(
+                fmt::format("the factor of safety is above {:g}, the largest strength factor of stage {}", reduction.to,
+                            work_.stage));
+            return;
+        }
+        const auto factor = [&](double load_factor) { return reduction.factor_at(load_factor); };
+        while (factor(*failing) - factor(work_.load_factor) > reduction.tolerance * factor(work_.load_factor)) {
+            const double middle = 0.5 * (work_.load_factor + *failing);
+            if (!stands_at(middle, false)) failing = middle;
+        }
+        report_.factor_of_safety = factor(work_.load_factor);
+        throw last_failure_;
+    }
+
+    /// The state that the stages before have left must stand by the closer look of this one.
+    void begin_reduction() {
+        step_balanced_ = true;
+        worst_share_ = 0.0;
+        advance(0.0, false);
+        accept(course_, steps_);
+    }
+
+    /// Tries a load step; the state stays where it was if there is no equilibrium at its end. `regular`: one of the steps
+    /// of the stage, and not one between two of them.
+    bool stands_at(double target, bool regular) {
+        const StepRecord before = course_.last_record;
+        const bool last_of_stage = regular && work_.step_in_stage + 1 == course_.stage().steps;
+        course_.passes = 0;
+        try {
+            commit_load_step(course_, steps_, load_step(target, last_of_stage), target, last_of_stage, regular);
+            return true;
+        } catch (const LostEquilibrium& failure) {
+            if (!failure.may_be_collapse) throw;
+            last_failure_ = failure;
+            work_ = course_.accepted;
+            course_.last_record = before;
+            course_.waiting_equilibria.clear();
+            course_.waiting_cracks.clear();
+            return false;
+        }
+    }
+
     // ---- load steps ------------------------------------------------------------------------------------------
 
     StepRecord load_step(double target, bool last_of_stage) {
@@ -146,10 +233,10 @@ private:
         if (options_.repeatable) open_close_.forget_factor();
         step_balanced_ = true;
         worst_share_ = 0.0;
-        const bool check =
-            model_.has_potential_cracks && ((work_.step + 1) % std::max(1, cracks_.every) == 0 || last_of_stage);
+        const bool check = model_.has_potential_cracks &&
+                           ((work_.step + 1) % std::max(1, cracks_.every) == 0 || last_of_stage || reduces_strengths());
         const bool smooth = advance(target, check);
-        if (smooth) {
+        if (smooth && !reduces_strengths()) {
             const State& before = course_.accepted;
             work_.displacement_rate = (work_.displacement - before.displacement) / (target - before.load_factor);
         } else {
@@ -166,14 +253,13 @@ private:
     bool advance(double target, bool check) {
         bool smooth = true;
         const bool by_events = check && cracks_.update == CrackUpdate::event;
-        while (work_.load_factor < target) {
+        do {
             const double from = work_.load_factor;
             prepare();
             Trial trial = solve(target, predicted(target));
             if (!trial.balanced) {
                 smooth = false;
-                if (trial.converged()) commit(trial, from);
-                trial = relax(target, trial.summary.restless);
+                trial = recover(trial, target, from);
                 if (!trial.balanced && nothing_holds())
                     throw no_equilibrium(last_worst_block_, trial.viscous_share, true);
             }
@@ -183,8 +269,23 @@ private:
             commit(trial, reached);
             record_equilibrium(trial);
             if (check && (by_events || reached >= target) && break_bonds(reached)) smooth = false;
-        }
+        } while (work_.load_factor < target);
         return smooth;
+    }
+
+    /// Where a solve has failed: relaxes from the work state, which stands at the load factor `at`. With reduced
+    /// strengths the result must stand without relaxation too.
+    Trial recover(const Trial& failed, double load_factor, double at) {
+        if (failed.converged()) commit(failed, at);
+        Trial trial = relax(load_factor, failed.summary.restless);
+        if (!reduces_strengths()) return trial;
+        if (trial.balanced) {
+            commit(trial, at);
+            prepare();
+            trial = solve(load_factor, work_.displacement);
+        }
+        if (!trial.balanced) throw no_equilibrium(last_worst_block_, trial.viscous_share, nothing_holds());
+        return trial;
     }
 
     [[nodiscard]] bool nothing_holds() const { return problem_.constraints.rows().empty(); }
@@ -260,11 +361,14 @@ private:
         for (const Interface& interface : model_.system.interfaces) {
             pairs.emplace_back(interface.block_a, interface.block_b);
         }
-        pattern_ = BlockPattern(model_.system.n_blocks(), pairs);
+        pattern_ = BlockPattern(model_.system.n_blocks(), pairs, model_.kinematics);
         linear_.analyze(pattern_);
     }
 
-    void set_load(double load_factor) { apply_load(model_, *course_.loads, work_.stage, load_factor, problem_); }
+    void set_load(double load_factor) {
+        apply_load(model_, *course_.loads, work_.stage, load_factor, problem_);
+        if (reduces_strengths()) strengths_ = reduced_strengths(model_, work_.stage, load_factor);
+    }
 
     [[nodiscard]] Eigen::VectorXd predicted(double load_factor) const {
         if (work_.displacement_rate.size() == 0) return work_.displacement;
@@ -277,6 +381,7 @@ private:
         problem_.start = work_.displacement;
         Trial trial;
         trial.q = std::move(guess);
+        if (model_.kinematics == Kinematics::rigid) make_rigid(model_.system, trial.q);
         trial.summary = open_close_.solve(problem_, pattern_, trial.q, work_.contacts.empty());
         report_.costs.open_close_iterations += trial.summary.iterations;
         last_worst_block_ = trial.summary.worst_block;
@@ -291,11 +396,13 @@ private:
         return force > 0.0 ? force / std::max(trial.summary.force_scale, 1e-300) : 0.0;
     }
 
-    /// The mass-like term must not change the answer: solve again from the result until its share is small.
+    /// The mass-like term must not change the answer: solve again from the result until its share is small. With reduced
+    /// strengths it must fall as well, for a body that slides has a share that stays, however small it is.
     void balance(Trial& trial) {
         trial.viscous_share = viscous_share(trial);
-        const int max_rounds = static_cast<int>(std::ceil(-balance_rounds_per_digit * std::log10(options_.balance)));
-        for (int round = 0; round < max_rounds && trial.viscous_share > options_.balance; ++round) {
+        const int max_rounds = static_cast<int>(std::ceil(-balance_rounds_per_digit * std::log10(balance_)));
+        bool settles = !reduces_strengths() || trial.viscous_share <= rest_share_;
+        for (int round = 0; round < max_rounds && (trial.viscous_share > balance_ || !settles); ++round) {
             problem_.start = trial.q;
             Trial next = trial;
             next.summary = open_close_.solve(problem_, pattern_, next.q);
@@ -304,9 +411,10 @@ private:
             next.viscous_share = viscous_share(next);
             const bool stalls = next.viscous_share > least_balance_progress * trial.viscous_share;
             trial = std::move(next);
+            settles = !reduces_strengths() || !stalls || trial.viscous_share <= rest_share_;
             if (stalls) break;
         }
-        trial.balanced = trial.viscous_share <= options_.balance;
+        trial.balanced = settles && trial.viscous_share <= balance_;
     }
 
     /// Pseudo-transient continuation at a load factor from the work state, which moves along: eta grows on the blocks
@@ -318,6 +426,7 @@ private:
         factor.resize(model_.system.blocks.size(), 1.0);
         (void)grow_eta(restless, factor);
         Trial last; // that the state moved to
+        RelaxationProgress progress;
         for (int attempt = 0; attempt < max_relaxation_attempts; ++attempt) {
             if (course_.stop) throw Interrupted{};
             prepare();
@@ -332,8 +441,7 @@ private:
             last_worst_block_ = trial.summary.worst_block;
             notify_progress(course_, load_factor, report_.costs.open_close_iterations);
             trial.viscous_share = viscous_share(trial);
-            const double harmless =
-                std::max(relaxed_tolerance * options_.balance, relaxed_residual * trial.viscous_share);
+            const double harmless = std::max(relaxed_tolerance * balance_, relaxed_residual * trial.viscous_share);
             if (!trial.converged() && trial.summary.residual_ratio > harmless) {
                 if (!grow_eta(trial.summary.restless, factor)) {
                     throw no_equilibrium(trial.summary.worst_block, trial.summary.residual_ratio);
@@ -341,13 +449,15 @@ private:
                 continue;
             }
             if (!trial.converged()) trial.viscous_share += trial.summary.residual_ratio;
-            trial.balanced = trial.viscous_share <= options_.balance;
+            trial.balanced = trial.viscous_share <= balance_;
             if (trial.balanced) {
                 work_.viscosity_factor = factor;
                 return trial;
             }
             commit(trial, work_.load_factor);
-            if (is_falling()) throw no_equilibrium(trial.summary.worst_block, trial.viscous_share, nothing_holds());
+            const bool moves_on = reduces_strengths() && !progress.falls(trial.viscous_share);
+            if (moves_on || is_falling())
+                throw no_equilibrium(trial.summary.worst_block, trial.viscous_share, nothing_holds());
             if (trial.summary.iterations <= easy_relaxation) decay(factor);
             last = std::move(trial);
         }
@@ -391,7 +501,7 @@ private:
     // ---- cracks ----------------------------------------------------------------------------------------------
 
     std::vector<CrackCandidate> candidates(const Eigen::VectorXd& q) {
-        return check_cracks(course_, cracks_.criterion, bonded_, problem_, q);
+        return check_cracks(course_, cracks_.criterion, bonded_, strengths_.strengths, problem_, q);
     }
 
     double largest_index_at(const Eigen::VectorXd& q) {
@@ -407,7 +517,9 @@ private:
         const double goal = 1.0 + 0.5 * tolerance;
         double low = from;
         double high = to;
+        if (reduces_strengths()) set_load(from);
         double g_low = largest_index_at(work_.displacement) - goal;
+        if (reduces_strengths()) set_load(to);
         double g_high = f_high - goal;
         if (g_low >= 0.0) return to;
         for (int i = 0; i < max_event_trials; ++i) {
@@ -448,10 +560,7 @@ private:
             weaken_together(course_, broken, course_.last_record.axial_strain);
             prepare();
             Trial trial = solve(load_factor, work_.displacement);
-            if (!trial.balanced) {
-                if (trial.converged()) commit(trial, load_factor);
-                trial = relax(load_factor, trial.summary.restless);
-            }
+            if (!trial.balanced) trial = recover(trial, load_factor, load_factor);
             commit(trial, load_factor);
             record_equilibrium(trial);
         }
@@ -467,6 +576,8 @@ private:
         record.crack_passes = course_.passes;
         record.unbalanced_ratio = share;
         record.elapsed_s = course_.elapsed();
+        if (reduction_of(model_.loads, 0) != nullptr)
+            record.strength_factor = strength_factor(model_.loads, work_.stage, work_.load_factor);
         return record;
     }
 
@@ -483,6 +594,10 @@ private:
     [[nodiscard]] LostEquilibrium no_equilibrium(int worst_block, double residual_ratio,
                                                  bool nothing_holds = false) const {
         std::string text = fmt::format("residual {:.2g} of the forces", residual_ratio);
+        if (reduction_of(model_.loads, work_.stage) != nullptr) {
+            text += fmt::format("; with the strengths divided by {:g}",
+                                strength_factor(model_.loads, work_.stage, work_.load_factor));
+        }
         if (nothing_holds) text += "; nothing holds the body, which has neither a support nor a platen";
         if (worst_block >= 0) text += "; worst is " + block_description(worst_block);
         return {text, !nothing_holds};
@@ -510,12 +625,17 @@ private:
     OpenCloseSolver open_close_;
     std::vector<char> bonded_; ///< per interface of the work state
     BlockPattern pattern_;
+    ReducedStrengths strengths_; ///< of the load in place
     EquilibriumProblem problem_;
     Residual last_residual_;
     int iterations_at_start_ = 0;
     bool step_balanced_ = true;
     double worst_share_ = 0.0;
     int last_worst_block_ = -1;
+    double balance_ = 0.0;    ///< of the stage
+    double rest_share_ = 0.0; ///< of the mass-like term: with reduced strengths a body with less rests
+    LostEquilibrium last_failure_;
+    LoadSteps steps_;
 };
 
 } // namespace

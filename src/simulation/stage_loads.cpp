@@ -221,7 +221,9 @@ StageLoads::StageLoads(const Model& model, const State& stage_start, const Stage
             }
         }
     }
-    constraints_ = Constraints(std::move(rows));
+    constraints_ = model.kinematics == Kinematics::rigid
+                       ? Constraints(std::move(rows), system, stage_start.displacement)
+                       : Constraints(std::move(rows));
     for (int boundary = 0; boundary < n; ++boundary) {
         if (start_pressure_[boundary] == 0.0 && end_pressure_[boundary] == 0.0) continue;
         const auto more = pressure_edges(system, boundary);

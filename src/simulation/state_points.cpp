@@ -5,6 +5,8 @@
 #include "kluft/contact/bonds.hpp"
 #include "kluft/contact/detection.hpp"
 #include "kluft/simulation/measurements.hpp"
+#include "kluft/simulation/stage_loads.hpp"
+#include "kluft/simulation/strength_reduction.hpp"
 
 namespace kluft {
 
@@ -63,11 +65,21 @@ void keep_histories(const LoadedBody& body, const Eigen::VectorXd& q, State& sta
 
 FieldRecord fields_of_state(const Model& model, const State& state) {
     LoadedBody body;
+    body.kinematics = model.kinematics;
     body.system = &model.system;
     body.moduli = &model.moduli;
-    body.laws = &model.laws;
+    const auto reduced = reduced_strengths(model, state.stage, state.load_factor);
+    body.laws = &reduced.laws;
     place_bonds(model, state, body.bonds);
     body.contacts = state_contacts(model, state).points;
+    if (model.kinematics == Kinematics::rigid) { // stresses come from the forces
+        State copy = state;
+        const StageLoads loads = enter_stage(model, copy);
+        body.constraints = loads.constraints();
+        body.pressure_edges = loads.edges();
+        if (model.gravity != Vec2::Zero()) body.densities = model.densities;
+        apply_load(model, loads, state.stage, state.load_factor, body);
+    }
     return field_record(model, state, body);
 }
 

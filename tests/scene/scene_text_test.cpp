@@ -177,8 +177,9 @@ TEST(Overrides, MappingsMergeAndNullRemoves) {
 
 TEST(Overrides, ThatAreWrongSayWhichOne) {
     EXPECT_THAT(errors_with({"stages.1.stpes=3"}),
-                ElementsAre("--set stages.1.stpes=3: stages.1.stpes: expected one of name, pressure, displacement, "
-                            "strain, stress, platens, steps, found 'stpes'; did you mean 'steps'?"));
+                ElementsAre("--set stages.1.stpes=3: stages.1.stpes: expected one of name, pressure, gravity, forces, "
+                            "displacement, strain, stress, platens, strength_reduction, steps, found 'stpes'; did you "
+                            "mean 'steps'?"));
     EXPECT_THAT(errors_with({"stages"}), ElementsAre("--set stages: expected key.path=value"));
     EXPECT_THAT(errors_with({"=3"}), ElementsAre("--set =3: expected key.path=value"));
     EXPECT_THAT(errors_with({"stages.9.steps=3"}),

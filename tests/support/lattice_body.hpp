@@ -99,7 +99,7 @@ inline BlockPattern pattern_of(const EquilibriumProblem& problem) {
     std::vector<std::pair<int, int>> pairs;
     for (const auto& bond : problem.bonds) pairs.emplace_back(bond.block_a, bond.block_b);
     for (const auto& point : problem.contacts) pairs.emplace_back(point.block_a, point.block_b);
-    return {problem.system->n_blocks(), pairs};
+    return {problem.system->n_blocks(), pairs, problem.kinematics};
 }
 
 } // namespace kluft

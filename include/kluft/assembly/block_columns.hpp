@@ -14,9 +14,9 @@ namespace kluft {
 /// along the elimination tree. Throws ResourceError out of memory.
 [[nodiscard]] std::vector<int> elimination_order(const BlockPattern& pattern);
 
-/// Vectors of unknowns from the natural to the elimination order and back; sizes 6 n_blocks.
-void permute(const std::vector<int>& position, const Eigen::VectorXd& natural, double* permuted);
-void unpermute(const std::vector<int>& position, const double* permuted, Eigen::VectorXd& natural);
+/// Vectors with `nu` unknowns per block from the natural to the elimination order and back.
+void permute(const std::vector<int>& position, int nu, const Eigen::VectorXd& natural, double* permuted);
+void unpermute(const std::vector<int>& position, int nu, const double* permuted, Eigen::VectorXd& natural);
 
 /// Compressed columns of a matrix on a block pattern, rows ascending; either complete or its lower triangle only. The
 /// columns, which take 2 kB per block of a hexagon net for a triangle, exist from `gather` to `release`.
@@ -27,7 +27,7 @@ public:
     BlockColumns() = default;
     BlockColumns(const BlockPattern& pattern, const std::vector<int>& position, Part part);
 
-    [[nodiscard]] std::int64_t size() const;                              ///< number of columns, 6 n_blocks
+    [[nodiscard]] std::int64_t size() const;                              ///< number of columns, all unknowns
     [[nodiscard]] std::vector<std::int64_t>& starts() { return starts_; } ///< per column and one past the last
     [[nodiscard]] std::vector<std::int64_t>& rows() { return rows_; }     ///< per nonzero
     [[nodiscard]] std::vector<double>& values() { return values_; }       ///< per nonzero
@@ -49,7 +49,11 @@ private:
         return part_ == Part::lower && source.row == column_of_blocks ? j : 0;
     }
 
+    template <int n> void gather_structure_of();
+    template <int n, class Entries> void gather_entries(const Entries& entries);
+
     Part part_ = Part::all;
+    int nu_ = 6;                     ///< unknowns per block
     std::vector<Source> sources_;    ///< by column of blocks, in elimination order, rows ascending
     std::vector<int> source_starts_; ///< per column of blocks and one past the last
     std::vector<std::int64_t> starts_;

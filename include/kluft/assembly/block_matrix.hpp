@@ -1,4 +1,4 @@
-// The stiffness matrix: 6 x 6 blocks on a fixed pattern of block pairs.
+// The stiffness matrix on a fixed pattern of block pairs: blocks of 6 x 6, or of 3 x 3 for rigid blocks.
 #pragma once
 
 #include <utility>
@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include "kluft/kinematics/affine.hpp"
+#include "kluft/kinematics/rigid.hpp"
 
 namespace kluft {
 
@@ -15,8 +16,12 @@ class BlockPattern {
 public:
     BlockPattern() = default;
     /// `pairs`: (a, b) with a != b, any order, duplicates allowed.
-    BlockPattern(int n_blocks, const std::vector<std::pair<int, int>>& pairs);
+    BlockPattern(int n_blocks, const std::vector<std::pair<int, int>>& pairs,
+                 Kinematics kinematics = Kinematics::affine);
 
+    [[nodiscard]] Kinematics kinematics() const { return kinematics_; }
+    /// Unknowns per block: 6, or 3 of rigid ones.
+    [[nodiscard]] int block_unknowns() const { return unknowns_per_block(kinematics_); }
     [[nodiscard]] int n_blocks() const { return static_cast<int>(row_starts_.size()) - 1; }
     [[nodiscard]] int n_entries() const { return static_cast<int>(columns_.size()); }
     [[nodiscard]] int row_start(int row) const { return row_starts_[row]; }
@@ -29,18 +34,28 @@ private:
     std::vector<int> row_starts_{0};
     std::vector<int> columns_;
     std::vector<int> diagonal_; ///< entry (row, row)
+    Kinematics kinematics_ = Kinematics::affine;
 };
 
-/// Values on a pattern; entry k is a 6 x 6 block.
+/// Values on a pattern; entry k is a 6 x 6 block. On the pattern of rigid blocks the matrix is `rigid_values`, and
+/// `values` is what it was made of.
 struct BlockMatrix {
     const BlockPattern* pattern = nullptr;
     std::vector<Mat6> values;
+    std::vector<Mat3> rigid_values;
 
     void reset(const BlockPattern& new_pattern);
     /// Gives the memory of the values back.
-    void release() { values = std::vector<Mat6>(); }
+    void release() {
+        values = std::vector<Mat6>();
+        rigid_values = std::vector<Mat3>();
+    }
     void set_zero();
-    /// y = K x, sizes 6 n_blocks.
+    [[nodiscard]] bool is_rigid() const { return pattern->kinematics() == Kinematics::rigid; }
+    /// The sum of the squares of all entries, and of the diagonal entries alone the sum.
+    [[nodiscard]] double squared_norm() const;
+    [[nodiscard]] double trace() const;
+    /// y = K x, sizes block_unknowns() n_blocks.
     void multiply(const Eigen::VectorXd& x, Eigen::VectorXd& y) const;
     /// y = K^T x.
     void multiply_transposed(const Eigen::VectorXd& x, Eigen::VectorXd& y) const;

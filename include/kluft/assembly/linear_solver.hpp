@@ -69,7 +69,7 @@ public:
     [[nodiscard]] int max_rank() const;
     [[nodiscard]] int rank() const;
 
-    /// x = K^-1 b with the last factor and its changes alone; sizes 6 n_blocks.
+    /// x = K^-1 b with the last factor and its changes alone; sizes: all unknowns.
     void solve(const Eigen::VectorXd& b, Eigen::VectorXd& x);
 
     /// The same, refined against `matrix` until the goal is reached or `max_refinements` Krylov vectors are used up.

@@ -14,7 +14,7 @@
 namespace kluft {
 
 /// A change of stiffness between two blocks: sum over i, j of stiffness(i, j) row_i' row_j. The rows are linear in the
-/// unknowns of the two blocks, which must have an entry in the pattern.
+/// unknowns of the two blocks, which must have an entry in the pattern; of rigid blocks only the first three count.
 struct StiffnessChange {
     long patch = 0; ///< identity of the rows: the same number has the same rows until the next factorization
     int block_a = 0;
@@ -28,8 +28,8 @@ struct StiffnessChange {
 /// K = L L' + B' D B for the rows B of all patches seen since `start`. Vectors are in elimination order.
 class LowRankUpdate {
 public:
-    /// Forgets all rows: the factor is new.
-    void start(const CholeskyFactor& factor, const std::vector<int>& position);
+    /// Forgets all rows: the factor is new. `nu`: unknowns per block.
+    void start(const CholeskyFactor& factor, const std::vector<int>& position, int nu);
 
     /// D of the complete list of changes; rows seen for the first time are appended, those of zero stiffness left out.
     /// False if the changed matrix is singular to working precision.
@@ -67,6 +67,7 @@ private:
 
     const CholeskyFactor* factor_ = nullptr;
     const std::vector<int>* position_ = nullptr;
+    int nu_ = 0;
     std::map<long, PatchRows> patches_;
     std::vector<Batch> batches_;
     int rank_ = 0;

@@ -42,6 +42,14 @@ inline constexpr double default_shear_ratio = 0.5;      ///< k_s/k_n
 [[nodiscard]] LatticeModuli lattice_moduli(const ElasticModuli& blocks, const InterfaceStiffness& interfaces,
                                            double spacing, Plane plane);
 
+/// The same of rigid blocks: all compliance is that of the interfaces.
+[[nodiscard]] LatticeModuli rigid_lattice_moduli(const InterfaceStiffness& interfaces, double spacing, Plane plane);
+
+/// Interfaces between rigid hexagons that give the body the rock's E and nu: k_n d = 2 K, k_s d = 4 G - 2 K.
+/// Throws InputError where k_s would not be positive: nu >= 1/4 in plane strain, nu >= 1/3 in plane stress.
+[[nodiscard]] InterfaceStiffness rigid_lattice_stiffness(double youngs_modulus_of_rock, double poissons_ratio_of_rock,
+                                                         Plane plane, double spacing);
+
 /// Moduli that the blocks need so that the tessellated body has the rock's E and nu: lattice_moduli solved for the
 /// blocks, with k_n d = stiffness_ratio E and k_s = shear_ratio k_n.
 /// Throws InputError that names the smallest admissible stiffness_ratio where no positive moduli result.

@@ -26,7 +26,7 @@ enum class TangentKind {
 };
 
 struct Residual {
-    Eigen::VectorXd forces;   ///< R, size 6 n_blocks (N/m)
+    Eigen::VectorXd forces;   ///< R, size 6 n_blocks in either kinematics (N/m)
     double force_scale = 0.0; ///< F_ref: norm of the sums of magnitudes of contact forces, block forces and loads (N/m)
     double roundoff = 0.0;    ///< size of R that round-off of the displacements alone makes (N/m)
 };
@@ -40,7 +40,8 @@ public:
 
     /// R(q).
     void residual(const Eigen::VectorXd& q, Residual& result);
-    /// dR/dq.
+    /// dR/dq. Of rigid blocks with T = dq/d(u, w): T' dR/dq T and what the forces do on the curve that a turning block
+    /// moves on; the pattern must be one of rigid blocks then.
     void tangent(const Eigen::VectorXd& q, TangentKind kind, BlockMatrix& matrix) const;
 
 private:
@@ -48,6 +49,7 @@ private:
     void set_bond_tangents(BlockMatrix& matrix) const;
     void add_block_tangents(const Eigen::VectorXd& q, TangentKind kind, BlockMatrix& matrix) const;
     void add_contact_tangents(const Eigen::VectorXd& q, TangentKind kind, BlockMatrix& matrix) const;
+    void reduce_to_rigid(const Eigen::VectorXd& q, TangentKind kind, BlockMatrix& matrix) const;
 
     const EquilibriumProblem& problem_;
     const BlockPattern& pattern_;

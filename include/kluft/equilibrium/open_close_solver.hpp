@@ -53,6 +53,8 @@ public:
     OpenCloseSummary solve(const EquilibriumProblem& problem, const BlockPattern& pattern, Eigen::VectorXd& q,
                            bool unloaded = false, Aim aim = Aim::equilibrium);
 
+    void set_tolerance(double tolerance) { options_.tolerance = tolerance; }
+
     /// The next linear solve makes a new factor: what follows does not depend on what was solved before.
     void forget_factor() { reference_.forget(); }
 
@@ -60,7 +62,8 @@ public:
     [[nodiscard]] double assembly_seconds() const { return assembly_seconds_; }
 
 private:
-    void evaluate(EquilibriumEvaluator& evaluator, const Eigen::VectorXd& q, Residual& residual);
+    void evaluate(const EquilibriumProblem& problem, EquilibriumEvaluator& evaluator, const Eigen::VectorXd& q,
+                  Residual& residual);
     [[nodiscard]] bool find_increment(const EquilibriumProblem& problem, EquilibriumEvaluator& evaluator,
                                       const Eigen::VectorXd& q, TangentKind kind);
     void assemble(const EquilibriumProblem& problem, EquilibriumEvaluator& evaluator, const Eigen::VectorXd& q,
@@ -73,6 +76,9 @@ private:
                                     const Eigen::VectorXd& q);
     [[nodiscard]] bool solve_refined(const EquilibriumProblem& problem);
     void limit_increment(const BlockSystem& system);
+    [[nodiscard]] Eigen::VectorXd unknowns_of(const EquilibriumProblem& problem, const Eigen::VectorXd& q,
+                                              const Eigen::VectorXd& forces) const;
+    void move_to(const EquilibriumProblem& problem, const Eigen::VectorXd& q, double s);
     void keep_free_part(const EquilibriumProblem& problem, const Eigen::VectorXd& q, Eigen::VectorXd& forces) const;
     void add_travel(const EquilibriumProblem& problem, double out_of_balance);
     [[nodiscard]] double step_along_root(const EquilibriumProblem& problem, EquilibriumEvaluator& evaluator,
@@ -86,6 +92,7 @@ private:
     OpenCloseOptions options_;
     double assembly_seconds_ = 0.0;
     BlockMatrix matrix_;
+    int nu_ = n_block_unknowns;    ///< unknowns per block of the problem: of all vectors here but `position_`
     StiffnessReference reference_; ///< of the factor that is reused
     int analysis_of_factor_ = 0;   ///< of the linear solver, when the factor was made
     int fresh_refinements_ = -1;   ///< of the first solution with the factor, -1 before

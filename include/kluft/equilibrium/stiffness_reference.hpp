@@ -39,7 +39,7 @@ private:
     static Key key_of(const ContactKey& k);
     static void collect(const EquilibriumProblem& problem, const Eigen::VectorXd& q, std::vector<Patch>& patches);
     void add_broken_bonds(const EquilibriumProblem& problem);
-    void add_masses(const EquilibriumProblem& problem);
+    void add_masses(const EquilibriumProblem& problem, const Eigen::VectorXd& q);
     long number_of(const Key& key) {
         return numbers_.try_emplace(key, static_cast<long>(numbers_.size())).first->second;
     }

@@ -8,6 +8,7 @@
 #include "kluft/blocks/block_system.hpp"
 #include "kluft/core/vector.hpp"
 #include "kluft/kinematics/affine.hpp"
+#include "kluft/kinematics/rigid.hpp"
 
 namespace kluft {
 
@@ -50,6 +51,9 @@ struct ConstrainedBlock {
     std::vector<int> rows;
     Mat6 projector;                                   ///< onto the null space of the rows
     Eigen::Matrix<double, 6, Eigen::Dynamic> inverse; ///< pseudo-inverse of the rows
+    Mat3 rigid_projector;                             ///< the same for a rigid block
+    Eigen::Matrix<double, 3, Eigen::Dynamic> rigid_inverse;
+    Mat63 motion; ///< T of a rigid block
 };
 
 /// Prescribed displacements, block by block. They hold exactly: the unknowns move in the null space of the rows.
@@ -57,6 +61,11 @@ class Constraints {
 public:
     Constraints() = default;
     explicit Constraints(std::vector<PrescribedDisplacement> rows);
+    /// Of rigid blocks: the increments, motions and vectors to be projected below have three unknowns per block. The rows
+    /// are linearised at `q`, which is exact as long as constrained blocks keep the rotation that they have there, and
+    /// they do: the two ends of a held edge fix it.
+    Constraints(std::vector<PrescribedDisplacement> rows, const BlockSystem& system, const Eigen::VectorXd& q);
+    [[nodiscard]] Kinematics kinematics() const { return kinematics_; }
 
     [[nodiscard]] const std::vector<PrescribedDisplacement>& rows() const { return rows_; }
     /// In ascending order.
@@ -66,16 +75,22 @@ public:
     /// Least-norm change of q that fulfils the rows (zero where they hold), with the travel that is nearest to q. Where
     /// rows of a block contradict each other it is the least-squares compromise.
     void correction(const Eigen::VectorXd& q, Eigen::VectorXd& dq) const;
-    /// Least-norm motion of the unknowns (size n) for unit travel; zero without a travelling platen.
+    /// Least-norm motion of the n unknowns for unit travel; zero without a travelling platen.
     [[nodiscard]] Eigen::VectorXd travel_motion(Eigen::Index n) const;
     /// Removes the constrained part of a vector of unknowns or forces.
     void project(Eigen::VectorXd& v) const;
     /// The same for a vector of one block.
     void project(int block, Vec6& v) const;
-    /// Force that the support of `boundary` exerts on the body when `residual` = internal - other external forces.
+    /// Force that the support of `boundary` exerts on the body when `residual` = internal - other external forces, six
+    /// per block in either kinematics.
     [[nodiscard]] Vec2 reaction(const Eigen::VectorXd& residual, int boundary) const;
+    /// Takes what the supports exert out of such a residual: forces of all external and internal origin remain.
+    void add_reactions(Eigen::VectorXd& residual) const;
 
 private:
+    [[nodiscard]] Eigen::VectorXd multipliers(const ConstrainedBlock& c, const Eigen::VectorXd& residual) const;
+
+    Kinematics kinematics_ = Kinematics::affine;
     std::vector<PrescribedDisplacement> rows_;
     std::vector<ConstrainedBlock> blocks_;
 };

@@ -32,6 +32,17 @@ struct PointForce {
     Vec2 point = Vec2::Zero(); ///< in the body as cut, scene coordinates (m)
 };
 
+/// A stage without new loads in which strengths are divided by F, until no equilibrium is found: the largest F with one
+/// is the factor of safety.
+struct StrengthReduction {
+    double from = 1.0;                ///< F at the start of the stage, and of the stages before it
+    double to = 1.0;                  ///< F at its end, more than `from`
+    double tolerance = 1e-4;          ///< of the factor of safety, relative
+    std::vector<int> interface_types; ///< whose strengths are divided; empty: all
+
+    [[nodiscard]] double factor_at(double load_factor) const { return from + load_factor * (to - from); }
+};
+
 struct Stage {
     std::string name;
     std::map<int, double> pressure; ///< boundary -> Pa at the end of the stage; others keep theirs
@@ -40,6 +51,7 @@ struct Stage {
                                  ///< the model
     std::optional<PlatenMotion> motion;
     Platens platens = Platens::smooth;
+    std::optional<StrengthReduction> strength_reduction;
     int steps = 1;
 };
 

@@ -12,6 +12,7 @@
 #include "kluft/constitutive/interface_law.hpp"
 #include "kluft/contact/bonds.hpp"
 #include "kluft/contact/contact.hpp"
+#include "kluft/kinematics/rigid.hpp"
 #include "kluft/loading/boundary_loads.hpp"
 
 namespace kluft {
@@ -24,6 +25,7 @@ struct PointLoad {
 };
 
 struct LoadedBody {
+    Kinematics kinematics = Kinematics::affine; ///< rigid blocks have no elastic forces
     const BlockSystem* system = nullptr;
     const std::vector<ElasticModuli>* moduli = nullptr; ///< per material
     const std::vector<InterfaceLaw>* laws = nullptr;
@@ -71,5 +73,9 @@ struct GapAndSlip {
 /// Cauchy stress of each block at q (Pa, positive in tension).
 [[nodiscard]] std::vector<Mat2> block_stresses(const BlockSystem& system, const std::vector<ElasticModuli>& moduli,
                                                const Eigen::VectorXd& q);
+
+/// The same of all blocks of a body in either kinematics. Of a rigid block it is the mean stress of the forces on its
+/// outline, supports included, (1/A) sym sum f x (Love-Weber).
+[[nodiscard]] std::vector<Mat2> block_stresses(const LoadedBody& body, const Eigen::VectorXd& q);
 
 } // namespace kluft

@@ -29,6 +29,7 @@ struct RunWriterOptions {
     std::optional<int> platen_stage; ///< the first stage that moves a platen
     Plane plane = Plane::strain;
     std::vector<std::string> material_names;
+    bool strength_factor = false;             ///< the rows have that column
     bool motion = false;                      ///< the rows have the columns of an explicit run
     std::vector<std::string> history_columns; ///< of StepRecord::histories; without any there is no histories.csv
 };
@@ -43,6 +44,7 @@ struct RunOutcome {
     double elapsed_s = 0.0;
     std::map<std::string, double> seconds; ///< by stage of the computation
     std::string version;
+    std::optional<double> factor_of_safety;
     std::optional<MotionReport> motion; ///< of an explicit run
 };
 

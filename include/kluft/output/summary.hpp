@@ -65,9 +65,10 @@ struct RunSummary {
     double elapsed_s = 0.0;
     std::int64_t peak_memory_bytes = 0;
     std::string version;
-    std::map<std::string, double> seconds; ///< by stage of the computation
-    std::string message;                   ///< why the run ended, if not done
-    std::optional<MotionReport> motion;    ///< of an explicit run
+    std::map<std::string, double> seconds;  ///< by stage of the computation
+    std::string message;                    ///< why the run ended, if not done
+    std::optional<double> factor_of_safety; ///< of a strength reduction that went past it
+    std::optional<MotionReport> motion;     ///< of an explicit run
 };
 
 /// The text of summary.json. What is not known or not a finite number is null.

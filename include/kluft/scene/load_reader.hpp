@@ -10,9 +10,10 @@
 namespace kluft {
 
 /// `root` is the whole scene; `boundaries` are the names of the geometry's boundaries, none if the domain could not be
-/// read (then references to boundaries are not checked); `blocks` are the names of its sets and given blocks.
-/// `has_gravity`: of the analysis.
+/// read (then references to boundaries are not checked); `blocks` are the names of its sets and given blocks, `interfaces`
+/// those of the interface types. `has_gravity`: of the analysis.
 [[nodiscard]] LoadProgram read_loads(const SceneSection& root, const std::vector<std::string>& boundaries,
-                                     const std::vector<std::string>& blocks, bool has_gravity, ReadingContext& context);
+                                     const std::vector<std::string>& blocks, const std::vector<std::string>& interfaces,
+                                     bool has_gravity, ReadingContext& context);
 
 } // namespace kluft

@@ -6,6 +6,7 @@
 
 #include "kluft/blocks/geometry_spec.hpp"
 #include "kluft/constitutive/material.hpp"
+#include "kluft/kinematics/rigid.hpp"
 #include "kluft/loading/load_program.hpp"
 #include "kluft/simulation/histories.hpp"
 #include "kluft/simulation/simulation_options.hpp"
@@ -25,6 +26,7 @@ struct Scene {
     std::string name; ///< the file's stem
     std::string title;
     Plane plane = Plane::strain;
+    Kinematics kinematics = Kinematics::affine;
     double gravity_x = 0.0; ///< m/s2
     double gravity_y = 0.0;
     std::vector<Material> materials;

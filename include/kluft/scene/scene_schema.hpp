@@ -39,10 +39,9 @@ struct KeyRule {
     KeyType type = KeyType::text;
     Measure measure = Measure::fraction; ///< of numbers and coordinates
     Range range{};
-    std::vector<std::string> choices{};     ///< of a choice
-    std::vector<std::string> unavailable{}; ///< further choices that are reserved for a later version
-    std::string_view fallback{};            ///< the default as a scene would write it; "" for none
-    std::string_view fallback_note{};       ///< the default in words where it is no constant
+    std::vector<std::string> choices{}; ///< of a choice
+    std::string_view fallback{};        ///< the default as a scene would write it; "" for none
+    std::string_view fallback_note{};   ///< the default in words where it is no constant
     bool required = false;
     int least_items = 0; ///< of named mappings, lists, points and texts
     std::string_view doc{};

@@ -8,6 +8,7 @@
 #include "kluft/constitutive/interface_law.hpp"
 #include "kluft/constitutive/lattice_stiffness.hpp"
 #include "kluft/constitutive/material.hpp"
+#include "kluft/kinematics/rigid.hpp"
 #include "kluft/loading/load_program.hpp"
 #include "kluft/simulation/histories.hpp"
 
@@ -16,6 +17,7 @@ namespace kluft {
 struct Model {
     BlockSystem system;
     Plane plane = Plane::strain;
+    Kinematics kinematics = Kinematics::affine;
     Vec2 gravity = Vec2::Zero();       ///< at the end of the first stage, unless that has its own (m/s2)
     std::vector<ElasticModuli> moduli; ///< of the blocks, per material
     std::vector<double> densities;     ///< per material (kg/m3)
@@ -34,6 +36,7 @@ struct Model {
 /// What a scene says of the mechanics.
 struct ModelInput {
     Plane plane = Plane::strain;
+    Kinematics kinematics = Kinematics::affine;
     Vec2 gravity = Vec2::Zero();
     std::vector<Material> materials;
     std::vector<InterfaceType> interface_types;

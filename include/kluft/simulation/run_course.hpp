@@ -40,8 +40,11 @@ struct RunCourse {
     std::optional<StageLoads> loads; ///< of the stage in progress
     StepRecord last_record;
     RunReport report;
-    int n_steps = 0; ///< of all stages
-    int passes = 0;  ///< of crack checks in the load step that failed something
+    int n_steps = 0;         ///< of all stages
+    int passes = 0;          ///< of crack checks in the load step that failed something
+    bool holds_back = false; ///< what happens in a load step is told when it is committed: it may be taken back
+    std::vector<StepRecord> waiting_equilibria;
+    std::vector<CrackRecord> waiting_cracks;
     std::chrono::steady_clock::time_point started = std::chrono::steady_clock::now();
 
     /// Wall-clock time, also before the state that the run started from (s).
@@ -58,6 +61,7 @@ struct LoadSteps {
     std::function<StepRecord()> initial_record; ///< of the body before any load
     /// Finds the equilibrium at a load factor and returns its record, which lacks step and load factor.
     std::function<StepRecord(double load_factor, bool last_of_stage)> load_step;
+    std::function<void()> reduce_strengths; ///< all load steps of such a stage; throws with the factor of safety
     std::function<void(const StepRecord&)> look_back; ///< after a commit; throws where the run must not go on
     std::function<void()> end_stage;                  ///< calls leave_stage
     std::function<RunCosts()> costs;                  ///< so far
@@ -68,17 +72,23 @@ struct LoadSteps {
 /// memory. Whichever it is, the accepted state is that of the last committed load step.
 [[nodiscard]] RunReport run_stages(RunCourse& course, const LoadSteps& steps);
 
+/// Makes the work state the accepted one, all or nothing, also out of memory.
+void accept(RunCourse& course, const LoadSteps& steps);
+
 /// Makes the work state, which stands at `load_factor` after another load step, the accepted one and tells the observer.
+/// `regular`: one of the steps of the stage, and not one between two of them.
 void commit_load_step(RunCourse& course, const LoadSteps& steps, StepRecord record, double load_factor,
-                      bool last_of_stage);
+                      bool last_of_stage, bool regular = true);
 
 /// Tells the observer of an equilibrium, or where the run stands; `n_solves`: the work done so far.
 void notify_equilibrium(RunCourse& course, const StepRecord& record);
 void notify_progress(RunCourse& course, double load_factor, int n_solves);
 
-/// The potential cracks and how near to failure they are at displacements q. `bonded`: per interface of the work state.
+/// The potential cracks and how near to failure they are at displacements q. `bonded`: per interface of the work state;
+/// `strengths`: per interface.
 [[nodiscard]] std::vector<CrackCandidate> check_cracks(RunCourse& course, CrackCriterion criterion,
-                                                       const std::vector<char>& bonded, const LoadedBody& body,
+                                                       const std::vector<char>& bonded,
+                                                       const std::vector<Strength>& strengths, const LoadedBody& body,
                                                        const Eigen::VectorXd& q);
 
 /// Makes potential cracks of the work state fractures in one pass and tells the observer.

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "kluft/simulation/model.hpp"
 #include "kluft/simulation/run_costs.hpp"
@@ -21,6 +22,8 @@ struct RunReport {
     int unbalanced_steps = 0;
     int detections = 0;
     int crack_checks = 0;
+    std::optional<double> factor_of_safety; ///< by a stage that reduces the strengths, if that found the limit
+    std::vector<std::string> warnings;
     std::optional<MotionReport> motion; ///< of explicit runs
 };
 

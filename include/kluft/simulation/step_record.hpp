@@ -49,8 +49,9 @@ struct StepRecord {
     double unbalanced_ratio = 0.0;
     bool balanced = true;
     double elapsed_s = 0.0;
-    std::optional<MotionRecord> motion; ///< of explicit runs
-    std::vector<double> histories;      ///< what the scene follows: further columns of histories.csv
+    std::optional<double> strength_factor; ///< F that strengths are divided by, of runs that reduce them
+    std::optional<MotionRecord> motion;    ///< of explicit runs
+    std::vector<double> histories;         ///< what the scene follows: further columns of histories.csv
 };
 
 enum class CrackMode { tension, shear };

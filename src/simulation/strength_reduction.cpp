@@ -1,0 +1,51 @@
+#include "kluft/simulation/strength_reduction.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kluft {
+
+namespace {
+
+bool is_reduced(const StrengthReduction& reduction, int interface_type) {
+    const auto& types = reduction.interface_types;
+    return types.empty() || std::ranges::find(types, interface_type) != types.end();
+}
+
+} // namespace
+
+const StrengthReduction* reduction_of(const LoadProgram& loads, int stage) {
+    for (int i = stage; i < static_cast<int>(loads.stages.size()); ++i) {
+        if (loads.stages[i].strength_reduction) return &*loads.stages[i].strength_reduction;
+    }
+    return nullptr;
+}
+
+double strength_factor(const LoadProgram& loads, int stage, double load_factor) {
+    const StrengthReduction* const reduction = reduction_of(loads, stage);
+    if (reduction == nullptr) return 1.0;
+    return loads.stages[stage].strength_reduction ? reduction->factor_at(load_factor) : reduction->from;
+}
+
+ReducedStrengths reduced_strengths(const Model& model, int stage, double load_factor) {
+    ReducedStrengths result{model.laws, model.strengths};
+    const double factor = strength_factor(model.loads, stage, load_factor);
+    if (factor == 1.0) return result;
+    const StrengthReduction& reduction = *reduction_of(model.loads, stage);
+    for (int t = 0; t < static_cast<int>(result.laws.size()); ++t) {
+        if (!is_reduced(reduction, t)) continue;
+        InterfaceLaw& law = result.laws[t];
+        law.tan_friction /= factor;
+        law.cohesion /= factor;
+        law.tan_dilation = std::min(law.tan_dilation, law.tan_friction);
+    }
+    for (int i = 0; i < model.system.n_interfaces(); ++i) {
+        if (!is_reduced(reduction, model.system.interfaces[i].interface_type)) continue;
+        Strength& strength = result.strengths[i];
+        strength.cohesion /= factor;
+        strength.friction_angle = std::atan(std::tan(strength.friction_angle) / factor);
+    }
+    return result;
+}
+
+} // namespace kluft

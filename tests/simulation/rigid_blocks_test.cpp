@@ -1,0 +1,163 @@
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/LU>
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "kluft/core/diagnostics.hpp"
+#include "kluft/simulation/state_points.hpp"
+#include "support/scene_run.hpp"
+
+namespace kluft {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180.0;
+
+bool stands(const SceneRun& run) { return run.report.status == RunStatus::done && run.report.unbalanced_steps == 0; }
+
+/// A rigid block of width x height (m) on a fixed plinth of its width, gravity turned by the slope; phi = 30 degrees.
+std::string block_on_slope(double width, double height, double slope_degrees) {
+    return fmt::format(R"(
+kluft: 1
+analysis: {{plane: stress, kinematics: rigid, gravity: [{:.17g}, {:.17g}]}}
+materials: {{rock: {{density: 2500, youngs_modulus: 100 GPa, poissons_ratio: 0.2}}}}
+interfaces: {{joint: {{kind: fracture, normal_stiffness: 1e11, shear_stiffness: 1e11, friction_angle: 30, contact_rounding: 0, friction_rounding: 0}}}}
+geometry:
+  domain: {{rectangle: {{width: {}, height: {}}}}}
+  fractures: [{{name: plane, trace: [[-9, 0.5], [9, 0.5]], interface: joint}}]
+  reference_spacing: 1.0
+boundaries: {{bottom: {{support: fixed}}}}
+stages: [{{name: weight, steps: 2}}]
+solver: {{tolerance: 1e-10, balance: 1e-6, max_unbalanced_steps: 1}}
+)",
+                       10.0 * std::sin(slope_degrees * degree), -10.0 * std::cos(slope_degrees * degree), width,
+                       height + 0.5);
+}
+
+// Statics: N = W cos(slope), T = W sin(slope) below the friction angle; no equilibrium above it.
+TEST(RigidBlocksRun, RigidBlockOnASlopeCarriesItsWeightAcrossAndAlongTheJoint) {
+    const double weight = 2500.0 * 10.0 * 4.0 * 1.0;
+    for (const double slope : {0.0, 12.0, 29.99}) {
+        const auto run = run_scene(block_on_slope(4.0, 1.0, slope));
+        ASSERT_TRUE(stands(run)) << slope << run.report.diagnosis;
+        const auto& joint = run.fields.back().interfaces.front();
+        EXPECT_NEAR(-joint.normal_traction * 4.0, weight * std::cos(slope * degree), 1e-6 * weight);
+        EXPECT_NEAR(std::abs(joint.shear_traction) * 4.0, weight * std::sin(slope * degree), 1e-6 * weight);
+    }
+    EXPECT_FALSE(stands(run_scene(block_on_slope(4.0, 1.0, 30.01))));
+}
+
+// A pressure p on its side of height H turns a block of width b over at p H = W b/H.
+TEST(RigidBlocksRun, RigidBlockTurnsOverWhereItsWeightCannotBalanceThePush) {
+    const double width = 0.5, height = 1.5;
+    const double limit = 2500.0 * 10.0 * width * height * width / height / height;
+    for (const double share : {0.995, 1.005}) {
+        const auto run = run_scene(block_on_slope(width, height, 0.0),
+                                   {fmt::format("stages.0.pressure={{left: {:.17g}}}", share * limit)});
+        EXPECT_EQ(stands(run), share < 1.0);
+    }
+}
+
+// Springs in series: joint i closes by the weight above it over k_n L.
+TEST(RigidBlocksRun, StackOfRigidBlocksSettlesByTheWeightAboveEachJoint) {
+    const auto run = run_scene(R"(
+kluft: 1
+analysis: {kinematics: rigid, gravity: 10}
+materials: {rock: {density: 2500, youngs_modulus: 10 GPa, poissons_ratio: 0.2}}
+interfaces: {joint: {kind: fracture, normal_stiffness: 1e9, shear_stiffness: 1e9, friction_angle: 30, contact_rounding: 0}}
+geometry:
+  domain: {rectangle: {width: 2.0, height: 5.0}}
+  fractures:
+    - {trace: [[-1, 1], [3, 1]], interface: joint}
+    - {trace: [[-1, 2], [3, 2]], interface: joint}
+    - {trace: [[-1, 3], [3, 3]], interface: joint}
+    - {trace: [[-1, 4], [3, 4]], interface: joint}
+  reference_spacing: 1.0
+boundaries: {bottom: {support: smooth}}
+stages: [{name: weight, steps: 2}]
+solver: {tolerance: 1e-11, balance: 1e-9}
+)");
+    ASSERT_TRUE(stands(run)) << run.report.diagnosis;
+    const double block_weight = 2500.0 * 10.0 * 2.0;
+    double closure = 0.0;
+    for (int above = 1; above <= 4; ++above) closure += above * block_weight / (1e9 * 2.0);
+    double settled = 0.0;
+    for (const auto& joint : run.fields.back().interfaces) settled -= joint.gap;
+    EXPECT_NEAR(settled, closure, 1e-6 * closure);
+    // Love-Weber: the vertical stress of a block is the mean of the tractions on its two faces.
+    const BlockSystem& system = run.model.system;
+    for (int b = 0; b < system.n_blocks(); ++b) {
+        const double above = 5.0 - (system.origin.y() + system.blocks[b].centroid.y());
+        EXPECT_NEAR(run.fields.back().stress[b](1, 1), -2500.0 * 10.0 * above, 1.0) << b;
+        EXPECT_NEAR(fields_of_state(run.model, run.state).stress[b](1, 1), -2500.0 * 10.0 * above, 1.0) << b;
+    }
+}
+
+std::string hexagons_under_a_platen(const std::string& kinematics) {
+    return fmt::format(R"(
+kluft: 1
+analysis: {{kinematics: {}}}
+materials: {{rock: {{youngs_modulus: 1 GPa, poissons_ratio: 0.2, cohesion: 0.15 MPa, friction_angle: 40, tensile_strength: 0.05 MPa}}}}
+interfaces:
+  net: {{kind: potential_crack, fails_to: joint}}
+  joint: {{kind: fracture, normal_stiffness_times_spacing: 1 GPa, shear_stiffness_times_spacing: 0.5 GPa, friction_angle: 38, contact_rounding: 4 kPa}}
+geometry:
+  domain: {{rectangle: {{width: 0.4, height: 0.8}}}}
+  fractures: [{{trace: [[-0.1, 0.1], [0.5, 0.7]], interface: joint}}]
+  tessellation: {{hexagons: {{spacing: 0.08}}, interface: net}}
+boundaries: {{bottom: {{support: pinned}}}}
+stages:
+  - {{name: pressure, pressure: {{left: 0.2 MPa, right: 0.2 MPa, top: 0.2 MPa}}, steps: 1}}
+  - {{name: platen, strain: {{boundary: top, value: 0.2 %}}, steps: 5}}
+)",
+                       kinematics);
+}
+
+// The same body, loads and strengths: rigid hexagons with the compliance in their interfaces are as stiff as affine ones
+// but for the halves of hexagons at the outline, which are not those of a lattice, and they crack.
+TEST(RigidBlocksRun, BodyOfRigidHexagonsDeformsAndCracksAboutAsAnAffineOne) {
+    const auto rigid = run_scene(hexagons_under_a_platen("rigid"));
+    const auto affine = run_scene(hexagons_under_a_platen("affine"));
+    ASSERT_EQ(rigid.report.status, RunStatus::done) << rigid.report.diagnosis;
+    ASSERT_EQ(affine.report.status, RunStatus::done) << affine.report.diagnosis;
+    EXPECT_NEAR(rigid.history[2].axial_stress, affine.history[2].axial_stress, 0.06 * affine.history[2].axial_stress);
+    EXPECT_FALSE(rigid.cracks.empty());
+    EXPECT_FALSE(affine.cracks.empty());
+    for (int b = 0; b < rigid.model.system.n_blocks(); ++b) {
+        const double size = rigid.model.system.blocks[b].size;
+        EXPECT_NEAR(deformation_gradient(rigid.state.displacement, b, size).determinant(), 1.0, 1e-14);
+    }
+}
+
+// A factorization of three unknowns per block instead of six, with and without the factor kept.
+TEST(RigidBlocksRun, FactorThatIsKeptLeadsToTheSameStateAsOneMadeAnew) {
+    const auto kept = run_scene(hexagons_under_a_platen("rigid"), {"stages.1.steps=2", "stages.1.strain.value=0.05 %",
+                                                                   "solver.tolerance=1e-10", "solver.balance=1e-8"});
+    const auto anew = run_scene(hexagons_under_a_platen("rigid"),
+                                {"stages.1.steps=2", "stages.1.strain.value=0.05 %", "solver.tolerance=1e-10",
+                                 "solver.balance=1e-8", "solver.reuse=false"});
+    ASSERT_TRUE(stands(kept)) << kept.report.diagnosis;
+    ASSERT_TRUE(stands(anew)) << anew.report.diagnosis;
+    EXPECT_NEAR(kept.history.back().axial_stress, anew.history.back().axial_stress,
+                1e-6 * anew.history.back().axial_stress);
+    EXPECT_LT(kept.report.costs.factorizations, anew.report.costs.factorizations);
+}
+
+// A platen under a given stress: the sum of the forces on it is stress times width.
+TEST(RigidBlocksRun, PlatenUnderAGivenStressPressesRigidBlocksWithIt) {
+    const auto run = run_scene(hexagons_under_a_platen("rigid"),
+                               {"stages.1.strain=null", "stages.1.stress={boundary: top, value: 0.4 MPa}",
+                                "solver.tolerance=1e-9", "solver.balance=1e-6"});
+    ASSERT_TRUE(stands(run)) << run.report.diagnosis;
+    EXPECT_NEAR(run.history.back().axial_stress, 0.4e6, 1.0);
+}
+
+TEST(RigidBlocksRun, StiffnessRatioOfRigidHexagonsIsRefused) {
+    EXPECT_THROW((void)run_scene(hexagons_under_a_platen("rigid"), {"interfaces.net.stiffness_ratio=10"}), InputError);
+    EXPECT_THROW((void)run_scene(hexagons_under_a_platen("rigid"), {"materials.rock.poissons_ratio=0.3"}), InputError);
+    EXPECT_THROW((void)run_scene(hexagons_under_a_platen("rigid"), {"analysis.integrator=explicit"}), InputError);
+}
+
+} // namespace
+} // namespace kluft

@@ -1,0 +1,179 @@
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "kluft/core/diagnostics.hpp"
+#include "kluft/simulation/state_points.hpp"
+#include "kluft/simulation/strength_reduction.hpp"
+#include "support/scene_run.hpp"
+
+namespace kluft {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180.0;
+
+/// A block of 4 m x 1 m on a fixed plinth, gravity turned by the slope; phi = 30 degrees.
+std::string block_on_slope(double slope_degrees, const std::string& reduction, const std::string& more_joints = "",
+                           const std::string& type = "joint") {
+    return fmt::format(R"(
+kluft: 1
+analysis: {{plane: stress, gravity: [{:.17g}, {:.17g}]}}
+materials: {{rock: {{density: 2500, youngs_modulus: 100 GPa, poissons_ratio: 0.2}}}}
+interfaces:
+  joint: {{kind: fracture, normal_stiffness: 1e11, shear_stiffness: 1e11, friction_angle: 30, contact_rounding: 0}}
+  {}
+geometry:
+  domain: {{rectangle: {{width: 4, height: 1.5}}}}
+  fractures: [{{trace: [[-9, 0.5], [9, 0.5]], interface: {}}}]
+  reference_spacing: 1.0
+boundaries: {{bottom: {{support: fixed}}}}
+stages:
+  - {{name: weight, steps: 2}}
+  - {{name: reduction, strength_reduction: {}, steps: 4}}
+cracks: {{criterion: interface_traction}}
+solver: {{tolerance: 1e-10}}
+)",
+                       10.0 * std::sin(slope_degrees * degree), -10.0 * std::cos(slope_degrees * degree), more_joints,
+                       type, reduction);
+}
+
+// F = tan(phi)/tan(slope): the block slides where its reduced friction angle is the slope.
+TEST(StrengthReduction, BlockOnASlopeHasTheRatioOfTheTangentsAsFactorOfSafety) {
+    for (const double slope : {12.0, 20.0, 29.0}) {
+        const auto run = run_scene(block_on_slope(slope, "{to: 4, tolerance: 1e-6}"));
+        ASSERT_TRUE(run.report.factor_of_safety) << run.report.diagnosis;
+        EXPECT_EQ(run.report.status, RunStatus::collapsed);
+        const double expected = std::tan(30 * degree) / std::tan(slope * degree);
+        EXPECT_NEAR(*run.report.factor_of_safety, expected, 3e-6 * expected);
+        EXPECT_EQ(run.report.unbalanced_steps, 0);
+    }
+}
+
+// A slope above the friction angle is weak: its factor of safety is less than 1, and its weight is brought up with
+// strengths that are not divided but multiplied.
+TEST(StrengthReduction, SlopeSteeperThanItsFrictionAngleHasAFactorBelowOne) {
+    const auto run = run_scene(block_on_slope(40.0, "{from: 0.3, to: 1, tolerance: 1e-6}"));
+    ASSERT_TRUE(run.report.factor_of_safety) << run.report.diagnosis;
+    const double expected = std::tan(30 * degree) / std::tan(40 * degree);
+    EXPECT_NEAR(*run.report.factor_of_safety, expected, 3e-6 * expected);
+    EXPECT_EQ(run.history.front().strength_factor, 0.3);
+    EXPECT_EQ(run.history.back().strength_factor, run.report.factor_of_safety);
+}
+
+// The default tolerance, and a factor that lies between two steps of the stage.
+TEST(StrengthReduction, FactorOfSafetyIsFoundWithinItsTolerance) {
+    const auto run = run_scene(block_on_slope(20.0, "{to: 2}"));
+    ASSERT_TRUE(run.report.factor_of_safety) << run.report.diagnosis;
+    const double expected = std::tan(30 * degree) / std::tan(20 * degree);
+    EXPECT_NEAR(*run.report.factor_of_safety, expected, 2e-4 * expected);
+}
+
+TEST(StrengthReduction, BodyThatStandsToTheEndHasNoFactorOfSafetyButAWarning) {
+    const auto run = run_scene(block_on_slope(20.0, "{to: 1.5}"));
+    EXPECT_EQ(run.report.status, RunStatus::done) << run.report.diagnosis;
+    EXPECT_FALSE(run.report.factor_of_safety);
+    ASSERT_EQ(run.report.warnings.size(), 1U);
+    EXPECT_NE(run.report.warnings.front().find("above 1.5"), std::string::npos);
+    EXPECT_EQ(run.history.back().strength_factor, 1.5);
+}
+
+TEST(StrengthReduction, BodyThatDoesNotStandAtTheFirstFactorHasNone) {
+    const auto run = run_scene(block_on_slope(40.0, "{to: 2}"));
+    EXPECT_NE(run.report.status, RunStatus::done);
+    EXPECT_FALSE(run.report.factor_of_safety);
+}
+
+TEST(StrengthReduction, InterfacesThatAreNotNamedKeepTheirStrength) {
+    const auto run = run_scene(
+        block_on_slope(20.0, "{to: 2, interfaces: [other]}",
+                       "other: {kind: fracture, normal_stiffness: 1e11, shear_stiffness: 1e11, friction_angle: 30}"));
+    EXPECT_EQ(run.report.status, RunStatus::done) << run.report.diagnosis;
+    EXPECT_FALSE(run.report.factor_of_safety);
+}
+
+// A bond on a slope that nothing holds once it is broken: it breaks where c L/F + W cos tan(phi)/F = W sin.
+TEST(StrengthReduction, StrengthOfAPotentialCrackIsDividedToo) {
+    const auto run = run_scene(block_on_slope(50.0, "{to: 4, tolerance: 1e-6}",
+                                              "bond: {kind: potential_crack, normal_stiffness: 1e11, shear_stiffness: "
+                                              "1e11, fails_to: joint, cohesion: 20 kPa, "
+                                              "friction_angle: 30, tensile_strength: 30 kPa}",
+                                              "bond"));
+    ASSERT_TRUE(run.report.factor_of_safety) << run.report.diagnosis;
+    const double weight = 2500.0 * 10.0 * 4.0;
+    const double expected =
+        (20e3 * 4.0 + weight * std::cos(50 * degree) * std::tan(30 * degree)) / (weight * std::sin(50 * degree));
+    EXPECT_NEAR(*run.report.factor_of_safety, expected, 1e-5 * expected);
+    EXPECT_TRUE(run.cracks.empty()); // of the steps that failed nothing is told
+}
+
+// What pictures show of the last state is computed with the strengths that it stood with.
+TEST(StrengthReduction, FieldsOfASavedStateHaveTheReducedStrengths) {
+    const auto run = run_scene(block_on_slope(20.0, "{to: 2, tolerance: 1e-6}"));
+    ASSERT_TRUE(run.report.factor_of_safety);
+    const auto& shown = run.fields.back().interfaces.front();
+    const auto saved = fields_of_state(run.model, run.state).interfaces.front();
+    EXPECT_NEAR(saved.shear_traction, shown.shear_traction, 1e-6 * std::abs(shown.shear_traction));
+    EXPECT_EQ(saved.state, shown.state);
+}
+
+// A resumed run goes on with the factors: the state is that of a step before the limit.
+TEST(StrengthReduction, RunThatIsResumedInTheStageFindsTheSameFactor) {
+    const Scene scene = read_scene_text(block_on_slope(20.0, "{to: 2, tolerance: 1e-5}"));
+    const Model model = build_scene_model(scene).model;
+    struct Stop : StepObserver {
+        std::atomic<bool> stop{false};
+        void step(const StepRecord& record, const State&, const std::function<FieldRecord()>&, bool) override {
+            stop = record.step == 3;
+        }
+    } observer;
+    State state = initial_state(model);
+    EXPECT_EQ(run_simulation(model, scene.cracks, scene.solver, state, observer, observer.stop).status,
+              RunStatus::interrupted);
+    EXPECT_EQ(state.step_in_stage, 1);
+    observer.stop = false;
+    const auto resumed = run_simulation(model, scene.cracks, scene.solver, state, observer, observer.stop);
+    ASSERT_TRUE(resumed.factor_of_safety) << resumed.diagnosis;
+    const double expected = std::tan(30 * degree) / std::tan(20 * degree);
+    EXPECT_NEAR(*resumed.factor_of_safety, expected, 2e-5 * expected);
+}
+
+/// A vertical face of 10 m over a plane that dips 45 degrees out of it; c 20 kPa, phi 30 degrees, 25 kN/m3.
+std::string planar_slope(const std::string& trace, double onset) {
+    return fmt::format(R"(
+kluft: 1
+analysis: {{plane: strain, gravity: 10}}
+materials: {{rock: {{density: 2500, youngs_modulus: 20 GPa, poissons_ratio: 0.2}}}}
+interfaces: {{joint: {{kind: fracture, normal_stiffness: 1e10, shear_stiffness: 1e10, friction_angle: 30, cohesion: 20 kPa, cohesion_onset: {}, contact_rounding: 0}}}}
+geometry:
+  domain: {{rectangle: {{width: 12, height: 12, origin: [0, -2]}}}}
+  fractures: [{{trace: {}, interface: joint}}]
+  reference_spacing: 0.1
+boundaries: {{bottom: {{support: fixed}}}}
+stages:
+  - {{name: weight, steps: 2}}
+  - {{name: reduction, strength_reduction: {{from: 0.5, to: 1.5, tolerance: 1e-5}}, steps: 5}}
+solver: {{tolerance: 1e-10}}
+)",
+                       onset, trace);
+}
+
+// F = (c L + W cos(45) tan(30))/(W sin(45)), L = 14.142 m, W = 1250 kN/m. The normal traction falls to zero at the upper
+// end of the plane, and the point that stands there for a sixth of the last piece of it has no cohesion: the trace has a
+// corner (of 1e-6 m) near the top that makes this piece 0.1 % of the length. A plane in one piece has a factor of 0.8440.
+TEST(StrengthReduction, PlanarSlopeHasTheFactorOfSafetyOfLimitEquilibrium) {
+    const double weight = 1.25e6, length = 10.0 * std::sqrt(2.0);
+    const auto factor = [&](double cohesive_length) {
+        return (20e3 * cohesive_length + weight * std::cos(45 * degree) * std::tan(30 * degree)) /
+               (weight * std::sin(45 * degree));
+    };
+    EXPECT_NEAR(factor(length), 0.8974, 5e-5);
+    const auto run = run_scene(planar_slope("[[0, 0], [9.99, 9.990001], [10, 10]]", 20.0));
+    ASSERT_TRUE(run.report.factor_of_safety) << run.report.diagnosis;
+    EXPECT_NEAR(*run.report.factor_of_safety, factor(length), 1e-4);
+    EXPECT_NEAR(*run.report.factor_of_safety, factor(length * (1.0 - 0.001 / 6.0)), 3e-5);
+}
+
+} // namespace
+} // namespace kluft
