@@ -93,6 +93,12 @@ private:
         motion_.body().constraints = course_.loads->constraints();
         motion_.body().pressure_edges = course_.loads->edges();
         motion_.add_detection_energy(detect());
+        if (has_platen_velocity() && platen_time() < motion_.time_step()) {
+            report_.warnings.push_back(fmt::format(
+                "stage {}: the platen is slower than loading_rate, since a load step takes one time step at "
+                "least; expected {:g} steps or fewer",
+                work_.stage, std::floor(course_.stage().steps * platen_time() / motion_.time_step())));
+        }
     }
 
     void set_load(double load_factor) {

@@ -192,6 +192,8 @@ TEST(ExplicitSimulation, PlatenVelocityIsWhatTheSceneSays) {
     EXPECT_NEAR(in_platen_stage(slow), 10 * in_platen_stage(fast), 0.1 * in_platen_stage(slow));
     EXPECT_LT(slow.history.back().motion->platen_imbalance, fast.history.back().motion->platen_imbalance);
     EXPECT_LT(slow.history.back().motion->platen_imbalance, 0.02);
+    EXPECT_TRUE(slow.report.warnings.empty());
+    EXPECT_EQ(run_at("1 km/s").report.warnings.size(), 1U) << "a load step takes one time step at least";
 }
 
 TEST(ExplicitSimulation, BodyThatNothingHoldsEndsWithADiagnosisAndFiniteNumbers) {
