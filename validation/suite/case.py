@@ -82,6 +82,10 @@ class Run:
         return Table(self.directory / "cracks.csv")
 
     @property
+    def histories(self):
+        return Table(self.directory / "histories.csv")
+
+    @property
     def field_steps(self):
         return sorted(int(file.stem.split("_")[1]) for file in (self.directory / "fields").glob("blocks_*.vtu"))
 
