@@ -105,7 +105,6 @@ RunWriter::RunWriter(fs::path directory, const BlockSystem& system, RunWriterOpt
     if (options_.motion) header += ',' + motion_header();
     if (options_.resumed_step) {
         const int last = *options_.resumed_step;
-        remove_results_but_tables_and_state(directory_);
         tables_ = std::make_unique<Tables>(Tables{PatientTable(AppendTable::resume(history, header, last)),
                                                   PatientTable(AppendTable::resume(equilibria, header, last)),
                                                   PatientTable(AppendTable::resume(cracks, cracks_header(), last)),
@@ -113,6 +112,9 @@ RunWriter::RunWriter(fs::path directory, const BlockSystem& system, RunWriterOpt
                                                   {}});
         if (!options_.history_columns.empty())
             tables_->histories.emplace(AppendTable::resume(histories, histories_columns, last));
+        else
+            remove_file(histories);
+        remove_results_but_tables_and_state(directory_);
         history_ = read_history(history);
         equilibria_ = read_history(equilibria);
         if (history_.empty() || history_.back().step != last)

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "kluft/blocks/block_search.hpp"
+#include "kluft/core/diagnostics.hpp"
 #include "kluft/kinematics/affine.hpp"
 #include "kluft/simulation/model.hpp"
 
@@ -109,12 +110,14 @@ void append_contacts(const HistoryGauge& gauge, const LoadedBody& body, const Ei
                                  per_length * sum.opening, per_length * sum.slip});
 }
 
-void append_block(const MaterialPoint& point, const Model& model, const Eigen::VectorXd& q,
-                  std::vector<double>& values) {
+/// `rigid_stresses`: of all blocks where they are rigid, and follow from the forces on them; else empty.
+void append_block(const MaterialPoint& point, const Model& model, const std::vector<Mat2>& rigid_stresses,
+                  const Eigen::VectorXd& q, std::vector<double>& values) {
     const Block& block = model.system.blocks[point.block];
     const Vec2 u = displacement_at(q, point.block, point.xi);
     const Mat2 f = deformation_gradient(q, point.block, block.size);
-    const Mat2 stress = cauchy_stress(f, model.moduli[block.material]);
+    const Mat2 stress =
+        rigid_stresses.empty() ? cauchy_stress(f, model.moduli[block.material]) : rigid_stresses[point.block];
     values.insert(values.end(), {u.x(), u.y(), std::atan2(f(1, 0) - f(0, 1), f(0, 0) + f(1, 1)), 0.0 - stress(0, 0),
                                  0.0 - stress(1, 1), 0.0 - stress(0, 1)});
 }
@@ -133,6 +136,9 @@ std::vector<HistoryGauge> place_histories(const BlockSystem& system, const std::
         } else if (request.fractures.empty()) {
             gauge.pair = {block_called(system, request.pair.first, what),
                           block_called(system, request.pair.second, what)};
+            if (gauge.pair.first == gauge.pair.second)
+                throw InputError(what + ".interface: expected two different blocks, found block " +
+                                 block_label(system, gauge.pair.first) + " twice");
         }
         gauges.push_back(std::move(gauge));
     }
@@ -149,9 +155,13 @@ std::vector<std::string> history_columns(const Model& model) {
 
 std::vector<double> measure_histories(const Model& model, const LoadedBody& body, const Eigen::VectorXd& q) {
     std::vector<double> values;
+    std::vector<Mat2> rigid_stresses;
+    const bool follows_block =
+        std::ranges::any_of(model.histories, [](const HistoryGauge& gauge) { return gauge.point.has_value(); });
+    if (follows_block && body.kinematics == Kinematics::rigid) rigid_stresses = block_stresses(body, q);
     for (const HistoryGauge& gauge : model.histories) {
         if (gauge.point)
-            append_block(*gauge.point, model, q, values);
+            append_block(*gauge.point, model, rigid_stresses, q, values);
         else
             append_contacts(gauge, body, q, values);
     }

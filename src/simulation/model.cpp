@@ -199,7 +199,8 @@ bool has_gravity(const Model& model) {
 
 std::string fingerprint(const Model& model) {
     Digest digest;
-    digest.add(model.gravity.x(), model.gravity.y());
+    digest.add(model.gravity.x(), model.gravity.y(), model.system.spacing);
+    for (const Support support : model.loads.supports) digest.add(static_cast<int>(support));
     if (model.kinematics == Kinematics::rigid) digest.add(static_cast<int>(model.kinematics));
     for (const Vec2& vertex : model.system.vertices) digest.add(vertex.x(), vertex.y());
     for (int b = 0; b < model.system.n_blocks(); ++b)

@@ -117,9 +117,13 @@ void commit_load_step(RunCourse& course, const LoadSteps& steps, StepRecord reco
     record.load_factor = load_factor;
     record.crack_passes = course.passes;
     accept(course, steps);
-    for (const StepRecord& waiting : std::exchange(course.waiting_equilibria, {})) course.observer.equilibrium(waiting);
-    for (const CrackRecord& waiting : std::exchange(course.waiting_cracks, {})) course.observer.crack(waiting);
+    tell_waiting(course);
     notify_step(course, steps, record, last_of_stage);
+}
+
+void tell_waiting(RunCourse& course) {
+    for (const StepRecord& record : std::exchange(course.waiting_equilibria, {})) course.observer.equilibrium(record);
+    for (const CrackRecord& crack : std::exchange(course.waiting_cracks, {})) course.observer.crack(crack);
 }
 
 void notify_equilibrium(RunCourse& course, const StepRecord& record) {

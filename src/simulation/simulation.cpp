@@ -103,7 +103,14 @@ public:
             if (work_.unbalanced_in_succession >= options_.max_unbalanced_steps)
                 throw no_equilibrium(last_worst_block_, record.unbalanced_ratio);
         };
-        steps_.end_stage = [this] { leave_stage(model_, *course_.loads, problem_, last_residual_.forces, work_); };
+        steps_.end_stage = [this] {
+            if (last_residual_.forces.size() == 0) { // resumed at the end of a stage
+                prepare();
+                set_load(1.0);
+                (void)measure(work_.displacement, 0.0);
+            }
+            leave_stage(model_, *course_.loads, problem_, last_residual_.forces, work_);
+        };
         steps_.costs = [this] { return costs(); };
         steps_.fields = [this] { return field_record(model_, work_, problem_); };
         return run_stages(course_, steps_);
@@ -192,6 +199,7 @@ private:
         const auto factor = [&](double load_factor) { return reduction.factor_at(load_factor); };
         while (factor(*failing) - factor(work_.load_factor) > reduction.tolerance * factor(work_.load_factor)) {
             const double middle = 0.5 * (work_.load_factor + *failing);
+            if (middle == work_.load_factor || middle == *failing) break; // to the last digit
             if (!stands_at(middle, false)) failing = middle;
         }
         report_.factor_of_safety = factor(work_.load_factor);
@@ -204,20 +212,22 @@ private:
         worst_share_ = 0.0;
         advance(0.0, false);
         accept(course_, steps_);
+        tell_waiting(course_);
     }
 
     /// Tries a load step; the state stays where it was if there is no equilibrium at its end. `regular`: one of the steps
     /// of the stage, and not one between two of them.
     bool stands_at(double target, bool regular) {
         const StepRecord before = course_.last_record;
+        const int events = report_.costs.events;
         const bool last_of_stage = regular && work_.step_in_stage + 1 == course_.stage().steps;
         course_.passes = 0;
         try {
             commit_load_step(course_, steps_, load_step(target, last_of_stage), target, last_of_stage, regular);
             return true;
         } catch (const LostEquilibrium& failure) {
-            if (!failure.may_be_collapse) throw;
             last_failure_ = failure;
+            report_.costs.events = events;
             work_ = course_.accepted;
             course_.last_record = before;
             course_.waiting_equilibria.clear();
@@ -366,6 +376,7 @@ private:
     }
 
     void set_load(double load_factor) {
+        tried_load_factor_ = load_factor;
         apply_load(model_, *course_.loads, work_.stage, load_factor, problem_);
         if (reduces_strengths()) strengths_ = reduced_strengths(model_, work_.stage, load_factor);
     }
@@ -594,10 +605,8 @@ private:
     [[nodiscard]] LostEquilibrium no_equilibrium(int worst_block, double residual_ratio,
                                                  bool nothing_holds = false) const {
         std::string text = fmt::format("residual {:.2g} of the forces", residual_ratio);
-        if (reduction_of(model_.loads, work_.stage) != nullptr) {
-            text += fmt::format("; with the strengths divided by {:g}",
-                                strength_factor(model_.loads, work_.stage, work_.load_factor));
-        }
+        const double factor = strength_factor(model_.loads, work_.stage, tried_load_factor_);
+        if (factor != 1.0) text += fmt::format("; with the strengths divided by {:.6g}", factor);
         if (nothing_holds) text += "; nothing holds the body, which has neither a support nor a platen";
         if (worst_block >= 0) text += "; worst is " + block_description(worst_block);
         return {text, !nothing_holds};
@@ -629,6 +638,7 @@ private:
     EquilibriumProblem problem_;
     Residual last_residual_;
     int iterations_at_start_ = 0;
+    double tried_load_factor_ = 0.0;
     bool step_balanced_ = true;
     double worst_share_ = 0.0;
     int last_worst_block_ = -1;

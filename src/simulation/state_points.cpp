@@ -77,7 +77,7 @@ FieldRecord fields_of_state(const Model& model, const State& state) {
         const StageLoads loads = enter_stage(model, copy);
         body.constraints = loads.constraints();
         body.pressure_edges = loads.edges();
-        if (model.gravity != Vec2::Zero()) body.densities = model.densities;
+        if (has_gravity(model)) body.densities = model.densities;
         apply_load(model, loads, state.stage, state.load_factor, body);
     }
     return field_record(model, state, body);

@@ -163,10 +163,15 @@ std::optional<CurveDifference> difference_of_curves(const FinishedRun& a, const 
                             std::min(*a.numbers.peak_strain, *b.numbers.peak_strain), peak->differential_stress);
 }
 
-void add_mechanics(const CurveNumbers& a, const CurveNumbers& b, TableWriter& writer) {
-    writer.judge(writer.add("peak_stress", "peak stress", "MPa", mega, a.peak_stress, b.peak_stress));
-    writer.judge(writer.add("peak_strain", "peak strain", "%", percent, a.peak_strain, b.peak_strain));
-    writer.judge(writer.add("youngs_modulus", "Young's modulus", "MPa", mega, a.youngs_modulus, b.youngs_modulus));
+/// `tested`: a platen moves in one of the runs; without one strain and modulus mean nothing.
+void add_mechanics(const CurveNumbers& a, const CurveNumbers& b, bool tested, TableWriter& writer) {
+    const auto judge = [&](ComparedQuantity& quantity) {
+        if (tested) writer.judge(quantity);
+    };
+    ComparedQuantity& peak = writer.add("peak_stress", "peak stress", "MPa", mega, a.peak_stress, b.peak_stress);
+    if (tested || a.peak_stress.value_or(0.0) != 0.0 || b.peak_stress.value_or(0.0) != 0.0) writer.judge(peak);
+    judge(writer.add("peak_strain", "peak strain", "%", percent, a.peak_strain, b.peak_strain));
+    judge(writer.add("youngs_modulus", "Young's modulus", "MPa", mega, a.youngs_modulus, b.youngs_modulus));
     writer.add("poissons_ratio", "Poisson's ratio", "", 1.0, a.poissons_ratio, b.poissons_ratio);
     writer.add("residual_stress", "residual stress", "MPa", mega, a.residual_stress, b.residual_stress);
 }
@@ -350,7 +355,11 @@ Comparison compare_runs(const FinishedRun& a, const FinishedRun& b, double toler
     const auto curves = difference_of_curves(a, b);
     if (curves) table.curve_end = curves->end;
     TableWriter writer(table);
-    add_mechanics(a.numbers, b.numbers, writer);
+    add_mechanics(a.numbers, b.numbers, a.platen_stage || b.platen_stage, writer);
+    const auto factor_a = a.summary ? a.summary->factor_of_safety : std::nullopt;
+    const auto factor_b = b.summary ? b.summary->factor_of_safety : std::nullopt;
+    if (factor_a || factor_b)
+        writer.judge(writer.add("factor_of_safety", "factor of safety", "", 1.0, factor_a, factor_b));
     add_cracks(a, b, comparison, writer);
     add_curves(curves, writer);
     add_costs(a, b, writer);

@@ -35,6 +35,28 @@ solver: {{tolerance: 1e-10, balance: 1e-6, max_unbalanced_steps: 1}}
                        height + 0.5);
 }
 
+// Love-Weber: the mean stress of a block that stands on its base is half of that under it, rho g h/2.
+TEST(RigidBlocksRun, HistoryOfARigidBlockHasTheStressOfItsForces) {
+    const auto run = run_scene(R"(
+kluft: 1
+analysis: {plane: stress, kinematics: rigid}
+materials: {rock: {youngs_modulus: 1e10, poissons_ratio: 0, density: 2500}}
+interfaces: {joint: {kind: fracture, normal_stiffness: 1e10, shear_stiffness: 5e9, friction_angle: 30, contact_rounding: 0}}
+geometry:
+  blocks:
+    - {name: base, polygon: [[-1, -1], [3, -1], [3, 0], [-1, 0]], support: fixed}
+    - {name: top, polygon: [[0, 0], [2, 0], [2, 1], [0, 1]]}
+stages: [{steps: 2, gravity: 10}]
+solver: {tolerance: 1e-10, balance: 1e-9}
+output: {histories: {b: {block: top}}}
+)");
+    ASSERT_TRUE(stands(run)) << run.report.diagnosis;
+    const auto& values = run.history.back().histories; // displacement_x, _y, rotation, stress_xx, _yy, _xy
+    ASSERT_EQ(values.size(), 6U);
+    EXPECT_NEAR(values[4], 2500.0 * 10.0 * 1.0 / 2, 1e-6 * 12500.0);
+    EXPECT_NEAR(values[3], 0.0, 1e-6 * 12500.0);
+}
+
 // Statics: N = W cos(slope), T = W sin(slope) below the friction angle; no equilibrium above it.
 TEST(RigidBlocksRun, RigidBlockOnASlopeCarriesItsWeightAcrossAndAlongTheJoint) {
     const double weight = 2500.0 * 10.0 * 4.0 * 1.0;

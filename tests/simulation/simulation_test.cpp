@@ -296,6 +296,50 @@ solver: {tolerance: 1e-10, balance: 1e-7, max_unbalanced_steps: 1}
     EXPECT_EQ(run.report.unbalanced_steps, 0);
 }
 
+/// Keeps the state at the end of the first stage, as a run that is killed there leaves it on the disk.
+class KeepsStateOfFirstStage : public StepObserver {
+public:
+    explicit KeepsStateOfFirstStage(State& kept) : kept_(kept) {}
+    void equilibrium(const StepRecord&) override {}
+    void crack(const CrackRecord&) override {}
+    void step(const StepRecord& record, const State& state, const std::function<FieldRecord()>&, bool last) override {
+        if (last && record.stage == 0) kept_ = state;
+        last_ = record;
+    }
+    [[nodiscard]] const StepRecord& last() const { return last_; }
+
+private:
+    State& kept_;
+    StepRecord last_;
+};
+
+// The pressure that a platen leaves behind is its reaction, also where the run was ended right after the stage.
+TEST(Simulation, RunResumedAtTheEndOfAStageKeepsTheReactionOfThePlaten) {
+    const Scene scene = read_scene_text(R"(
+kluft: 1
+analysis: {plane: stress}
+materials: {rock: {youngs_modulus: 1e9, poissons_ratio: 0}}
+interfaces: {joint: {kind: fracture, normal_stiffness: 1e10, shear_stiffness: 5e9, friction_angle: 30}}
+geometry: {domain: {rectangle: {width: 2, height: 2}}, fractures: [{trace: [[-1, 1], [3, 1]]}], reference_spacing: 1}
+boundaries: {bottom: {support: pinned}}
+stages:
+  - {displacement: {boundary: top, value: 1e-3}, steps: 2}
+  - {pressure: {left: 1e4, right: 1e4}, steps: 2}
+solver: {tolerance: 1e-10, balance: 1e-9}
+)");
+    const Model model = build_scene_model(scene).model;
+    const std::atomic<bool> stop{false};
+    State kept;
+    State state = initial_state(model);
+    KeepsStateOfFirstStage whole(kept);
+    ASSERT_EQ(run_simulation(model, scene.cracks, scene.solver, state, whole, stop).status, RunStatus::done);
+    State ignored;
+    KeepsStateOfFirstStage resumed(ignored);
+    ASSERT_EQ(run_simulation(model, scene.cracks, scene.solver, kept, resumed, stop).status, RunStatus::done);
+    EXPECT_GT(whole.last().axial_stress, 1e5);
+    EXPECT_NEAR(resumed.last().axial_stress, whole.last().axial_stress, 1e-6 * whole.last().axial_stress);
+}
+
 TEST(Simulation, SameSceneTwiceGivesTheSameBits) {
     std::ifstream file(KLUFT_SOURCE_DIR "/models/quickstart.yaml");
     const std::string scene{std::istreambuf_iterator<char>(file), {}};

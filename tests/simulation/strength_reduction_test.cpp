@@ -51,6 +51,30 @@ TEST(StrengthReduction, BlockOnASlopeHasTheRatioOfTheTangentsAsFactorOfSafety) {
     }
 }
 
+// A specimen that only pressures hold has a factor of safety too: uniaxial compression s fails where
+// s = 2 (c/F) cos(phi_F)/(1 - sin(phi_F)) with tan(phi_F) = tan(phi)/F.
+TEST(StrengthReduction, BodyHeldByPressuresAloneHasAFactorOfSafety) {
+    const auto run = run_scene(R"(
+kluft: 1
+analysis: {plane: stress}
+materials: {rock: {youngs_modulus: 1e10, poissons_ratio: 0, cohesion: 0.1 MPa, friction_angle: 30, tensile_strength: 0.01 MPa}}
+interfaces:
+  bond: {kind: potential_crack, normal_stiffness: 1e11, shear_stiffness: 1e11, fails_to: joint}
+  joint: {kind: fracture, normal_stiffness: 1e11, shear_stiffness: 1e11}
+geometry: {domain: {rectangle: {width: 1, height: 2}}, fractures: [{trace: [[-1, 0], [2, 2]], interface: bond}], reference_spacing: 1}
+stages:
+  - {name: load, pressure: {top: 0.1 MPa, bottom: 0.1 MPa}}
+  - {name: reduction, strength_reduction: {to: 20, interfaces: [bond]}, steps: 20}
+)");
+    ASSERT_TRUE(run.report.factor_of_safety) << run.report.diagnosis;
+    EXPECT_EQ(run.report.status, RunStatus::collapsed);
+    const auto strength = [](double f) {
+        const double phi = std::atan(std::tan(30 * degree) / f);
+        return 2 * 0.1e6 / f * std::cos(phi) / (1 - std::sin(phi));
+    };
+    EXPECT_NEAR(strength(*run.report.factor_of_safety), 0.1e6, 2e-3 * 0.1e6);
+}
+
 // A slope above the friction angle is weak: its factor of safety is less than 1, and its weight is brought up with
 // strengths that are not divided but multiplied.
 TEST(StrengthReduction, SlopeSteeperThanItsFrictionAngleHasAFactorBelowOne) {

@@ -27,7 +27,7 @@ struct LostEquilibrium {
     bool may_be_collapse = false; ///< where the load is a stress, past what the body carries
 };
 
-/// What a run has in hand. Only commit and the end of a stage change the accepted state.
+/// What a run has in hand. Only `accept` changes the accepted state.
 struct RunCourse {
     RunCourse(const Model& model, State& state, StepObserver& observer, const std::atomic<bool>& stop);
 
@@ -79,6 +79,9 @@ void accept(RunCourse& course, const LoadSteps& steps);
 /// `regular`: one of the steps of the stage, and not one between two of them.
 void commit_load_step(RunCourse& course, const LoadSteps& steps, StepRecord record, double load_factor,
                       bool last_of_stage, bool regular = true);
+
+/// Tells the observer what was held back.
+void tell_waiting(RunCourse& course);
 
 /// Tells the observer of an equilibrium, or where the run stands; `n_solves`: the work done so far.
 void notify_equilibrium(RunCourse& course, const StepRecord& record);
