@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
+#include <execinfo.h>
 #include <fmt/format.h>
 #include <gmp.h>
 
@@ -201,10 +202,18 @@ void add_validate_command(CLI::App& app, Command& command) {
     sub->callback([sub, &command] { command = [words = sub->remaining()] { return kluft::validate({words}); }; });
 }
 
+/// Makes the C library load what it unwinds a thread with, which it otherwise does when a thread first ends by itself and
+/// aborts the program where there is no memory for that.
+void load_unwinder() {
+    void* frame = nullptr;
+    (void)backtrace(&frame, 1);
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
     mp_set_memory_functions(gmp_allocate, gmp_reallocate, nullptr);
+    load_unwinder();
     CLI::App app{"Kluft: strength of fractured rock by the implicit expanded distinct element method"};
     app.set_version_flag("--version", std::string(kluft::version()));
     app.require_subcommand(1);
