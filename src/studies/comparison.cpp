@@ -17,8 +17,6 @@ namespace kluft {
 
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr double mega = 1e6;
 constexpr double percent = 0.01;
 constexpr double rounding = 1e-6; ///< of the reach: cracks exactly one spacing apart are matched
