@@ -12,6 +12,7 @@
 #include "kluft/simulation/simulation.hpp"
 #include "support/lattice_body.hpp"
 #include "support/scene_run.hpp"
+#include "support/slope_scene.hpp"
 
 namespace kluft {
 namespace {
@@ -432,25 +433,6 @@ TEST(ClosedForms, DilationAgainstConstantStiffnessRaisesTheNormalStress) {
 }
 
 // ---- blocks under their weight -------------------------------------------------------------------------------------
-
-/// A block of width x height (m) on a fixed plinth of its width, gravity turned by the slope; phi = 30 degrees.
-std::string block_on_slope(double width, double height, double slope_degrees) {
-    return fmt::format(R"(
-kluft: 1
-analysis: {{plane: stress, gravity: [{:.17g}, {:.17g}]}}
-materials: {{rock: {{density: 2500, youngs_modulus: 100 GPa, poissons_ratio: 0.2}}}}
-interfaces: {{joint: {{kind: fracture, normal_stiffness: 1e11, shear_stiffness: 1e11, friction_angle: 30, contact_rounding: 0, friction_rounding: 0}}}}
-geometry:
-  domain: {{rectangle: {{width: {}, height: {}}}}}
-  fractures: [{{name: plane, trace: [[-9, 0.5], [9, 0.5]], interface: joint}}]
-  reference_spacing: 1.0
-boundaries: {{bottom: {{support: fixed}}}}
-stages: [{{name: weight, steps: 2}}]
-solver: {{tolerance: 1e-10, balance: 1e-6, max_unbalanced_steps: 1}}
-)",
-                       10.0 * std::sin(slope_degrees * degree), -10.0 * std::cos(slope_degrees * degree), width,
-                       height + 0.5);
-}
 
 // Statics: N = W cos(slope), T = W sin(slope) below the friction angle.
 TEST(ClosedForms, BlockAtRestOnASlopeCarriesItsWeightAcrossAndAlongTheJoint) {

@@ -8,6 +8,7 @@
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/simulation/state_points.hpp"
 #include "support/scene_run.hpp"
+#include "support/slope_scene.hpp"
 
 namespace kluft {
 namespace {
@@ -16,24 +17,7 @@ constexpr double degree = std::numbers::pi / 180.0;
 
 bool stands(const SceneRun& run) { return run.report.status == RunStatus::done && run.report.unbalanced_steps == 0; }
 
-/// A rigid block of width x height (m) on a fixed plinth of its width, gravity turned by the slope; phi = 30 degrees.
-std::string block_on_slope(double width, double height, double slope_degrees) {
-    return fmt::format(R"(
-kluft: 1
-analysis: {{plane: stress, kinematics: rigid, gravity: [{:.17g}, {:.17g}]}}
-materials: {{rock: {{density: 2500, youngs_modulus: 100 GPa, poissons_ratio: 0.2}}}}
-interfaces: {{joint: {{kind: fracture, normal_stiffness: 1e11, shear_stiffness: 1e11, friction_angle: 30, contact_rounding: 0, friction_rounding: 0}}}}
-geometry:
-  domain: {{rectangle: {{width: {}, height: {}}}}}
-  fractures: [{{name: plane, trace: [[-9, 0.5], [9, 0.5]], interface: joint}}]
-  reference_spacing: 1.0
-boundaries: {{bottom: {{support: fixed}}}}
-stages: [{{name: weight, steps: 2}}]
-solver: {{tolerance: 1e-10, balance: 1e-6, max_unbalanced_steps: 1}}
-)",
-                       10.0 * std::sin(slope_degrees * degree), -10.0 * std::cos(slope_degrees * degree), width,
-                       height + 0.5);
-}
+const std::vector<std::string> rigid_blocks{"analysis.kinematics=rigid"};
 
 // Love-Weber: the mean stress of a block that stands on its base is half of that under it, rho g h/2.
 TEST(RigidBlocksRun, HistoryOfARigidBlockHasTheStressOfItsForces) {
@@ -61,13 +45,13 @@ output: {histories: {b: {block: top}}}
 TEST(RigidBlocksRun, RigidBlockOnASlopeCarriesItsWeightAcrossAndAlongTheJoint) {
     const double weight = 2500.0 * 10.0 * 4.0 * 1.0;
     for (const double slope : {0.0, 12.0, 29.99}) {
-        const auto run = run_scene(block_on_slope(4.0, 1.0, slope));
+        const auto run = run_scene(block_on_slope(4.0, 1.0, slope), rigid_blocks);
         ASSERT_TRUE(stands(run)) << slope << run.report.diagnosis;
         const auto& joint = run.fields.back().interfaces.front();
         EXPECT_NEAR(-joint.normal_traction * 4.0, weight * std::cos(slope * degree), 1e-6 * weight);
         EXPECT_NEAR(std::abs(joint.shear_traction) * 4.0, weight * std::sin(slope * degree), 1e-6 * weight);
     }
-    EXPECT_FALSE(stands(run_scene(block_on_slope(4.0, 1.0, 30.01))));
+    EXPECT_FALSE(stands(run_scene(block_on_slope(4.0, 1.0, 30.01), rigid_blocks)));
 }
 
 // A pressure p on its side of height H turns a block of width b over at p H = W b/H.
@@ -75,8 +59,9 @@ TEST(RigidBlocksRun, RigidBlockTurnsOverWhereItsWeightCannotBalanceThePush) {
     const double width = 0.5, height = 1.5;
     const double limit = 2500.0 * 10.0 * width * height * width / height / height;
     for (const double share : {0.995, 1.005}) {
-        const auto run = run_scene(block_on_slope(width, height, 0.0),
-                                   {fmt::format("stages.0.pressure={{left: {:.17g}}}", share * limit)});
+        const auto run =
+            run_scene(block_on_slope(width, height, 0.0),
+                      {"analysis.kinematics=rigid", fmt::format("stages.0.pressure={{left: {:.17g}}}", share * limit)});
         EXPECT_EQ(stands(run), share < 1.0);
     }
 }
