@@ -169,7 +169,8 @@ kluft: 1
 analysis: {{plane: strain, kinematics: {}}}
 materials: {{rock: {{youngs_modulus: 1500 MPa, poissons_ratio: 0.25, cohesion: 1 GPa, friction_angle: 30, tensile_strength: 1 GPa}}}}
 interfaces:
-  bond: {{kind: potential_crack, normal_stiffness_times_spacing: 200 MPa, shear_stiffness_times_spacing: 100 MPa}}
+  bond: {{kind: potential_crack, normal_stiffness_times_spacing: 200 MPa, shear_stiffness_times_spacing: 100 MPa, fails_to: joint}}
+  joint: {{kind: fracture, normal_stiffness_times_spacing: 200 MPa, shear_stiffness_times_spacing: 100 MPa, friction_angle: 30}}
 geometry:
   domain: {{rectangle: {{width: 1.8, height: 0.15588457268119895}}}}
   tessellation: {{hexagons: {{spacing: 0.03, offset: [0.0075, 0]}}, interface: bond}}
@@ -199,13 +200,14 @@ solver: {{tolerance: 1e-12, balance: 1e-9, viscosity: 0}}
     return {run.fields.back().stress[middle](1, 1) / strain_y, -strain_x / strain_y};
 }
 
-// 2K_eff = 2400/13 MPa, 2G_eff = 2400/18 MPa of the reference set; E' = 2 (2K)(2G)/(2K + 2G), nu' = (K - G)/(K + G).
+// 2K_eff = 2400/13 MPa, 2G_eff = 2400/18 MPa of the reference set; E' = 2 (2K)(2G)/(2K + 2G), nu' = (K - G)/(K + G). To the
+// strain of 1e-7, that the affine law is linear in only.
 TEST(RigidBlocksRun, RigidHexagonsOnGivenStiffnessesAreAsStiffAsAffineOnes) {
     const double bulk = 2400e6 / 13.0, shear = 2400e6 / 18.0;
     for (const char* kinematics : {"affine", "rigid"}) {
         const auto [modulus, ratio] = moduli_in_the_middle(kinematics);
-        EXPECT_NEAR(modulus / (2 * bulk * shear / (bulk + shear)), 1.0, 1e-8) << kinematics;
-        EXPECT_NEAR(ratio, (bulk - shear) / (bulk + shear), 1e-8) << kinematics;
+        EXPECT_NEAR(modulus / (2 * bulk * shear / (bulk + shear)), 1.0, 1e-7) << kinematics;
+        EXPECT_NEAR(ratio, (bulk - shear) / (bulk + shear), 1e-7) << kinematics;
     }
 }
 
