@@ -51,11 +51,18 @@ void print_cut(const CutReport& cut) {
 
 void print_stiffness(const Scene& scene, const Model& model) {
     const double d = model.system.spacing;
+    for (std::size_t t = 0; t < scene.interface_types.size(); ++t) {
+        const auto& [normal, shear] = model.given_stiffness[t];
+        fmt::print("stiffness    {}: k_n {:.4g} Pa/m, k_s {:.4g} Pa/m, k_n d/E {:.4g}\n", scene.interface_types[t].name,
+                   normal, shear, normal * d / scene.materials.front().youngs_modulus);
+    }
     for (std::size_t t = 0; t < model.laws.size(); ++t) {
         const InterfaceLaw& law = model.laws[t];
-        fmt::print("stiffness    {}: k_n {:.4g} Pa/m, k_s {:.4g} Pa/m, k_n d/E {:.4g}\n", scene.interface_types[t].name,
-                   law.normal_stiffness, law.shear_stiffness,
-                   law.normal_stiffness * d / scene.materials.front().youngs_modulus);
+        if (law.normal_stiffness == model.given_stiffness[t].normal) continue;
+        fmt::print("             {}{}: k_n {:.4g} Pa/m, k_s {:.4g} Pa/m with the compliance of the rigid blocks\n",
+                   scene.interface_types[model.law_types[t]].name,
+                   t < scene.interface_types.size() ? "" : " of a broken hexagon edge", law.normal_stiffness,
+                   law.shear_stiffness);
     }
     if (!scene.geometry.tessellation) return;
     const InterfaceLaw& net = model.laws[scene.geometry.tessellation->interface_type];

@@ -76,7 +76,7 @@ RunWriterOptions writer_options(const Scene& scene, const Model& model) {
     if (platen_stage >= 0) options.platen_stage = platen_stage;
     options.plane = scene.plane;
     options.strength_factor = reduction_of(model.loads, 0) != nullptr;
-    options.motion = scene.integrator == Integrator::explicit_;
+    options.motion = scene.integrator == Integrator::explicit_motion;
     options.history_columns = history_columns(model);
     for (const Material& material : scene.materials) options.material_names.push_back(material.name);
     return options;
@@ -145,7 +145,7 @@ std::string closing_line(const RunReport& report, const RunSummary& summary, con
 }
 
 RunReport integrate(const Model& model, const Scene& scene, State& state, StepObserver& observer) {
-    if (scene.integrator == Integrator::explicit_) {
+    if (scene.integrator == Integrator::explicit_motion) {
         return run_explicit(model, scene.cracks, scene.solver, scene.explicit_options, state, observer, stop_requested);
     }
     return run_simulation(model, scene.cracks, scene.solver, state, observer, stop_requested);
@@ -188,7 +188,7 @@ ExitCode run(const RunArguments& arguments) {
         arguments.directory.empty() ? fs::path("results") / scene.name : fs::path(arguments.directory);
     if (fs::exists(directory) && !fs::is_directory(directory))
         throw InputError(directory.string() + ": expected a directory for the results, found a file");
-    if (arguments.resume && scene.integrator == Integrator::explicit_)
+    if (arguments.resume && scene.integrator == Integrator::explicit_motion)
         throw InputError("--resume: expected analysis.integrator: implicit, found explicit; a saved state has no "
                          "velocities to go on with");
     const SceneModel built = build_scene_model(scene);

@@ -74,8 +74,9 @@ int BlockPattern::find(int row, int column) const {
 
 void BlockMatrix::reset(const BlockPattern& new_pattern) {
     pattern = &new_pattern;
-    values.resize(static_cast<std::size_t>(new_pattern.n_entries()));
-    if (is_rigid()) rigid_values.resize(values.size());
+    const auto n_entries = static_cast<std::size_t>(new_pattern.n_entries());
+    values.resize(is_rigid() ? 0 : n_entries);
+    rigid_values.resize(is_rigid() ? n_entries : 0);
     set_zero();
 }
 

@@ -22,8 +22,9 @@ double bulk_modulus(const ElasticModuli& moduli) { return moduli.lambda + moduli
 
 ElasticModuli moduli_from(double bulk, double shear) { return {.lambda = bulk - shear, .mu = shear}; }
 
-/// The next ratio above with four decimals: what the message names is itself admissible.
+/// The next ratio above or below with four decimals: what the message names is itself admissible.
 double rounded_up(double ratio) { return (std::floor(ratio * 1e4) + 1.0) / 1e4; }
+double rounded_down(double ratio) { return (std::ceil(ratio * 1e4) - 1.0) / 1e4; }
 
 bool given_in_pascal_per_metre(const InterfaceType& type) { return type.normal_stiffness || type.shear_stiffness; }
 
@@ -114,6 +115,31 @@ InterfaceStiffness rigid_lattice_stiffness(double youngs_modulus_of_rock, double
             poissons_ratio_of_rock, plane == Plane::strain ? "1/4" : "1/3",
             plane == Plane::strain ? "strain" : "stress"));
     return {.normal = normal / spacing, .shear = shear / spacing};
+}
+
+double largest_poissons_ratio(const InterfaceStiffness& interfaces, double youngs_modulus, Plane plane,
+                              double spacing) {
+    const double sum = interfaces.normal + interfaces.shear;
+    const double slack = youngs_modulus / spacing * interfaces.shear / (interfaces.normal * sum); // E/d (1/k_n - 1/sum)
+    // k_s' = 0: (1 + nu)(1 - 2 nu) - (1 + nu)/2 = -slack in plane strain, (1 - nu) - (1 + nu)/2 = -slack in plane stress
+    return plane == Plane::strain ? (std::sqrt(6.25 + 8.0 * slack) - 1.5) / 4.0 : (1.0 + 2.0 * slack) / 3.0;
+}
+
+InterfaceStiffness with_compliance_of_blocks(const InterfaceStiffness& interfaces, const ElasticModuli& blocks,
+                                             Plane plane, double spacing) {
+    const double normal = 1.0 / (1.0 / interfaces.normal + spacing / (2.0 * bulk_modulus(blocks)));
+    const double sum = 1.0 / (1.0 / (interfaces.normal + interfaces.shear) + spacing / (4.0 * blocks.mu));
+    const double shear = sum - normal;
+    if (!(shear > 1e-12 * normal)) {
+        const LatticeModuli rock = engineering_moduli(blocks, plane);
+        throw InputError(fmt::format(
+            "poissons_ratio: {:.4g} of the blocks is too large for rigid hexagons, whose interfaces would need a "
+            "negative shear stiffness to carry the compliance of the blocks; with k_n {:g} and k_s {:g} Pa/m the "
+            "largest admissible one is {:.4f}; or take kinematics: affine",
+            rock.poissons_ratio, interfaces.normal, interfaces.shear,
+            rounded_down(largest_poissons_ratio(interfaces, rock.youngs_modulus, plane, spacing))));
+    }
+    return {.normal = normal, .shear = shear};
 }
 
 double smallest_stiffness_ratio(double poissons_ratio_of_rock, Plane plane, double shear_ratio) {

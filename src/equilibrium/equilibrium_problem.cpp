@@ -18,32 +18,31 @@ using Shape = std::array<double, 3>;
 Shape shape(const Vec2& xi) { return {1.0, xi.x(), xi.y()}; }
 
 /// Sets the rows of a matrix to zero shortly before they are used: what is then added finds them in the cache.
-class RowClearing {
+template <class Block> class RowClearing {
 public:
-    RowClearing(BlockMatrix& matrix, const BlockPattern& pattern) : matrix_(matrix), pattern_(pattern) {
-        matrix.pattern = &pattern;
-        matrix.values.resize(static_cast<std::size_t>(pattern.n_entries()));
+    RowClearing(std::vector<Block>& values, const BlockPattern& pattern) : values_(values), pattern_(pattern) {
+        values.resize(static_cast<std::size_t>(pattern.n_entries()));
     }
     /// All rows below `row_end`, as far as they are not zero yet.
     void advance(int row_end) {
         if (row_end <= n_cleared_) return;
-        std::fill(matrix_.values.begin() + pattern_.row_start(n_cleared_),
-                  matrix_.values.begin() + pattern_.row_start(row_end), Mat6::Zero());
+        std::fill(values_.begin() + pattern_.row_start(n_cleared_), values_.begin() + pattern_.row_start(row_end),
+                  Block::Zero());
         n_cleared_ = row_end;
     }
 
 private:
-    BlockMatrix& matrix_;
+    std::vector<Block>& values_;
     const BlockPattern& pattern_;
     int n_cleared_ = 0;
 };
 
 /// The four blocks of the matrix that a pair of blocks has.
-struct PairBlocks {
-    PairBlocks(BlockMatrix& matrix, int a, int b)
-        : aa(matrix.values[matrix.pattern->diagonal(a)]), ab(matrix.values[matrix.pattern->find(a, b)]),
-          ba(matrix.values[matrix.pattern->find(b, a)]), bb(matrix.values[matrix.pattern->diagonal(b)]) {}
-    Mat6 &aa, &ab, &ba, &bb;
+template <class Block> struct PairBlocks {
+    PairBlocks(std::vector<Block>& values, const BlockPattern& pattern, int a, int b)
+        : aa(values[pattern.diagonal(a)]), ab(values[pattern.find(a, b)]), ba(values[pattern.find(b, a)]),
+          bb(values[pattern.diagonal(b)]) {}
+    Block &aa, &ab, &ba, &bb;
 };
 
 /// `tangent`: of the traction with respect to (gap, slip), in the frame of `normal` (Pa/m).
@@ -87,13 +86,21 @@ void add_product(const PairMoments::Moments& moments, const Vec2& first_column, 
     }
 }
 
-void add_pair_tangent(const PairMoments& moments, const Mat2& stiffness, const PairBlocks& blocks) {
+void add_pair_tangent(const PairMoments& moments, const Mat2& stiffness, const PairBlocks<Mat6>& blocks) {
     const Vec2 first = stiffness.col(0);
     const Vec2 second = stiffness.col(1);
     add_product<false>(moments.aa, first, second, blocks.aa);
     add_product<false>(moments.ab, -first, -second, blocks.ab);
     add_product<true>(moments.ab, -first, -second, blocks.ba);
     add_product<false>(moments.bb, first, second, blocks.bb);
+}
+
+void add_rigid_pair_tangent(const RigidPairMoments& moments, const Mat2& stiffness, const PairBlocks<Mat3>& blocks) {
+    const auto& [n, a, b, aa, ab, bb] = moments;
+    add_rigid_product(1.0, n, a, a, aa, stiffness, blocks.aa);
+    add_rigid_product(-1.0, n, a, b, ab, stiffness, blocks.ab);
+    add_rigid_product(-1.0, n, b, a, ab.transpose(), stiffness, blocks.ba);
+    add_rigid_product(1.0, n, b, b, bb, stiffness, blocks.bb);
 }
 
 Mat2 full_stiffness(const InterfaceLaw& law) {
@@ -109,18 +116,6 @@ Mat2 point_tangent(const EquilibriumProblem& problem, const ContactPoint& point,
     const PointTraction traction = contact_traction(*problem.laws, point, q);
     if (traction.state == ContactState::open) return Mat2::Zero();
     return kind == TangentKind::symmetric ? symmetric_tangent(traction) : traction.tangent;
-}
-
-/// Sums of magnitudes on the unknowns of rigid blocks.
-Eigen::VectorXd rigid_magnitudes(const BlockSystem& system, const Eigen::VectorXd& q,
-                                 const Eigen::VectorXd& magnitudes) {
-    Eigen::VectorXd reduced(n_rigid_unknowns * system.n_blocks());
-    for (int b = 0; b < system.n_blocks(); ++b) {
-        reduced.segment<n_rigid_unknowns>(n_rigid_unknowns * b) =
-            rigid_motion(q, b, system.blocks[b].size).cwiseAbs().transpose() *
-            magnitudes.segment<n_block_unknowns>(n_block_unknowns * b);
-    }
-    return reduced;
 }
 
 } // namespace
@@ -142,11 +137,20 @@ void EquilibriumEvaluator::residual(const Eigen::VectorXd& q, Residual& result) 
     body_forces(problem_, q, body_forces_);
     result.forces.swap(body_forces_.forces);
     if (!problem_.eta.empty()) add_mass_forces(q, result.forces);
-    result.force_scale = problem_.kinematics == Kinematics::rigid
-                             ? rigid_magnitudes(*problem_.system, q, body_forces_.magnitudes).norm()
-                             : body_forces_.magnitudes.norm();
+    if (problem_.kinematics == Kinematics::rigid) {
+        turned_to_ = q;
+        turns_.set(*problem_.system, q);
+        turns_.curvatures(*problem_.system, result.forces, curvatures_);
+        result.force_scale = turns_.norm_of_magnitudes(body_forces_.magnitudes);
+    } else {
+        result.force_scale = body_forces_.magnitudes.norm();
+    }
     result.roundoff = 64.0 * std::numeric_limits<double>::epsilon() * body_forces_.stiffest *
                       q.lpNorm<Eigen::Infinity>() * std::sqrt(static_cast<double>(q.size()));
+}
+
+void EquilibriumEvaluator::reduce_to_unknowns(const Eigen::VectorXd& forces, Eigen::VectorXd& reduced) const {
+    turns_.reduce(forces, reduced);
 }
 
 void EquilibriumEvaluator::add_mass_forces(const Eigen::VectorXd& q, Eigen::VectorXd& forces) const {
@@ -161,7 +165,9 @@ void EquilibriumEvaluator::add_mass_forces(const Eigen::VectorXd& q, Eigen::Vect
 
 // ---- its derivative ----------------------------------------------------------------------------------------------------
 
-void EquilibriumEvaluator::tangent(const Eigen::VectorXd& q, TangentKind kind, BlockMatrix& matrix) const {
+void EquilibriumEvaluator::tangent(const Eigen::VectorXd& q, TangentKind kind, BlockMatrix& matrix) {
+    matrix.pattern = &pattern_;
+    if (problem_.kinematics == Kinematics::rigid) return rigid_tangent(q, kind, matrix);
     set_bond_tangents(matrix);
     add_block_tangents(q, kind, matrix);
     add_contact_tangents(q, kind, matrix);
@@ -172,33 +178,61 @@ void EquilibriumEvaluator::tangent(const Eigen::VectorXd& q, TangentKind kind, B
             add_pressure_tangent(edge, pressure, matrix.values[pattern_.diagonal(edge.block)]);
         }
     }
-    if (problem_.kinematics == Kinematics::rigid) reduce_to_rigid(q, kind, matrix);
+}
+
+void EquilibriumEvaluator::rigid_tangent(const Eigen::VectorXd& q, TangentKind kind, BlockMatrix& matrix) {
+    if (turned_to_.size() != q.size() || turned_to_ != q) {
+        Residual unused;
+        residual(q, unused);
+    }
+    set_rigid_bond_tangents(matrix);
+    add_rigid_block_tangents(kind, matrix);
+    add_rigid_contact_tangents(q, kind, matrix);
+    if (kind != TangentKind::exact) return;
+    for (const PressureEdge& edge : problem_.pressure_edges) {
+        const double pressure = problem_.pressures[edge.boundary];
+        if (pressure == 0.0) continue;
+        Mat6 stiffness = Mat6::Zero();
+        add_pressure_tangent(edge, pressure, stiffness);
+        matrix.rigid_values[pattern_.diagonal(edge.block)] += turns_.reduced(stiffness, edge.block);
+    }
+}
+
+void EquilibriumEvaluator::set_rigid_bond_tangents(BlockMatrix& matrix) const {
+    RowClearing clearing(matrix.rigid_values, pattern_);
+    for (const Bond& bond : problem_.bonds) {
+        clearing.advance(std::max(bond.block_a, bond.block_b) + 1);
+        RigidPairMoments moments;
+        for (int k = 0; k < n_bond_points; ++k)
+            moments.add(turns_.lever(bond.block_a, bond.xi_a[k]), turns_.lever(bond.block_b, bond.xi_b[k]));
+        add_rigid_pair_tangent(moments,
+                               point_stiffness(bond.normal(), bond.weight, full_stiffness((*problem_.laws)[bond.law])),
+                               PairBlocks(matrix.rigid_values, pattern_, bond.block_a, bond.block_b));
+    }
+    clearing.advance(pattern_.n_blocks());
+}
+
+void EquilibriumEvaluator::add_rigid_contact_tangents(const Eigen::VectorXd& q, TangentKind kind,
+                                                      BlockMatrix& matrix) const {
+    for (const ContactPoint& point : problem_.contacts) {
+        const Mat2 tangent = point_tangent(problem_, point, q, kind);
+        if (tangent.isZero(0.0)) continue;
+        RigidPairMoments moments;
+        moments.add(turns_.lever(point.block_a, point.xi_a), turns_.lever(point.block_b, point.xi_b));
+        add_rigid_pair_tangent(moments, point_stiffness(point.normal, point.weight, tangent),
+                               PairBlocks(matrix.rigid_values, pattern_, point.block_a, point.block_b));
+    }
 }
 
 /// d2q/dw2 = -R/h in the numbers of D: under compression the forces on D push a turning block on, and that part of the
 /// stiffness is negative; only the exact tangent has it.
-void EquilibriumEvaluator::reduce_to_rigid(const Eigen::VectorXd& q, TangentKind kind, BlockMatrix& matrix) const {
+void EquilibriumEvaluator::add_rigid_block_tangents(TangentKind kind, BlockMatrix& matrix) const {
     const BlockSystem& system = *problem_.system;
-    std::vector<Mat63> motions;
-    motions.reserve(system.blocks.size());
-    for (int b = 0; b < system.n_blocks(); ++b) motions.push_back(rigid_motion(q, b, system.blocks[b].size));
-    matrix.rigid_values.resize(matrix.values.size());
-    for (int row = 0; row < pattern_.n_blocks(); ++row) {
-        for (int entry = pattern_.row_start(row); entry < pattern_.row_start(row + 1); ++entry) {
-            matrix.rigid_values[entry].noalias() =
-                motions[row].transpose() * (matrix.values[entry] * motions[pattern_.column(entry)]);
-        }
-    }
-    BodyForces sum;
-    body_forces(problem_, q, sum);
-    if (!problem_.eta.empty()) add_mass_forces(q, sum.forces);
     for (int b = 0; b < system.n_blocks(); ++b) {
-        const double size = system.blocks[b].size;
-        const Mat2 rotation = deformation_gradient(q, b, size);
-        const Eigen::Map<const Mat2> moments(sum.forces.data() + n_block_unknowns * b + 2);
-        const double curvature = -rotation.cwiseProduct(moments).sum() / size;
-        matrix.rigid_values[pattern_.diagonal(b)](2, 2) +=
-            kind == TangentKind::exact ? curvature : std::max(0.0, curvature);
+        Mat3& diagonal = matrix.rigid_values[pattern_.diagonal(b)];
+        diagonal(2, 2) += kind == TangentKind::exact ? curvatures_[b] : std::max(0.0, curvatures_[b]);
+        if (problem_.eta.empty()) continue;
+        diagonal += problem_.eta[b] * turns_.reduced(mass_matrix(system.blocks[b], problem_.least_mass_area), b);
     }
 }
 
@@ -208,7 +242,6 @@ void EquilibriumEvaluator::add_block_tangents(const Eigen::VectorXd& q, TangentK
         const Block& block = system.blocks[b];
         Mat6& diagonal = matrix.values[pattern_.diagonal(b)];
         if (!problem_.eta.empty()) diagonal += problem_.eta[b] * mass_matrix(block, problem_.least_mass_area);
-        if (problem_.kinematics == Kinematics::rigid) continue;
         diagonal.block<4, 4>(2, 2) += elastic_tangent(deformation_gradient(q, b, block.size),
                                                       (*problem_.moduli)[block.material], kind != TangentKind::exact);
     }
@@ -216,13 +249,13 @@ void EquilibriumEvaluator::add_block_tangents(const Eigen::VectorXd& q, TangentK
 
 /// The bonds are in the order of their lower block, so that only a band of rows is in use at a time.
 void EquilibriumEvaluator::set_bond_tangents(BlockMatrix& matrix) const {
-    RowClearing clearing(matrix, pattern_);
+    RowClearing clearing(matrix.values, pattern_);
     for (const Bond& bond : problem_.bonds) {
         clearing.advance(std::max(bond.block_a, bond.block_b) + 1);
         const Mat2 stiffness = point_stiffness(bond.normal(), bond.weight, full_stiffness((*problem_.laws)[bond.law]));
         PairMoments moments;
         for (int k = 0; k < n_bond_points; ++k) moments.add(bond.xi_a[k], bond.xi_b[k]);
-        add_pair_tangent(moments, stiffness, PairBlocks(matrix, bond.block_a, bond.block_b));
+        add_pair_tangent(moments, stiffness, PairBlocks(matrix.values, pattern_, bond.block_a, bond.block_b));
     }
     clearing.advance(pattern_.n_blocks());
 }
@@ -234,7 +267,7 @@ void EquilibriumEvaluator::add_contact_tangents(const Eigen::VectorXd& q, Tangen
         PairMoments moments;
         moments.add(point.xi_a, point.xi_b);
         add_pair_tangent(moments, point_stiffness(point.normal, point.weight, tangent),
-                         PairBlocks(matrix, point.block_a, point.block_b));
+                         PairBlocks(matrix.values, pattern_, point.block_a, point.block_b));
     }
 }
 

@@ -82,7 +82,7 @@ void OpenCloseSolver::keep_free_part(const EquilibriumProblem& problem, const Ei
 double OpenCloseSolver::slope_at(const EquilibriumProblem& problem, EquilibriumEvaluator& evaluator,
                                  const Eigen::VectorXd& q, double s) {
     move_to(problem, q, s);
-    evaluate(problem, evaluator, position_, trial_);
+    evaluate(evaluator, position_, trial_);
     keep_free_part(problem, position_, trial_.forces);
     return trial_.forces.dot(increment_);
 }
@@ -123,7 +123,7 @@ double OpenCloseSolver::step_by_halving(const EquilibriumProblem& problem, Equil
     double s = 1.0;
     for (int i = 0; i < max_search_residuals; ++i, s *= 0.5) {
         move_to(problem, q, s);
-        evaluate(problem, evaluator, position_, trial_);
+        evaluate(evaluator, position_, trial_);
         keep_free_part(problem, position_, trial_.forces);
         const double norm = trial_.forces.norm();
         if (i == 0) full_step_forces_ = trial_.forces;
@@ -156,12 +156,6 @@ void OpenCloseSolver::limit_increment(const BlockSystem& system) {
     if (largest > limit) increment_ *= limit / largest;
 }
 
-/// Forces on the unknowns, from those on the six numbers of each block.
-Eigen::VectorXd OpenCloseSolver::unknowns_of(const EquilibriumProblem& problem, const Eigen::VectorXd& q,
-                                             const Eigen::VectorXd& forces) const {
-    return nu_ == n_rigid_unknowns ? rigid_forces(*problem.system, q, forces) : forces;
-}
-
 /// position_ := q moved by s times the increment.
 void OpenCloseSolver::move_to(const EquilibriumProblem& problem, const Eigen::VectorXd& q, double s) {
     if (nu_ != n_rigid_unknowns) {
@@ -169,14 +163,17 @@ void OpenCloseSolver::move_to(const EquilibriumProblem& problem, const Eigen::Ve
         return;
     }
     position_ = q;
-    move_rigid(*problem.system, s * increment_, position_);
+    move_rigid(*problem.system, increment_, s, position_);
 }
 
-void OpenCloseSolver::evaluate(const EquilibriumProblem& problem, EquilibriumEvaluator& evaluator,
-                               const Eigen::VectorXd& q, Residual& residual) {
+/// The forces on the unknowns.
+void OpenCloseSolver::evaluate(EquilibriumEvaluator& evaluator, const Eigen::VectorXd& q, Residual& residual) {
     const Stopwatch watch(assembly_seconds_);
-    evaluator.residual(q, residual);
-    if (nu_ == n_rigid_unknowns) residual.forces = rigid_forces(*problem.system, q, residual.forces);
+    if (nu_ != n_rigid_unknowns) return evaluator.residual(q, residual);
+    evaluator.residual(q, of_six_numbers_);
+    evaluator.reduce_to_unknowns(of_six_numbers_.forces, residual.forces);
+    residual.force_scale = of_six_numbers_.force_scale;
+    residual.roundoff = of_six_numbers_.roundoff;
 }
 
 /// The tangent at q, with the prescribed motions taken out.
@@ -187,7 +184,12 @@ void OpenCloseSolver::assemble(const EquilibriumProblem& problem, EquilibriumEva
     if (problem.platen_force) {
         matrix_.multiply(travel_, travel_column_);
         matrix_.multiply_transposed(travel_, travel_row_);
-        travel_row_ -= problem.platen_force->stress * unknowns_of(problem, q, problem.platen_force->widening);
+        if (nu_ == n_rigid_unknowns) {
+            evaluator.reduce_to_unknowns(problem.platen_force->widening, scratch_);
+            travel_row_ -= problem.platen_force->stress * scratch_;
+        } else {
+            travel_row_ -= problem.platen_force->stress * problem.platen_force->widening;
+        }
         travel_column_ *= -1.0;
         problem.constraints.project(travel_column_);
     }
@@ -311,7 +313,7 @@ OpenCloseSummary OpenCloseSolver::solve(const EquilibriumProblem& problem, const
     if (problem.platen_force) travel_ = problem.constraints.travel_motion(nu_ * problem.system->n_blocks());
     Eigen::VectorXd free_forces;
     for (;;) {
-        evaluate(problem, evaluator, q, residual_);
+        evaluate(evaluator, q, residual_);
         problem.constraints.correction(q, prescribed_);
         free_forces = residual_.forces;
         keep_free_part(problem, q, free_forces);
@@ -352,7 +354,7 @@ OpenCloseSummary OpenCloseSolver::solve(const EquilibriumProblem& problem, const
         restless_[summary.iterations % restless_.size()] = restless_blocks(full_step_forces_, nu_, limited_);
         short_steps = s < short_step ? short_steps + 1 : 0;
         if (nu_ == n_rigid_unknowns) {
-            move_rigid(*problem.system, s * increment_, q);
+            move_rigid(*problem.system, increment_, s, q);
         } else {
             q += s * increment_;
         }

@@ -66,12 +66,15 @@ std::vector<KeyRule> analysis_rules() {
          .type = KeyType::choice,
          .choices = {"affine", "rigid"},
          .fallback = "affine",
-         .doc = "How a block moves and deforms: `affine` is six unknowns with a uniform strain, `rigid` three (two "
-                "displacements and a rotation of any size). The compliance of rigid blocks is that of their "
-                "interfaces: where those of the hexagons have no stiffness key, k_n d = 2K and k_s d = 4G - 2K give "
-                "the body the rock's `youngs_modulus` and `poissons_ratio` (less than 1/4 in plane strain, 1/3 in "
-                "plane stress), and `stiffness_ratio` and `shear_ratio` are not accepted there. Block stresses, also "
-                "for the potential cracks, follow from the forces on the block. For `integrator: implicit` only."},
+         .doc =
+             "How a block moves and deforms: `affine` is six unknowns with a uniform strain, `rigid` three (two "
+             "displacements and a rotation of any size). In a tessellated body the interfaces of the tessellation take "
+             "over the compliance of rigid blocks, so that the body has the same E and nu with both kinds: 1/k_n' = "
+             "1/k_n + d/2K, 1/(k_n' + k_s') = 1/(k_n + k_s) + d/4G. Where k_s' would not be positive (`poissons_ratio` "
+             "of 1/4 or more in plane strain, 1/3 in plane stress, or of more than that on soft interfaces) the "
+             "scene is refused, as are blocks of different moduli. Mapped fractures and given blocks keep their "
+             "stiffness. Block stresses, also "
+             "for the potential cracks, follow from the forces on the block. For `integrator: implicit` only."},
         {.path = "analysis.gravity",
          .type = KeyType::gravity,
          .measure = Measure::acceleration,

@@ -92,15 +92,86 @@ void refuse_moved_fixed_blocks(const BlockSystem& system, const LoadProgram& loa
     }
 }
 
-/// Rigid blocks leave no choice to the interfaces of the net: E and nu of the rock give both stiffnesses. With several
-/// materials those of the stiffest count.
-InterfaceStiffness net_of_rigid_blocks(const InterfaceType& type, const BlockSystem& system, const ModelInput& input) {
-    if (type.stiffness_ratio || type.shear_ratio)
-        throw InputError("interfaces." + type.name + "." + (type.stiffness_ratio ? "stiffness_ratio" : "shear_ratio") +
-                         ": expected none with kinematics: rigid, where youngs_modulus and poissons_ratio give both "
-                         "stiffnesses of the hexagons' interfaces; found one");
-    const auto stiffest = std::ranges::max_element(input.materials, {}, &Material::youngs_modulus);
-    return rigid_lattice_stiffness(stiffest->youngs_modulus, stiffest->poissons_ratio, input.plane, system.spacing);
+/// E and nu of the blocks of a rigid net: one law per interface type holds no more than one pair of them.
+const Material& rock_of_rigid_net(const BlockSystem& system, const ModelInput& input) {
+    const Material& rock = input.materials[system.blocks.front().material];
+    for (const Block& block : system.blocks) {
+        const Material& other = input.materials[block.material];
+        if (other.youngs_modulus != rock.youngs_modulus || other.poissons_ratio != rock.poissons_ratio)
+            throw InputError("materials." + other.name + ": expected youngs_modulus and poissons_ratio of " +
+                             rock.name +
+                             " with kinematics: rigid, where the interfaces of the tessellation carry the compliance "
+                             "of the blocks; found others");
+    }
+    return rock;
+}
+
+/// E and nu of a material are the rock's where the net's stiffness follows from them, and else the blocks'.
+ElasticModuli moduli_of_blocks(const Material& material, const ModelInput& input) {
+    if (input.tessellation_type >= 0) {
+        const InterfaceType& net = input.interface_types[input.tessellation_type];
+        if (stiffness_from_ratio(net))
+            return block_moduli(material.youngs_modulus, material.poissons_ratio, input.plane,
+                                net.stiffness_ratio.value_or(default_stiffness_ratio),
+                                net.shear_ratio.value_or(default_shear_ratio));
+    }
+    return plane_moduli(material.youngs_modulus, material.poissons_ratio, input.plane);
+}
+
+/// The stiffness of the net's interfaces with the compliance of the blocks in them.
+InterfaceStiffness net_of_rigid_blocks(const InterfaceStiffness& given, const BlockSystem& system,
+                                       const ModelInput& input) {
+    const Material& rock = rock_of_rigid_net(system, input);
+    try {
+        if (stiffness_from_ratio(input.interface_types[input.tessellation_type]))
+            return rigid_lattice_stiffness(rock.youngs_modulus, rock.poissons_ratio, input.plane, system.spacing);
+        return with_compliance_of_blocks(given, plane_moduli(rock.youngs_modulus, rock.poissons_ratio, input.plane),
+                                         input.plane, system.spacing);
+    } catch (const InputError& error) {
+        throw InputError("materials." + rock.name + "." + error.what());
+    }
+}
+
+bool has_rigid_net(const ModelInput& input) {
+    return input.kinematics == Kinematics::rigid && input.tessellation_type >= 0;
+}
+
+void add_law(const InterfaceType& type, int type_index, const InterfaceStiffness& given,
+             const InterfaceStiffness& stiffness, double boundary_stress, Model& model) {
+    model.laws.push_back(resolve_law(type, stiffness, boundary_stress));
+    model.law_types.push_back(type_index);
+    model.given_stiffness.push_back(given);
+}
+
+/// The laws of all interface types, each with the stiffness that the scene gives or, for a rigid net, that of its body.
+void add_laws(const BlockSystem& system, const ModelInput& input, double boundary_stress, Model& model) {
+    double stiffest_rock = 0.0;
+    for (const Material& material : input.materials) stiffest_rock = std::max(stiffest_rock, material.youngs_modulus);
+    for (int t = 0; t < static_cast<int>(input.interface_types.size()); ++t) {
+        const InterfaceType& type = input.interface_types[t];
+        const InterfaceStiffness given = resolve_stiffness(type, system.spacing, stiffest_rock);
+        const bool rigid_net = has_rigid_net(input) && t == input.tessellation_type;
+        add_law(type, t, given, rigid_net ? net_of_rigid_blocks(given, system, input) : given, boundary_stress, model);
+        model.bonds.push_back(type.kind == InterfaceKind::potential_crack ? 1 : 0);
+        model.fracture_law.push_back(type.fails_to >= 0 ? type.fails_to : t);
+    }
+}
+
+/// What a broken edge of a net of rigid blocks follows. Mapped fractures of the same type keep the type's stiffness: they
+/// cut hexagons whose edges carry all compliance already.
+void add_law_of_broken_net(const BlockSystem& system, const ModelInput& input, double boundary_stress, Model& model) {
+    const int broken = model.fracture_law[input.tessellation_type];
+    if (broken == input.tessellation_type) return;
+    const InterfaceType& type = input.interface_types[broken];
+    const InterfaceStiffness given = model.given_stiffness[broken];
+    const ElasticModuli blocks = moduli_of_blocks(rock_of_rigid_net(system, input), input);
+    try {
+        const auto stiffness = with_compliance_of_blocks(given, blocks, input.plane, system.spacing);
+        model.fracture_law[input.tessellation_type] = static_cast<int>(model.laws.size());
+        add_law(type, broken, given, stiffness, boundary_stress, model);
+    } catch (const InputError& error) {
+        throw InputError("interfaces." + type.name + ", broken edges of the tessellation: " + error.what());
+    }
 }
 
 Strength strength_of(const Interface& interface, const BlockSystem& system, const ModelInput& input) {
@@ -118,10 +189,10 @@ Strength strength_of(const Interface& interface, const BlockSystem& system, cons
     return weaker(*a.strength, *b.strength);
 }
 
-LatticeModuli moduli_of_body(const ElasticModuli& blocks, const ModelInput& input,
-                             const std::vector<InterfaceStiffness>& stiffnesses, double spacing) {
+LatticeModuli moduli_of_body(const ElasticModuli& blocks, const ModelInput& input, const Model& model, double spacing) {
     if (input.tessellation_type < 0) return engineering_moduli(blocks, input.plane);
-    const InterfaceStiffness& net = stiffnesses[input.tessellation_type];
+    const InterfaceLaw& law = model.laws[input.tessellation_type];
+    const InterfaceStiffness net{.normal = law.normal_stiffness, .shear = law.shear_stiffness};
     if (input.kinematics == Kinematics::rigid) return rigid_lattice_moduli(net, spacing, input.plane);
     return lattice_moduli(blocks, net, spacing, input.plane);
 }
@@ -136,36 +207,19 @@ Model build_model(BlockSystem system, const ModelInput& input) {
     model.loads = input.loads;
     model.loads.supports.resize(system.boundaries.size(), Support::none);
 
-    double stiffest_rock = 0.0;
-    for (const Material& material : input.materials) stiffest_rock = std::max(stiffest_rock, material.youngs_modulus);
     model.force_points = points_of_forces(system, input.loads);
     model.histories = place_histories(system, input.histories);
     refuse_moved_fixed_blocks(system, input.loads);
     const double boundary_stress = largest_boundary_stress(system, input, model.force_points);
-    std::vector<InterfaceStiffness> stiffnesses;
-    for (int t = 0; t < static_cast<int>(input.interface_types.size()); ++t) {
-        const InterfaceType& type = input.interface_types[t];
-        const bool rigid_net =
-            input.kinematics == Kinematics::rigid && t == input.tessellation_type && stiffness_from_ratio(type);
-        stiffnesses.push_back(rigid_net ? net_of_rigid_blocks(type, system, input)
-                                        : resolve_stiffness(type, system.spacing, stiffest_rock));
-        model.laws.push_back(resolve_law(type, stiffnesses.back(), boundary_stress));
-        model.bonds.push_back(type.kind == InterfaceKind::potential_crack ? 1 : 0);
-        model.fracture_law.push_back(type.fails_to >= 0 ? type.fails_to : t);
-    }
+    add_laws(system, input, boundary_stress, model);
+    if (has_rigid_net(input)) add_law_of_broken_net(system, input, boundary_stress, model);
 
     for (const Material& material : input.materials) {
         model.densities.push_back(material.density);
-        auto moduli = plane_moduli(material.youngs_modulus, material.poissons_ratio, input.plane);
-        if (input.tessellation_type >= 0) {
-            const InterfaceType& type = input.interface_types[input.tessellation_type];
-            if (stiffness_from_ratio(type) && input.kinematics == Kinematics::affine) {
-                moduli = block_moduli(material.youngs_modulus, material.poissons_ratio, input.plane,
-                                      type.stiffness_ratio.value_or(default_stiffness_ratio),
-                                      type.shear_ratio.value_or(default_shear_ratio));
-            }
-        }
-        const auto effective = moduli_of_body(moduli, input, stiffnesses, system.spacing);
+        const auto moduli = input.kinematics == Kinematics::affine
+                                ? moduli_of_blocks(material, input)
+                                : plane_moduli(material.youngs_modulus, material.poissons_ratio, input.plane);
+        const auto effective = moduli_of_body(moduli, input, model, system.spacing);
         model.effective_modulus = std::max(model.effective_modulus, effective.youngs_modulus);
         model.moduli.push_back(moduli);
     }

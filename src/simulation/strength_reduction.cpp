@@ -33,7 +33,7 @@ ReducedStrengths reduced_strengths(const Model& model, int stage, double load_fa
     if (factor == 1.0) return result;
     const StrengthReduction& reduction = *reduction_of(model.loads, stage);
     for (int t = 0; t < static_cast<int>(result.laws.size()); ++t) {
-        if (!is_reduced(reduction, t)) continue;
+        if (!is_reduced(reduction, model.law_types[t])) continue;
         InterfaceLaw& law = result.laws[t];
         law.tan_friction /= factor;
         law.cohesion /= factor;

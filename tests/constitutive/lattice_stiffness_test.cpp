@@ -150,6 +150,51 @@ TEST(BlockModuli, NameTheSmallestAdmissibleRatio) {
     EXPECT_THROW((void)block_moduli(5e9, 0.25, Plane::strain, std::nan(""), 0.5), InputError);
 }
 
+// The body of rigid blocks has the moduli of the body of elastic ones: both by the formula of the lattice.
+TEST(ComplianceOfBlocks, InTheInterfacesOfRigidBlocksLeavesTheBodyAsStiffAsIt) {
+    for (const Plane plane : {Plane::strain, Plane::stress})
+        for (const double nu : {0.0, 0.1, 0.2})
+            for (const double k_n : {1e8, 1e11, 1e14})
+                for (const double shear_ratio : {0.2, 1.0, 3.0}) {
+                    const ElasticModuli blocks = plane_moduli(10e9, nu, plane);
+                    const InterfaceStiffness interfaces{.normal = k_n, .shear = shear_ratio * k_n};
+                    const auto elastic = lattice_moduli(blocks, interfaces, spacing, plane);
+                    const auto rigid = rigid_lattice_moduli(
+                        with_compliance_of_blocks(interfaces, blocks, plane, spacing), spacing, plane);
+                    EXPECT_NEAR(rigid.youngs_modulus / elastic.youngs_modulus, 1.0, 1e-13);
+                    EXPECT_NEAR(rigid.poissons_ratio, elastic.poissons_ratio, 1e-13);
+                }
+}
+
+// E 1500 MPa, nu 0.25 in plane strain: 2K = 2400, 4G = 2400 MPa. 1/k_n' d = 1/200 + 1/2400, 1/(k_n' + k_s') d = 1/300 +
+// 1/2400 per MPa.
+TEST(ComplianceOfBlocks, OfTheReferenceSetByHand) {
+    const auto taken = with_compliance_of_blocks({.normal = 200e6 / spacing, .shear = 100e6 / spacing},
+                                                 plane_moduli(1500e6, 0.25, Plane::strain), Plane::strain, spacing);
+    EXPECT_NEAR(taken.normal * spacing, 2400e6 / 13.0, 1.0);
+    EXPECT_NEAR(taken.shear * spacing, 2400e6 / 9.0 - 2400e6 / 13.0, 1.0);
+}
+
+// k_s' = 0 at nu = 1/4 and 1/3 where the interfaces are very stiff, later for softer ones.
+TEST(ComplianceOfBlocks, NamesTheLargestAdmissiblePoissonsRatio) {
+    const InterfaceStiffness stiff{.normal = 1e24, .shear = 1e24};
+    EXPECT_NEAR(largest_poissons_ratio(stiff, 10e9, Plane::strain, spacing), 0.25, 1e-9);
+    EXPECT_NEAR(largest_poissons_ratio(stiff, 10e9, Plane::stress, spacing), 1.0 / 3.0, 1e-9);
+    const InterfaceStiffness interfaces{.normal = 1e13, .shear = 0.4e13};
+    for (const Plane plane : {Plane::strain, Plane::stress}) {
+        const double largest = largest_poissons_ratio(interfaces, 10e9, plane, spacing);
+        const auto below =
+            with_compliance_of_blocks(interfaces, plane_moduli(10e9, largest - 1e-4, plane), plane, spacing);
+        EXPECT_GT(below.shear, 0.0);
+        EXPECT_LT(below.shear, 1e-3 * below.normal);
+        const auto too_large = [&] {
+            (void)with_compliance_of_blocks(interfaces, plane_moduli(10e9, largest + 1e-4, plane), plane, spacing);
+        };
+        EXPECT_THAT(input_error_of(too_large),
+                    testing::HasSubstr(plane == Plane::strain ? "one is 0.2537" : "one is 0.3396"));
+    }
+}
+
 TEST(ResolveStiffness, TakesPascalPerMetreAsTheyAre) {
     InterfaceType type{.name = "joint"};
     type.normal_stiffness = 4e9;

@@ -26,7 +26,7 @@ struct RigidBody {
         Eigen::VectorXd motion(n_rigid_unknowns * system.n_blocks());
         for (double& value : motion) value = uniform(-3e-4, 3e-4);
         const Eigen::VectorXd frames = q;
-        move_rigid(system, motion, q);
+        move_rigid(system, motion, 1.0, q);
         problem.kinematics = Kinematics::rigid;
         problem.system = &system;
         problem.moduli = &moduli;
@@ -72,10 +72,12 @@ TEST(RigidBlocks, ExactTangentIsTheDerivativeOfTheForcesOnThreeUnknowns) {
             Eigen::VectorXd motion = Eigen::VectorXd::Zero(n);
             motion[unknown] = step;
             Eigen::VectorXd q = body.q;
-            move_rigid(body.system, motion, q);
+            move_rigid(body.system, motion, 1.0, q);
             Residual residual;
             evaluator.residual(q, residual);
-            return rigid_forces(body.system, q, residual.forces);
+            Eigen::VectorXd reduced;
+            evaluator.reduce_to_unknowns(residual.forces, reduced);
+            return reduced;
         };
         double largest = 0.0, error = 0.0;
         Eigen::VectorXd column;

@@ -1,8 +1,10 @@
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <Eigen/LU>
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "kluft/core/diagnostics.hpp"
@@ -160,10 +162,103 @@ TEST(RigidBlocksRun, PlatenUnderAGivenStressPressesRigidBlocksWithIt) {
     EXPECT_NEAR(run.history.back().axial_stress, 0.4e6, 1.0);
 }
 
-TEST(RigidBlocksRun, StiffnessRatioOfRigidHexagonsIsRefused) {
-    EXPECT_THROW((void)run_scene(hexagons_under_a_platen("rigid"), {"interfaces.net.stiffness_ratio=10"}), InputError);
-    EXPECT_THROW((void)run_scene(hexagons_under_a_platen("rigid"), {"materials.rock.poissons_ratio=0.3"}), InputError);
-    EXPECT_THROW((void)run_scene(hexagons_under_a_platen("rigid"), {"analysis.integrator=explicit"}), InputError);
+/// E' and nu' in the middle of a strip of hexagons between smooth platens, whose ends are too far away to be felt.
+std::pair<double, double> moduli_in_the_middle(const std::string& kinematics) {
+    const auto run = run_scene(fmt::format(R"(
+kluft: 1
+analysis: {{plane: strain, kinematics: {}}}
+materials: {{rock: {{youngs_modulus: 1500 MPa, poissons_ratio: 0.25, cohesion: 1 GPa, friction_angle: 30, tensile_strength: 1 GPa}}}}
+interfaces:
+  bond: {{kind: potential_crack, normal_stiffness_times_spacing: 200 MPa, shear_stiffness_times_spacing: 100 MPa, fails_to: joint}}
+  joint: {{kind: fracture, normal_stiffness_times_spacing: 200 MPa, shear_stiffness_times_spacing: 100 MPa, friction_angle: 30}}
+geometry:
+  domain: {{rectangle: {{width: 1.8, height: 0.15588457268119895}}}}
+  tessellation: {{hexagons: {{spacing: 0.03, offset: [0.0075, 0]}}, interface: bond}}
+boundaries: {{bottom: {{support: pinned}}}}
+stages: [{{strain: {{boundary: top, value: 1e-7}}}}]
+solver: {{tolerance: 1e-12, balance: 1e-9, viscosity: 0}}
+)",
+                                           kinematics));
+    EXPECT_TRUE(stands(run)) << run.report.diagnosis;
+    const BlockSystem& system = run.model.system;
+    const double row = 0.03 * std::sqrt(3.0) / 2.0;
+    const auto nearest = [&](const Vec2& place) {
+        int best = 0;
+        for (int b = 0; b < system.n_blocks(); ++b)
+            if ((system.origin + system.blocks[b].centroid - place).norm() <
+                (system.origin + system.blocks[best].centroid - place).norm())
+                best = b;
+        return best;
+    };
+    const int middle = nearest({0.9, 2 * row});
+    const Vec2 at = system.origin + system.blocks[middle].centroid;
+    const auto motion = [&](const Vec2& place) {
+        return Vec2(run.state.displacement.segment<2>(n_block_unknowns * nearest(place)));
+    };
+    const double strain_x = (motion(at + Vec2(0.03, 0)) - motion(at - Vec2(0.03, 0))).x() / 0.06;
+    const double strain_y = (motion(at + Vec2(0, 2 * row)) - motion(at)).y() / (2 * row);
+    return {run.fields.back().stress[middle](1, 1) / strain_y, -strain_x / strain_y};
+}
+
+// 2K_eff = 2400/13 MPa, 2G_eff = 2400/18 MPa of the reference set; E' = 2 (2K)(2G)/(2K + 2G), nu' = (K - G)/(K + G). To the
+// strain of 1e-7, that the affine law is linear in only.
+TEST(RigidBlocksRun, RigidHexagonsOnGivenStiffnessesAreAsStiffAsAffineOnes) {
+    const double bulk = 2400e6 / 13.0, shear = 2400e6 / 18.0;
+    for (const char* kinematics : {"affine", "rigid"}) {
+        const auto [modulus, ratio] = moduli_in_the_middle(kinematics);
+        EXPECT_NEAR(modulus / (2 * bulk * shear / (bulk + shear)), 1.0, 1e-7) << kinematics;
+        EXPECT_NEAR(ratio, (bulk - shear) / (bulk + shear), 1e-7) << kinematics;
+    }
+}
+
+// 1/(2K) and 1/(4G) of the blocks in series, by hand: with k_n d = 1 GPa, k_s d = 0.5 GPa of the joint and blocks of
+// (19) to (22), E = 1 GPa, nu = 0.2, k_n d/E = 10, r = 0.5.
+TEST(RigidBlocksRun, OnlyTheNetAndItsBrokenEdgesCarryTheComplianceOfBlocks) {
+    const Model model = run_scene(hexagons_under_a_platen("rigid"), {"stages.1.steps=1"}).model;
+    const double d = 0.08;
+    const double bulk = 1e9 / (1.2 * 0.6), shear = 1e9 / 1.2; // 2K, 2G of the rock
+    ASSERT_EQ(model.laws.size(),
+              3U); // in the order of their names or as in the scene: the net, the joint, broken edges
+    EXPECT_NEAR(model.laws[0].normal_stiffness * d, bulk, 1e-6 * bulk);
+    EXPECT_NEAR(model.laws[0].shear_stiffness * d, 2 * shear - bulk, 1e-6 * bulk);
+    EXPECT_EQ(model.laws[1].normal_stiffness * d, 1e9);
+    EXPECT_EQ(model.laws[1].shear_stiffness * d, 0.5e9);
+    const double normal = 1.0 / (1.0 / 1e9 + 1.0 / bulk - 1.0 / 10e9);
+    const double sum = 1.0 / (1.0 / 1.5e9 + 0.5 / shear - 1.0 / 15e9);
+    EXPECT_NEAR(model.laws[2].normal_stiffness * d, normal, 1e-6 * normal);
+    EXPECT_NEAR(model.laws[2].shear_stiffness * d, sum - normal, 1e-6 * normal);
+    EXPECT_EQ(model.laws[2].tan_friction, model.laws[1].tan_friction);
+    EXPECT_EQ(model.fracture_law[0], 2);
+    EXPECT_EQ(model.law_types[2], 1);
+}
+
+TEST(RigidBlocksRun, RigidHexagonsHaveTheRocksModuliWithAnyStiffnessRatio) {
+    const auto stiffness = [](const std::vector<std::string>& overrides) {
+        return run_scene(hexagons_under_a_platen("rigid"), overrides).model.laws[0].normal_stiffness;
+    };
+    EXPECT_EQ(stiffness({"stages.1.steps=1"}), stiffness({"stages.1.steps=1", "interfaces.net.stiffness_ratio=7"}));
+}
+
+TEST(RigidBlocksRun, WhatRigidHexagonsCannotBeIsRefused) {
+    const auto message = [](const std::vector<std::string>& overrides) -> std::string {
+        try {
+            (void)run_scene(hexagons_under_a_platen("rigid"), overrides);
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return "no error";
+    };
+    EXPECT_THAT(message({"materials.rock.poissons_ratio=0.3"}), testing::HasSubstr("less than 1/4 in plane strain"));
+    EXPECT_THAT(message({"materials.rock.poissons_ratio=0.4", "interfaces.net.normal_stiffness_times_spacing=50 GPa",
+                         "interfaces.net.shear_stiffness_times_spacing=20 GPa"}),
+                testing::HasSubstr("largest admissible one is 0.2522"));
+    EXPECT_THAT(message({"analysis.integrator=explicit"}), testing::HasSubstr("affine"));
+    EXPECT_THAT(
+        message({"materials.soft={youngs_modulus: 0.5 GPa, poissons_ratio: 0.2, cohesion: 1, friction_angle: 30, "
+                 "tensile_strength: 1}",
+                 "geometry.material=rock",
+                 "geometry.regions=[{polygon: [[0, 0], [0.4, 0], [0.4, 0.4], [0, 0.4]], material: soft}]"}),
+        testing::HasSubstr("expected youngs_modulus and poissons_ratio of"));
 }
 
 } // namespace

@@ -45,7 +45,7 @@ inline SceneRun run_scene(Scene scene) {
     run.state = initial_state(run.model);
     RecordingObserver observer(run);
     const std::atomic<bool> stop{false};
-    if (run.scene.integrator == Integrator::explicit_) {
+    if (run.scene.integrator == Integrator::explicit_motion) {
         run.report = run_explicit(run.model, run.scene.cracks, run.scene.solver, run.scene.explicit_options, run.state,
                                   observer, stop);
         return run;

@@ -39,7 +39,26 @@ def check(case):
             points[plane].append((ratio, *measured(run), lattice(plane, 10e9, ratio)))
         case.expect_worst(f"modulus E', plane {plane}", [p[3][0] / 1e9 for p in points[plane]], [p[1] / 1e9 for p in points[plane]], 1e-6, "GPa")
         case.expect_worst(f"Poisson's ratio nu', plane {plane}", [p[3][1] for p in points[plane]], [p[2] for p in points[plane]], 1e-6, absolute=True)
+    check_given_stiffnesses(case)
     draw(case, points)
+
+
+def check_given_stiffnesses(case):
+    """Blocks with E = 10 GPa and nu = 0.2 on given springs: the moduli of the same net of affine blocks (eq. 20)."""
+    for plane in ("stress", "strain"):
+        expected, found = [], []
+        for normal, ratio in ((1e11, 0.4), (1e12, 0.5), (1e13, 1.0)):
+            overrides = {"analysis.plane": plane, "materials.block.poissons_ratio": 0.2}
+            for kind in ("bond", "joint"):
+                overrides[f"interfaces.{kind}.normal_stiffness"] = normal
+                overrides[f"interfaces.{kind}.shear_stiffness"] = ratio * normal
+            twice_bulk = 10e9 / (1.2 * 0.6) if plane == "strain" else 10e9 / 0.8
+            twice_bulk = 1 / (1 / twice_bulk + 1 / (D * normal))
+            twice_shear = 1 / (1.2 / 10e9 + 2 / (D * normal * (1 + ratio)))
+            expected.append((2 * twice_bulk * twice_shear / (twice_bulk + twice_shear), (twice_bulk - twice_shear) / (twice_bulk + twice_shear)))
+            found.append(measured(case.run(f"given-{plane}-{normal:g}", overrides)))
+        case.expect_worst(f"modulus E', given springs, plane {plane}", [e[0] / 1e9 for e in expected], [f[0] / 1e9 for f in found], 1e-6, "GPa")
+        case.expect_worst(f"Poisson's ratio nu', given springs, plane {plane}", [e[1] for e in expected], [f[1] for f in found], 1e-6, absolute=True)
 
 
 def draw(case, points):

@@ -37,8 +37,8 @@ private:
     Kinematics kinematics_ = Kinematics::affine;
 };
 
-/// Values on a pattern; entry k is a 6 x 6 block. On the pattern of rigid blocks the matrix is `rigid_values`, and
-/// `values` is what it was made of.
+/// Values on a pattern; entry k is a 6 x 6 block in `values`, or on the pattern of rigid blocks a 3 x 3 block in
+/// `rigid_values`; the other one is empty.
 struct BlockMatrix {
     const BlockPattern* pattern = nullptr;
     std::vector<Mat6> values;

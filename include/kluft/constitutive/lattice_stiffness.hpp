@@ -50,6 +50,18 @@ inline constexpr double default_shear_ratio = 0.5;      ///< k_s/k_n
 [[nodiscard]] InterfaceStiffness rigid_lattice_stiffness(double youngs_modulus_of_rock, double poissons_ratio_of_rock,
                                                          Plane plane, double spacing);
 
+/// Interfaces between rigid hexagons that also carry the compliance of the blocks, so that the body is as stiff as one of
+/// those blocks on `interfaces`: k_n' d = 2 K_eff, (k_n' + k_s') d = 4 G_eff of lattice_moduli, or
+///   1/k_n' = 1/k_n + d/(2 K),   1/(k_n' + k_s') = 1/(k_n + k_s) + d/(4 G).
+/// Throws InputError where k_s' would not be positive, with the largest admissible nu of the blocks.
+[[nodiscard]] InterfaceStiffness with_compliance_of_blocks(const InterfaceStiffness& interfaces,
+                                                           const ElasticModuli& blocks, Plane plane, double spacing);
+
+/// The Poisson's ratio of blocks with this E from which on k_s' of with_compliance_of_blocks is not positive; 1/2 or more:
+/// all are admissible.
+[[nodiscard]] double largest_poissons_ratio(const InterfaceStiffness& interfaces, double youngs_modulus, Plane plane,
+                                            double spacing);
+
 /// Moduli that the blocks need so that the tessellated body has the rock's E and nu: lattice_moduli solved for the
 /// blocks, with k_n d = stiffness_ratio E and k_s = shear_ratio k_n.
 /// Throws InputError that names the smallest admissible stiffness_ratio where no positive moduli result.

@@ -8,6 +8,7 @@
 
 #include "kluft/assembly/block_matrix.hpp"
 #include "kluft/equilibrium/boundary_terms.hpp"
+#include "kluft/equilibrium/rigid_terms.hpp"
 #include "kluft/loading/loaded_body.hpp"
 
 namespace kluft {
@@ -40,20 +41,28 @@ public:
 
     /// R(q).
     void residual(const Eigen::VectorXd& q, Residual& result);
+    /// Of rigid blocks, T' of forces on the six numbers at the q of the last residual: size 3 n_blocks.
+    void reduce_to_unknowns(const Eigen::VectorXd& forces, Eigen::VectorXd& reduced) const;
     /// dR/dq. Of rigid blocks with T = dq/d(u, w): T' dR/dq T and what the forces do on the curve that a turning block
     /// moves on; the pattern must be one of rigid blocks then.
-    void tangent(const Eigen::VectorXd& q, TangentKind kind, BlockMatrix& matrix) const;
+    void tangent(const Eigen::VectorXd& q, TangentKind kind, BlockMatrix& matrix);
 
 private:
     void add_mass_forces(const Eigen::VectorXd& q, Eigen::VectorXd& forces) const;
     void set_bond_tangents(BlockMatrix& matrix) const;
     void add_block_tangents(const Eigen::VectorXd& q, TangentKind kind, BlockMatrix& matrix) const;
     void add_contact_tangents(const Eigen::VectorXd& q, TangentKind kind, BlockMatrix& matrix) const;
-    void reduce_to_rigid(const Eigen::VectorXd& q, TangentKind kind, BlockMatrix& matrix) const;
+    void rigid_tangent(const Eigen::VectorXd& q, TangentKind kind, BlockMatrix& matrix);
+    void set_rigid_bond_tangents(BlockMatrix& matrix) const;
+    void add_rigid_contact_tangents(const Eigen::VectorXd& q, TangentKind kind, BlockMatrix& matrix) const;
+    void add_rigid_block_tangents(TangentKind kind, BlockMatrix& matrix) const;
 
     const EquilibriumProblem& problem_;
     const BlockPattern& pattern_;
     BodyForces body_forces_;
+    Eigen::VectorXd turned_to_;      ///< of rigid blocks: the q of what follows
+    RigidTurns turns_;               ///< at that q
+    std::vector<double> curvatures_; ///< stiffness against w from the forces at that q, per block
 };
 
 /// M of a block: the integral of N' N over its area (m2), or over `least_area` if that is more.

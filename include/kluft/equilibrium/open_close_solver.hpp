@@ -62,8 +62,7 @@ public:
     [[nodiscard]] double assembly_seconds() const { return assembly_seconds_; }
 
 private:
-    void evaluate(const EquilibriumProblem& problem, EquilibriumEvaluator& evaluator, const Eigen::VectorXd& q,
-                  Residual& residual);
+    void evaluate(EquilibriumEvaluator& evaluator, const Eigen::VectorXd& q, Residual& residual);
     [[nodiscard]] bool find_increment(const EquilibriumProblem& problem, EquilibriumEvaluator& evaluator,
                                       const Eigen::VectorXd& q, TangentKind kind);
     void assemble(const EquilibriumProblem& problem, EquilibriumEvaluator& evaluator, const Eigen::VectorXd& q,
@@ -76,8 +75,6 @@ private:
                                     const Eigen::VectorXd& q);
     [[nodiscard]] bool solve_refined(const EquilibriumProblem& problem);
     void limit_increment(const BlockSystem& system);
-    [[nodiscard]] Eigen::VectorXd unknowns_of(const EquilibriumProblem& problem, const Eigen::VectorXd& q,
-                                              const Eigen::VectorXd& forces) const;
     void move_to(const EquilibriumProblem& problem, const Eigen::VectorXd& q, double s);
     void keep_free_part(const EquilibriumProblem& problem, const Eigen::VectorXd& q, Eigen::VectorXd& forces) const;
     void add_travel(const EquilibriumProblem& problem, double out_of_balance);
@@ -99,6 +96,7 @@ private:
     int excess_refinements_ = 0;   ///< of later solutions beyond it
     Residual residual_;
     Residual trial_;
+    Residual of_six_numbers_; ///< of rigid blocks, before it is reduced to their unknowns
     Eigen::VectorXd prescribed_, right_side_, increment_, position_, scratch_;
     Eigen::VectorXd travel_;                                ///< motion for unit travel of a platen under a given force
     Eigen::VectorXd travel_column_, travel_row_, response_; ///< its column and row of the stiffness

@@ -48,26 +48,14 @@ inline void set_rotation(Eigen::VectorXd& q, int b, double size, double angle) {
     return motion;
 }
 
-/// T' of a vector of forces on the six numbers of all blocks: size 3 n_blocks.
-[[nodiscard]] inline Eigen::VectorXd rigid_forces(const BlockSystem& system, const Eigen::VectorXd& q,
-                                                  const Eigen::VectorXd& forces) {
-    Eigen::VectorXd reduced(n_rigid_unknowns * system.n_blocks());
-    for (int b = 0; b < system.n_blocks(); ++b) {
-        reduced.segment<n_rigid_unknowns>(n_rigid_unknowns * b) =
-            rigid_motion(q, b, system.blocks[b].size).transpose() *
-            forces.segment<n_block_unknowns>(n_block_unknowns * b);
-    }
-    return reduced;
-}
-
-/// Moves rigid blocks by `increment` (size 3 n_blocks): rotations add up exactly.
-inline void move_rigid(const BlockSystem& system, const Eigen::VectorXd& increment, Eigen::VectorXd& q) {
+/// Moves rigid blocks by `share` times the increment (size 3 n_blocks): rotations add up exactly.
+inline void move_rigid(const BlockSystem& system, const Eigen::VectorXd& increment, double share, Eigen::VectorXd& q) {
     for (int b = 0; b < system.n_blocks(); ++b) {
         const double size = system.blocks[b].size;
         const double* d = increment.data() + n_rigid_unknowns * b;
-        q[n_block_unknowns * b] += d[0];
-        q[n_block_unknowns * b + 1] += d[1];
-        set_rotation(q, b, size, rotation_of(q, b, size) + d[2] / size);
+        q[n_block_unknowns * b] += share * d[0];
+        q[n_block_unknowns * b + 1] += share * d[1];
+        set_rotation(q, b, size, rotation_of(q, b, size) + share * d[2] / size);
     }
 }
 

@@ -21,10 +21,14 @@ struct Model {
     Vec2 gravity = Vec2::Zero();       ///< at the end of the first stage, unless that has its own (m/s2)
     std::vector<ElasticModuli> moduli; ///< of the blocks, per material
     std::vector<double> densities;     ///< per material (kg/m3)
-    std::vector<InterfaceLaw> laws;    ///< per interface type
-    std::vector<char> bonds;           ///< per interface type: 1 for a potential crack
-    std::vector<int> fracture_law;     ///< per interface type: the law after failure, its own for a fracture
-    std::vector<Strength> strengths;   ///< per interface; of use for potential cracks only
+    /// Per interface type; then, of a net of rigid blocks that breaks, the law of what it fails to with the stiffness of
+    /// the net's own kind: also a broken edge carries the compliance of the blocks.
+    std::vector<InterfaceLaw> laws;
+    std::vector<int> law_types;                      ///< per law: the interface type that it belongs to
+    std::vector<InterfaceStiffness> given_stiffness; ///< per law: as the scene has it, without compliance of blocks
+    std::vector<char> bonds;                         ///< per interface type: 1 for a potential crack
+    std::vector<int> fracture_law;   ///< per interface type: the law after failure, its own for a fracture
+    std::vector<Strength> strengths; ///< per interface; of use for potential cracks only
     LoadProgram loads;
     std::vector<MaterialPoint> force_points; ///< where LoadProgram::forces act
     double effective_modulus = 0.0; ///< E of the body or of its softest joint, k_n H, for the mass-like term (Pa)
@@ -45,8 +49,9 @@ struct ModelInput {
     std::vector<HistoryRequest> histories;
 };
 
-/// Throws InputError where stiffnesses cannot be resolved, a potential crack has no strength, a platen moves a fixed block
-/// or a point force or a history is of no block.
+/// In a tessellated body of rigid blocks the net's interfaces take over the compliance of the blocks (docs/theory.md,
+/// lattice). Throws InputError where stiffnesses cannot be resolved, a potential crack has no strength, a platen moves a
+/// fixed block or a point force or a history is of no block.
 [[nodiscard]] Model build_model(BlockSystem system, const ModelInput& input);
 
 /// Whether there is gravity in any stage.

@@ -40,8 +40,8 @@ struct SolverOptions {
 };
 
 enum class Integrator {
-    implicit, ///< equilibrium by open-close iteration
-    explicit_ ///< motion in small time steps with local damping, as a reference for the implicit one
+    implicit,       ///< equilibrium by open-close iteration
+    explicit_motion ///< motion in small time steps with local damping, as a reference for the implicit one
 };
 
 enum class DensityScaling {
