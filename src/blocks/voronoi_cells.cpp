@@ -75,13 +75,18 @@ struct Window {
     int n_rows = 0;
 };
 
+/// Coordinate of a random point about the middle of its square: the sum of three uniform numbers, each a square wide.
+std::int64_t scattered(int square, std::uint64_t bits) {
+    const auto fraction = [bits](int i) { return static_cast<std::int64_t>(bits >> (i * unit_bits)) & (units - 1); };
+    return (square - 1) * units + fraction(1) + fraction(2) + fraction(3);
+}
+
 /// The random point of a square, relative to the window's first one.
 GridPoint point_of_square(std::uint64_t seed, const Window& window, int column, int row) {
     const auto place = [](std::int64_t first, int i) { return static_cast<std::uint64_t>(first + i); };
     std::uint64_t bits = mixed_bits(mixed_bits(seed) ^ place(window.first_column, column));
     bits = mixed_bits(bits ^ place(window.first_row, row));
-    const auto fraction = [](std::uint64_t of) { return static_cast<std::int64_t>(of >> (64 - unit_bits)); };
-    return {column * units + fraction(bits), row * units + fraction(mixed_bits(bits))};
+    return {scattered(column, bits), scattered(row, mixed_bits(bits))};
 }
 
 std::vector<GridPoint> random_points(std::uint64_t seed, const Window& window) {
@@ -151,9 +156,9 @@ void relax(std::vector<GridPoint>& points, const Window& window) {
 
 double side_of_squares(double spacing) { return spacing * std::sqrt(0.5 * std::numbers::sqrt3); }
 
-/// Rows of squares between the box and what a pass may have got wrong for want of cells beyond the window. A cell's
-/// corner is within sqrt(2) a of its point, so that a pass carries an error by less than 3 a.
-int margin(int relaxation) { return 4 + 3 * (relaxation + 1); }
+/// Rows of squares between the box and what a pass may have got wrong for want of cells beyond the window. No place is
+/// farther than 2 sqrt(2) a from the point of its own square, so that a pass carries an error by less than 6 a.
+int margin(int relaxation) { return 4 + 6 * (relaxation + 1); }
 
 void check(const VoronoiCells& cells, const Box& box) {
     const auto refuse = [](const char* key, const std::string& message) {
@@ -166,7 +171,7 @@ void check(const VoronoiCells& cells, const Box& box) {
     if (!(d > 0.0) || !std::isfinite(d)) refuse("spacing", fmt::format("expected a length above 0, got {}", d));
     if (cells.relaxation < 0 || cells.relaxation > most_relaxation)
         refuse("relaxation", fmt::format("expected 0 to {} passes, got {}", most_relaxation, cells.relaxation));
-    if (!(cells.offset.cwiseAbs().maxCoeff() <= farthest * d))
+    if (!cells.offset.allFinite() || cells.offset.cwiseAbs().maxCoeff() > farthest * d)
         refuse("offset", fmt::format("expected at most {:.0g} spacings, got ({}, {}) m", farthest, cells.offset.x(),
                                      cells.offset.y()));
     const Vec2 n = (box.upper - box.lower) / side_of_squares(d);
@@ -191,7 +196,7 @@ Window window_on(const VoronoiCells& cells, const Box& box) {
 
 } // namespace
 
-double voronoi_reach(const VoronoiCells& cells) { return std::numbers::sqrt2 * side_of_squares(cells.spacing); }
+double voronoi_reach(const VoronoiCells& cells) { return 2.0 * std::numbers::sqrt2 * side_of_squares(cells.spacing); }
 
 VoronoiNet voronoi_net(const VoronoiCells& cells, const Box& box) {
     check(cells, box);

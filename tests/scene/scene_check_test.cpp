@@ -163,7 +163,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "geometry.tessellation.hexagons.jitter: expected a number >= 0 and < 0.25, found '0.25'"},
         Refusal{"geometry.tessellation.hexagons.seed=-1",
                 "geometry.tessellation.hexagons.seed: expected an integer >= 0, found '-1'"},
-        Refusal{"geometry.tessellation={interface: bond, voronoi: {spacing: 0.1, relaxation: 21}}",
+        Refusal{"geometry.tessellation={hexagons: null, voronoi: {spacing: 0.1, relaxation: 21}}",
                 "geometry.tessellation.voronoi.relaxation: expected an integer from 0 to 20, found '21'"},
         Refusal{"cracks.strength_noise=0.3", "cracks.strength_noise: expected a number >= 0 and < 0.3, found '0.3'"},
         Refusal{"cracks.strength_noise=-0.01",
@@ -264,7 +264,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "geometry.tessellation: expected one of hexagons, voronoi, found hexagons and voronoi"},
         Refusal{"geometry.tessellation.hexagons=null",
                 "geometry.tessellation: expected one of hexagons, voronoi, found none of them"},
-        Refusal{"geometry.tessellation={interface: bond, voronoi: {spacing: 0.2 mm}}",
+        Refusal{"geometry.tessellation={hexagons: null, voronoi: {spacing: 0.2 mm}}",
                 "geometry.tessellation.voronoi.spacing: expected a spacing in m that fits the domain, found '0.2 mm', "
                 "which makes 2.3e+08 cells"}));
 

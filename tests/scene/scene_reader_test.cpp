@@ -113,7 +113,7 @@ TEST(SceneReader, ReadsVoronoiCellsInPlaceOfHexagons) {
 
 TEST(SceneReader, VoronoiCellsAreRelaxedTwiceWhereNothingIsSaid) {
     const Scene scene =
-        read_scene_text(test::full_scene, {"geometry.tessellation={interface: bond, voronoi: {spacing: 0.3}}"});
+        read_scene_text(test::full_scene, {"geometry.tessellation={hexagons: null, voronoi: {spacing: 0.3}}"});
     const auto& cells = scene.geometry.tessellation->voronoi;
     ASSERT_TRUE(cells);
     EXPECT_EQ(cells->seed, 1U);

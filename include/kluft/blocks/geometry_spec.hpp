@@ -30,7 +30,7 @@ struct HexagonLattice {
     std::uint64_t seed = 1;     ///< of the jitter
 };
 
-/// Voronoi cells of random points, one in each square of sqrt(3)/2 spacing^2, which is also the mean area of a cell: as
+/// Voronoi cells of random points, one for each square of sqrt(3)/2 spacing^2, which is also the mean area of a cell: as
 /// many cells as hexagons of that spacing. The net covers the plane; the body is a window on it.
 struct VoronoiCells {
     double spacing = 0.0;       ///< distance of centres of hexagons of the same area (m)

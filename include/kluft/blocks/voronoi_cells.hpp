@@ -25,8 +25,10 @@ struct VoronoiNet {
 
 /// The net's cells in and around `box`, all whose edges can meet it among them.
 ///
-/// The plane is divided into squares of side a, a^2 = sqrt(3)/2 spacing^2, with one random point in each, uniform and
-/// independent of the others: a net without a trace of the squares' order in its mean (Klatt, Kim and Torquato 2020).
+/// The plane is divided into squares of side a, a^2 = sqrt(3)/2 spacing^2, with one random point each: the square's
+/// middle plus the sum of three independent vectors, uniform in a square of side a about zero. One such vector would
+/// leave nothing of the squares' order in the mean density (Klatt, Kim and Torquato 2020), but pairs of points, and with
+/// them the edges, would still prefer the squares' directions; the sum of three is as good as isotropic.
 /// Each of Lloyd's passes (Lloyd 1982) then moves every point to the centroid of its cell, which makes cells rounder,
 /// more equal and their shortest edges longer. Points, centroids and vertices are integers, in units of a/65536, and
 /// are computed without rounding before that to the unit, so that the net is a function of seed and passes: the same
@@ -36,7 +38,7 @@ struct VoronoiNet {
 
 constexpr int most_relaxation = 20;
 
-/// Farthest that a corner lies from its cell's point: sqrt(2) a before any pass, less after it (m).
+/// Farthest that a corner lies from its cell's point: 2 sqrt(2) a before any pass, less after it (m).
 [[nodiscard]] double voronoi_reach(const VoronoiCells& cells);
 
 /// Edges of the cells whose point `keeps` that can meet `box`.
