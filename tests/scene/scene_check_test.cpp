@@ -260,13 +260,18 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"geometry.tessellation.hexagons.spacing=0.2 mm",
                 "geometry.tessellation.hexagons.spacing: expected a spacing in m that fits the domain, found '0.2 "
                 "mm', which makes 2.3e+08 hexagons"},
-        Refusal{"geometry.tessellation.voronoi={spacing: 0.1}",
-                "geometry.tessellation: expected one of hexagons, voronoi, found hexagons and voronoi"},
-        Refusal{"geometry.tessellation.hexagons=null",
-                "geometry.tessellation: expected one of hexagons, voronoi, found none of them"},
         Refusal{"geometry.tessellation={hexagons: null, voronoi: {spacing: 0.2 mm}}",
                 "geometry.tessellation.voronoi.spacing: expected a spacing in m that fits the domain, found '0.2 mm', "
                 "which makes 2.3e+08 cells"}));
+
+TEST(SceneErrors, NetIsOfHexagonsOrOfVoronoiCells) {
+    EXPECT_THAT(errors_with({"geometry.tessellation.voronoi={spacing: 0.1}"}),
+                ElementsAre(testing::HasSubstr(
+                    "geometry.tessellation: expected one of hexagons, voronoi, found hexagons and voronoi")));
+    EXPECT_THAT(errors_with({"geometry.tessellation.hexagons=null"}),
+                ElementsAre(testing::HasSubstr(
+                    "geometry.tessellation: expected one of hexagons, voronoi, found none of them")));
+}
 
 TEST(SceneErrors, OneOfSeveralMaterialsMustBeNamed) {
     EXPECT_THAT(errors_with({"geometry.material=null"}),
