@@ -29,6 +29,9 @@ kluft_purpose(CGAL "exact arrangement of fractures and hexagons")
 set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE TRUE)
 find_package(CGAL 5.5 REQUIRED CONFIG)
 
+kluft_purpose(Boost "Voronoi cells, the normal quantile")
+find_package(Boost 1.74 REQUIRED)
+
 kluft_purpose(yaml-cpp "scenes")
 find_package(yaml-cpp REQUIRED CONFIG)
 

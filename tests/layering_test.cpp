@@ -36,6 +36,8 @@ const std::map<std::string, std::set<std::string>> layers_of_library{
     {"openblas", {"assembly"}},
     {"yaml-cpp/", {"scene"}},
     {"CGAL/", {"blocks"}},
+    {"boost/polygon/", {"blocks"}},
+    {"boost/math/", {"constitutive"}},
     {"hdf5", {"output"}},
     {"H5", {"output"}},
     {"cairo", {"output"}},
@@ -46,8 +48,8 @@ const std::map<std::string, std::set<std::string>> layers_of_library{
 
 /// Heavy headers have no place in what everyone includes.
 const std::vector<std::string> never_in_public_headers{
-    "cholmod", "umfpack", "SuiteSparse", "suitesparse/", "metis", "cblas", "openblas",  "yaml-cpp/", "CGAL/",
-    "hdf5",    "H5",      "cairo",       "CLI/",         "coin",  "Ip",    "nlohmann/", "spdlog/",   "fmt/"};
+    "cholmod", "umfpack", "SuiteSparse", "suitesparse/", "metis", "cblas",     "openblas", "yaml-cpp/", "CGAL/", "hdf5",
+    "H5",      "cairo",   "CLI/",        "coin",         "Ip",    "nlohmann/", "spdlog/",  "fmt/",      "boost/"};
 
 struct Include {
     std::string name;

@@ -17,6 +17,7 @@
 #include "kluft/blocks/given_blocks.hpp"
 #include "kluft/blocks/hexagon_lattice.hpp"
 #include "kluft/blocks/map_mender.hpp"
+#include "kluft/blocks/voronoi_cells.hpp"
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/core/memory.hpp"
 #include "kluft/geometry/polygon.hpp"
@@ -200,18 +201,18 @@ void add_traces(std::vector<SourceSegment>& segments, const std::vector<SourceTr
     }
 }
 
-/// Adds the hexagons that the region keeps, and of these only those that can reach into the domain.
-void add_hexagons(std::vector<SourceSegment>& segments, const GeometrySpec& spec, const LocalFrame& frame,
-                  const SegmentGrid& outline, int source) {
-    const HexagonLattice& lattice = spec.tessellation->hexagons;
+/// Edges of the cells with their centre in the region, and of these only of those that can reach into the domain.
+std::vector<std::pair<Vec2, Vec2>> net_edges(const GeometrySpec& spec, const LocalFrame& frame,
+                                             const SegmentGrid& outline) {
+    const Tessellation& net = *spec.tessellation;
     const Polygon domain = frame.to_local(spec.domain);
-    const Polygon region = spec.tessellation->region ? frame.to_local(*spec.tessellation->region) : Polygon{};
-    const double reach = lattice.spacing * (1.0 / std::numbers::sqrt3 + lattice.jitter);
+    const Polygon region = net.region ? frame.to_local(*net.region) : Polygon{};
+    const double reach = net.voronoi ? voronoi_reach(*net.voronoi) : hexagon_reach(net.hexagons);
     const auto keeps = [&](const Vec2& centre) {
         if (!region.empty() && !contains(region, centre)) return false;
         return contains(domain, centre) || std::isfinite(outline.distance(centre, reach));
     };
-    for (const auto& [a, b] : hexagon_edges(lattice, frame.box, keeps)) segments.push_back({a, b, source});
+    return net.voronoi ? voronoi_edges(*net.voronoi, frame.box, keeps) : hexagon_edges(net.hexagons, frame.box, keeps);
 }
 
 struct Cuts {
@@ -231,7 +232,10 @@ Cuts cuts_of(const GeometrySpec& spec, const LocalFrame& frame, const SourceNumb
     const std::vector<SourceSegment> bridges = bridge_ends(traces, cuts.segments, resolution(spec, frame));
     cuts.segments.insert(cuts.segments.end(), bridges.begin(), bridges.end());
     cuts.joined_ends = static_cast<int>(bridges.size());
-    if (spec.tessellation) add_hexagons(cuts.segments, spec, frame, SegmentGrid(sides), numbers.tessellation);
+    if (spec.tessellation) {
+        for (const auto& [a, b] : net_edges(spec, frame, SegmentGrid(sides)))
+            cuts.segments.push_back({a, b, numbers.tessellation});
+    }
     return cuts;
 }
 
@@ -311,7 +315,7 @@ void check_faces(PlanarMap& map, const LocalFrame& frame) {
         if (map.half_edges_of(f).empty() || face_is_simple(map, f)) continue;
         const Vec2 at = frame.origin + map.positions[map.start(map.faces[f].front())];
         throw InputError(fmt::format("geometry: the block at ({:.17g}, {:.17g}) folds over itself in double precision; "
-                                     "move the fractures or the hexagons there a little, or give a reference spacing",
+                                     "move the fractures or the net there a little, or give a reference spacing",
                                      at.x(), at.y()));
     }
 }
@@ -494,7 +498,8 @@ void measure(const BlockSystem& system, CutReport& report) {
 } // namespace
 
 double lattice_spacing(const GeometrySpec& spec) {
-    return spec.tessellation ? spec.tessellation->hexagons.spacing : spec.reference_spacing;
+    if (!spec.tessellation) return spec.reference_spacing;
+    return spec.tessellation->voronoi ? spec.tessellation->voronoi->spacing : spec.tessellation->hexagons.spacing;
 }
 
 namespace {

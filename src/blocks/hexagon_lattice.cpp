@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 
 #include <fmt/format.h>
 
 #include "kluft/core/diagnostics.hpp"
+#include "kluft/core/mixed_bits.hpp"
 
 namespace kluft {
 
@@ -17,8 +19,8 @@ using std::numbers::sqrt3;
 
 /// Indices of a lattice vertex: multiples of d/2 along x and of d/(2 sqrt 3) along y.
 struct LatticePoint {
-    int p = 0;
-    int q = 0;
+    std::int64_t p = 0;
+    std::int64_t q = 0;
 };
 
 /// The six vertices of the hexagon about (0, 0), counter-clockwise from the lower end of its right flat, and the
@@ -26,24 +28,16 @@ struct LatticePoint {
 constexpr std::array<LatticePoint, 6> corners{{{1, -1}, {1, 1}, {0, 2}, {-1, 1}, {-1, -1}, {0, -2}}};
 constexpr std::array<std::array<int, 2>, 6> neighbours{{{1, 0}, {0, 1}, {-1, 1}, {-1, 0}, {0, -1}, {1, -1}}};
 
-/// The finalizer of splitmix64 (Steele, Lea and Flood 2014).
-std::uint64_t mixed(std::uint64_t x) {
-    x += 0x9e3779b97f4a7c15ULL;
-    x = (x ^ (x >> 30U)) * 0xbf58476d1ce4e5b9ULL;
-    x = (x ^ (x >> 27U)) * 0x94d049bb133111ebULL;
-    return x ^ (x >> 31U);
-}
-
 /// In [-1, 1), from the upper 53 bits.
 double symmetric_unit(std::uint64_t bits) { return static_cast<double>(bits >> 11U) * 0x1.0p-52 - 1.0; }
 
 /// A point of the unit disc that depends on the seed and the indices only; by rejection from the square.
 Vec2 disc_point(std::uint64_t seed, LatticePoint at) {
-    std::uint64_t state = mixed(mixed(seed) ^ static_cast<std::uint64_t>(static_cast<std::uint32_t>(at.p)));
-    state = mixed(state ^ static_cast<std::uint64_t>(static_cast<std::uint32_t>(at.q)));
+    std::uint64_t state = mixed_bits(mixed_bits(seed) ^ static_cast<std::uint32_t>(at.p));
+    state = mixed_bits(state ^ static_cast<std::uint32_t>(at.q));
     while (true) {
-        const double x = symmetric_unit(state = mixed(state));
-        const double y = symmetric_unit(state = mixed(state));
+        const double x = symmetric_unit(state = mixed_bits(state));
+        const double y = symmetric_unit(state = mixed_bits(state));
         if (x * x + y * y <= 1.0) return {x, y};
     }
 }
@@ -54,8 +48,8 @@ public:
         : lattice_(lattice), cosine_(std::cos(lattice.rotation)), sine_(std::sin(lattice.rotation)) {}
 
     [[nodiscard]] Vec2 position(LatticePoint at) const {
-        const double x = at.p * (0.5 * lattice_.spacing);
-        const double y = at.q * (lattice_.spacing / (2.0 * sqrt3));
+        const double x = static_cast<double>(at.p) * (0.5 * lattice_.spacing);
+        const double y = static_cast<double>(at.q) * (lattice_.spacing / (2.0 * sqrt3));
         return lattice_.offset + Vec2(cosine_ * x - sine_ * y, sine_ * x + cosine_ * y);
     }
 
@@ -76,9 +70,9 @@ private:
     double sine_;
 };
 
-LatticePoint centre(int i, int j) { return {2 * i + j, 3 * j}; }
+LatticePoint centre(std::int64_t i, std::int64_t j) { return {2 * i + j, 3 * j}; }
 
-LatticePoint corner(int i, int j, int k) {
+LatticePoint corner(std::int64_t i, std::int64_t j, int k) {
     const LatticePoint c = centre(i, j);
     return {c.p + corners[k].p, c.q + corners[k].q};
 }
@@ -100,9 +94,18 @@ void check(const HexagonLattice& lattice) {
     if (!std::isfinite(lattice.rotation) || !lattice.offset.allFinite()) {
         throw InputError("geometry.tessellation.hexagons: rotation and offset must be finite numbers");
     }
+    constexpr double farthest = 1e9;
+    if (lattice.offset.cwiseAbs().maxCoeff() > farthest * lattice.spacing) {
+        throw InputError(
+            fmt::format("geometry.tessellation.hexagons.offset: expected at most {:.0g} spacings, got ({}, "
+                        "{}) m",
+                        farthest, lattice.offset.x(), lattice.offset.y()));
+    }
 }
 
 } // namespace
+
+double hexagon_reach(const HexagonLattice& lattice) { return lattice.spacing * (1.0 / sqrt3 + lattice.jitter); }
 
 double hexagon_area(double spacing) { return 0.5 * sqrt3 * spacing * spacing; }
 
@@ -111,7 +114,7 @@ std::vector<std::pair<Vec2, Vec2>> hexagon_edges(const HexagonLattice& lattice, 
     check(lattice);
     const LatticeFrame frame(lattice);
     const double d = lattice.spacing;
-    const double reach = d * (1.0 / sqrt3 + lattice.jitter);
+    const double reach = hexagon_reach(lattice);
     const Box covered = bounding_box({frame.unrotated(box.lower), frame.unrotated(box.upper),
                                       frame.unrotated({box.lower.x(), box.upper.y()}),
                                       frame.unrotated({box.upper.x(), box.lower.y()})});
@@ -124,19 +127,22 @@ std::vector<std::pair<Vec2, Vec2>> hexagon_edges(const HexagonLattice& lattice, 
                                      "{:.0g} in one scene",
                                      d, n_cells, most_cells));
     }
-    const int first_row = static_cast<int>(std::floor((covered.lower.y() - reach) / row));
-    const int last_row = static_cast<int>(std::ceil((covered.upper.y() + reach) / row));
+    const auto below = [](double x) { return static_cast<std::int64_t>(std::floor(x)); };
+    const auto above = [](double x) { return static_cast<std::int64_t>(std::ceil(x)); };
+    const std::int64_t first_row = below((covered.lower.y() - reach) / row);
+    const std::int64_t last_row = above((covered.upper.y() + reach) / row);
 
-    const auto kept = [&](int i, int j) {
+    const auto kept = [&](std::int64_t i, std::int64_t j) {
         const Vec2 c = frame.position(centre(i, j));
         return c.x() >= box.lower.x() - reach && c.x() <= box.upper.x() + reach && c.y() >= box.lower.y() - reach &&
                c.y() <= box.upper.y() + reach && keeps(c);
     };
     std::vector<std::pair<Vec2, Vec2>> edges;
-    for (int j = first_row; j <= last_row; ++j) {
-        const int first = static_cast<int>(std::floor((covered.lower.x() - reach) / d - 0.5 * j));
-        const int last = static_cast<int>(std::ceil((covered.upper.x() + reach) / d - 0.5 * j));
-        for (int i = first; i <= last; ++i) {
+    for (std::int64_t j = first_row; j <= last_row; ++j) {
+        const double shift = 0.5 * static_cast<double>(j);
+        const std::int64_t first = below((covered.lower.x() - reach) / d - shift);
+        const std::int64_t last = above((covered.upper.x() + reach) / d - shift);
+        for (std::int64_t i = first; i <= last; ++i) {
             if (!kept(i, j)) continue;
             for (int k = 0; k < 6; ++k) {
                 // The first three edges are this cell's own; the others only where the cell across is not kept.

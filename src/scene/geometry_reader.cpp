@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
-#include <numbers>
 #include <optional>
 #include <set>
 #include <string_view>
@@ -13,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "kluft/blocks/hexagon_lattice.hpp"
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/geometry/polygon.hpp"
 #include "kluft/scene/geojson.hpp"
@@ -25,7 +25,7 @@ namespace {
 
 constexpr int most_sides_checked = 2000; ///< of a polygon here; the block cutter checks all
 constexpr int fixed_choice = 1;          ///< of a block's or a set's support
-constexpr double most_hexagons = 2e7;    ///< beyond what memory holds: the spacing's unit is wrong
+constexpr double most_cells = 2e7;       ///< beyond what memory holds: the spacing's unit is wrong
 
 /// Where neighbouring points coincide, if anywhere: the second one's index.
 std::optional<std::size_t> repeated_point(const std::vector<Vec2>& points) {
@@ -344,29 +344,46 @@ private:
 
     void read_tessellation(const SceneSection& section) {
         if (!section.node()->is_mapping()) return;
-        const auto hexagons = section.section("hexagons");
+        if (!gives_one_of(section, {"hexagons", "voronoi"}, context_)) return;
         Tessellation tessellation;
-        tessellation.hexagons.spacing = hexagons.number("spacing");
-        tessellation.hexagons.rotation = hexagons.number("rotation");
-        tessellation.hexagons.offset = hexagons.point("offset");
-        tessellation.hexagons.jitter = hexagons.number("jitter");
-        tessellation.hexagons.seed = static_cast<std::uint64_t>(hexagons.integer("seed"));
+        if (section.has("hexagons"))
+            tessellation.hexagons = read_hexagons(section.section("hexagons"));
+        else
+            tessellation.voronoi = read_voronoi(section.section("voronoi"));
         tessellation.interface_type = interface_of(section);
         if (section.has("region")) tessellation.region = read_polygon(section, "region");
-        check_hexagon_count(hexagons);
         spec_.tessellation = std::move(tessellation);
     }
 
-    void check_hexagon_count(const SceneSection& hexagons) {
-        const auto spacing = hexagons.given_number("spacing");
+    HexagonLattice read_hexagons(const SceneSection& section) {
+        HexagonLattice hexagons;
+        hexagons.spacing = section.number("spacing");
+        hexagons.rotation = section.number("rotation");
+        hexagons.offset = section.point("offset");
+        hexagons.jitter = section.number("jitter");
+        hexagons.seed = static_cast<std::uint64_t>(section.integer("seed"));
+        check_cell_count(section, "hexagons");
+        return hexagons;
+    }
+
+    VoronoiCells read_voronoi(const SceneSection& section) {
+        VoronoiCells cells;
+        cells.spacing = section.number("spacing");
+        cells.offset = section.point("offset");
+        cells.relaxation = section.count("relaxation");
+        cells.seed = static_cast<std::uint64_t>(section.integer("seed"));
+        check_cell_count(section, "cells");
+        return cells;
+    }
+
+    void check_cell_count(const SceneSection& net, std::string_view cells) {
+        const auto spacing = net.given_number("spacing");
         if (!spacing) return;
-        const double hexagon_area = 0.5 * std::numbers::sqrt3 * *spacing * *spacing;
-        const double n_hexagons = signed_area(spec_.domain) / hexagon_area;
-        if (n_hexagons > most_hexagons)
-            context_.fail(
-                hexagons, "spacing",
-                fmt::format("expected a spacing in m that fits the domain, found {}, which makes {:.1e} hexagons",
-                            found_text(*hexagons.value("spacing")), n_hexagons));
+        const double n_cells = signed_area(spec_.domain) / hexagon_area(*spacing);
+        if (n_cells > most_cells)
+            context_.fail(net, "spacing",
+                          fmt::format("expected a spacing in m that fits the domain, found {}, which makes {:.1e} {}",
+                                      found_text(*net.value("spacing")), n_cells, cells));
     }
 
     void read_region(const SceneSection& section) {

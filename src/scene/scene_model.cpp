@@ -13,6 +13,7 @@ SceneModel build_scene_model(const Scene& scene) {
     input.materials = scene.materials;
     input.interface_types = scene.interface_types;
     input.tessellation_type = scene.geometry.tessellation ? scene.geometry.tessellation->interface_type : -1;
+    input.strength_noise = scene.cracks.strength_noise;
     input.loads = scene.loads;
     input.histories = scene.output.histories;
     return {build_model(std::move(body.system), input), std::move(body.report)};

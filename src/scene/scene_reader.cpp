@@ -71,6 +71,8 @@ CrackOptions read_crack_options(const SceneSection& section) {
     options.update = static_cast<CrackUpdate>(section.choice("update"));
     options.every = section.count("every");
     options.event_tolerance = section.number("event_tolerance");
+    options.strength_noise = {.deviation = section.number("strength_noise"),
+                              .seed = static_cast<std::uint64_t>(section.integer("strength_seed"))};
     return options;
 }
 

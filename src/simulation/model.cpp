@@ -234,7 +234,7 @@ Model build_model(BlockSystem system, const ModelInput& input) {
     for (int i = 0; i < system.n_interfaces(); ++i) {
         if (!model.bonds[system.interfaces[i].interface_type]) continue;
         const auto [strength, was_capped] = capped(strength_of(system.interfaces[i], system, input));
-        model.strengths[i] = strength;
+        model.strengths[i] = scaled(strength, strength_factor(input.strength_noise, i));
         if (was_capped && model.warnings.empty()) {
             model.warnings.push_back(
                 "the tensile strength of a potential crack is larger than c cot(phi) and was capped");

@@ -521,6 +521,45 @@ TEST_P(RandomCut, OfABentDomainWithHolesIsAPartition) {
     EXPECT_EQ(faults(spec, cut_blocks(spec)), "");
 }
 
+class TurnedHexagons : public testing::TestWithParam<int> {};
+
+// The parameter is the rotation in degrees. Offsets near and far, with and without jitter: a partition, no slivers.
+TEST_P(TurnedHexagons, ArePartitionsAtAnyOffsetAndJitter) {
+    Uniform uniform(5000 + GetParam());
+    for (const double reach : {0.1, 30.0, 6.7e6}) {
+        for (const double jitter : {0.0, 0.1, 0.24}) {
+            GeometrySpec spec = rectangle(0.76, 1.0);
+            spec.tessellation = Tessellation{{.spacing = 0.1,
+                                              .rotation = GetParam() * std::numbers::pi / 180.0,
+                                              .offset = {uniform(-reach, reach), uniform(-reach, reach)},
+                                              .jitter = jitter,
+                                              .seed = static_cast<std::uint64_t>(GetParam())},
+                                             1,
+                                             {}};
+            add_random_traces(spec, 3, 0.76, 1.0, uniform);
+            const CutBody body = cut_blocks(spec);
+            EXPECT_EQ(faults(spec, body), "") << reach << ' ' << jitter;
+            EXPECT_GE(body.report.smallest_area, 0.05 * hexagon_area(0.1));
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Degrees, TurnedHexagons, testing::Range(0, 31));
+
+// The net has the period (d, 0) along its rows: whole periods away it cuts the same blocks.
+TEST(BlockCutter, HexagonsAreTheSameAfterWholePeriodsOfTheirOffset) {
+    const auto cut_at = [](const Vec2& offset) {
+        GeometrySpec spec = rectangle(1, 1);
+        spec.tessellation = Tessellation{{.spacing = 0.125, .rotation = 0.4, .offset = offset}, 1, {}};
+        return sorted_areas(sound_cut(spec).system);
+    };
+    const Vec2 along = 0.125 * Vec2(std::cos(0.4), std::sin(0.4));
+    const auto near = cut_at({0.02, 0.03});
+    const auto far = cut_at(Vec2(0.02, 0.03) + 4.0e7 * along); // 5000 km: its last digit is 9e-10 m
+    ASSERT_EQ(near.size(), far.size());
+    for (std::size_t i = 0; i < near.size(); ++i) EXPECT_NEAR(near[i], far[i], 1e-9);
+}
+
 class DegenerateCut : public testing::TestWithParam<int> {};
 
 // Traces between the points of a coarse grid, so that many meet in a point, overlap or run along the outline; in odd
@@ -592,6 +631,7 @@ std::vector<BadSpec> bad_specs() {
     add("ShortTrace", "geometry.fractures.0").fractures = {{{{0, 0}}, 0, ""}};
     add("TraceNotANumber", "geometry.fractures.0 (main)").fractures = {{{{0, 0}, {nan, 1}}, 0, "main"}};
     add("NoSpacing", "spacing").tessellation = Tessellation{};
+    add("FarOffset", "offset").tessellation = Tessellation{{.spacing = 0.1, .offset = {2e8, 0}}, 0, {}};
     add("Jitter", "jitter").tessellation = Tessellation{{.spacing = 0.1, .jitter = 0.3}, 0, {}};
     add("MinimumArea", "minimum_area").minimum_area = -0.1;
     add("ReferenceSpacing", "reference_spacing").reference_spacing = nan;

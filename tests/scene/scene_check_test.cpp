@@ -163,6 +163,12 @@ INSTANTIATE_TEST_SUITE_P(
                 "geometry.tessellation.hexagons.jitter: expected a number >= 0 and < 0.25, found '0.25'"},
         Refusal{"geometry.tessellation.hexagons.seed=-1",
                 "geometry.tessellation.hexagons.seed: expected an integer >= 0, found '-1'"},
+        Refusal{"geometry.tessellation={hexagons: null, voronoi: {spacing: 0.1, relaxation: 21}}",
+                "geometry.tessellation.voronoi.relaxation: expected an integer from 0 to 20, found '21'"},
+        Refusal{"cracks.strength_noise=0.3", "cracks.strength_noise: expected a number >= 0 and < 0.3, found '0.3'"},
+        Refusal{"cracks.strength_noise=-0.01",
+                "cracks.strength_noise: expected a number >= 0 and < 0.3, found '-0.01'"},
+        Refusal{"cracks.strength_seed=-1", "cracks.strength_seed: expected an integer >= 0, found '-1'"},
         Refusal{"stages.0.steps=3000000000", "stages.0.steps: expected an integer >= 1, found '3000000000'"},
         Refusal{"stages.1.strain.value=1.5", "stages.1.strain.value: expected a number from -0.5 to 0.5, found '1.5'"},
         Refusal{"geometry.domain.rectangle.width=1e300",
@@ -253,7 +259,19 @@ INSTANTIATE_TEST_SUITE_P(
                 "geometry.regions.0.polygon: expected a polygon with an area, found none"},
         Refusal{"geometry.tessellation.hexagons.spacing=0.2 mm",
                 "geometry.tessellation.hexagons.spacing: expected a spacing in m that fits the domain, found '0.2 "
-                "mm', which makes 2.3e+08 hexagons"}));
+                "mm', which makes 2.3e+08 hexagons"},
+        Refusal{"geometry.tessellation={hexagons: null, voronoi: {spacing: 0.2 mm}}",
+                "geometry.tessellation.voronoi.spacing: expected a spacing in m that fits the domain, found '0.2 mm', "
+                "which makes 2.3e+08 cells"}));
+
+TEST(SceneErrors, NetIsOfHexagonsOrOfVoronoiCells) {
+    EXPECT_THAT(errors_with({"geometry.tessellation.voronoi={spacing: 0.1}"}),
+                ElementsAre(testing::HasSubstr(
+                    "geometry.tessellation: expected one of hexagons, voronoi, found hexagons and voronoi")));
+    EXPECT_THAT(errors_with({"geometry.tessellation.hexagons=null"}),
+                ElementsAre(testing::HasSubstr(
+                    "geometry.tessellation: expected one of hexagons, voronoi, found none of them")));
+}
 
 TEST(SceneErrors, OneOfSeveralMaterialsMustBeNamed) {
     EXPECT_THAT(errors_with({"geometry.material=null"}),

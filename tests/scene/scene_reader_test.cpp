@@ -94,6 +94,44 @@ TEST(SceneReader, ReadsGeometry) {
     EXPECT_EQ(spec.regions[0].material, 1);
 }
 
+TEST(SceneReader, ReadsVoronoiCellsInPlaceOfHexagons) {
+    const Scene scene = read_scene_text(
+        test::full_scene, {"geometry.tessellation.hexagons=null",
+                           "geometry.tessellation.voronoi={spacing: 20 cm, seed: 7, offset: [1, 2], relaxation: 5}"});
+    const auto& cells = scene.geometry.tessellation->voronoi;
+    ASSERT_TRUE(cells);
+    EXPECT_EQ(cells->spacing, 0.2);
+    EXPECT_EQ(cells->seed, 7U);
+    EXPECT_EQ(cells->offset, Vec2(1.0, 2.0));
+    EXPECT_EQ(cells->relaxation, 5);
+    EXPECT_EQ(lattice_spacing(scene.geometry), 0.2);
+    const auto again = read_scene_text(scene.text).geometry.tessellation->voronoi;
+    ASSERT_TRUE(again);
+    EXPECT_EQ(again->seed, 7U);
+    EXPECT_EQ(again->relaxation, 5);
+}
+
+TEST(SceneReader, VoronoiCellsAreRelaxedTwiceWhereNothingIsSaid) {
+    const Scene scene =
+        read_scene_text(test::full_scene, {"geometry.tessellation={hexagons: null, voronoi: {spacing: 0.3}}"});
+    const auto& cells = scene.geometry.tessellation->voronoi;
+    ASSERT_TRUE(cells);
+    EXPECT_EQ(cells->seed, 1U);
+    EXPECT_EQ(cells->offset, Vec2(0.0, 0.0));
+    EXPECT_EQ(cells->relaxation, 2);
+}
+
+TEST(SceneReader, ReadsTheNoiseOfStrengths) {
+    const StrengthNoise none = read_scene_text(test::full_scene).cracks.strength_noise;
+    EXPECT_EQ(none.deviation, 0.0);
+    EXPECT_EQ(none.seed, 1U);
+    const StrengthNoise noise =
+        read_scene_text(test::full_scene, {"cracks.strength_noise=1 %", "cracks.strength_seed=9"})
+            .cracks.strength_noise;
+    EXPECT_EQ(noise.deviation, 0.01);
+    EXPECT_EQ(noise.seed, 9U);
+}
+
 TEST(SceneReader, SidesOfARectangleAreBottomRightTopLeft) {
     const auto boundaries = read_scene_text(test::short_scene).geometry.boundaries;
     ASSERT_EQ(boundaries.size(), 4U);

@@ -55,6 +55,24 @@ TEST(Repeatability, SameSceneTwiceGivesTheSameBitsOfEveryRecord) {
     expect_same_runs(first, quick_start(to_first_cracks));
 }
 
+// Noise is a number of each interface, however the crack comes to be checked.
+TEST(Repeatability, NoiseOfStrengthsRepeatsAndItsSeedMakesAnotherRun) {
+    auto noisy = to_first_cracks;
+    noisy.insert(noisy.end(), {"cracks.strength_noise=0.05", "cracks.strength_seed=3"});
+    const auto first = quick_start(noisy);
+    EXPECT_GT(first.cracks.size(), 0U);
+    expect_same_runs(first, quick_start(noisy));
+    noisy.back() = "cracks.strength_seed=4";
+    EXPECT_NE(first.cracks.front().axial_strain, quick_start(noisy).cracks.front().axial_strain);
+}
+
+// Without noise the seed is of no account.
+TEST(Repeatability, SeedOfNoNoiseChangesNoBit) {
+    auto seeded = to_first_cracks;
+    seeded.emplace_back("cracks.strength_seed=9");
+    expect_same_runs(quick_start(to_first_cracks), quick_start(seeded));
+}
+
 TEST(Repeatability, RunOfAnotherBodyInBetweenLeavesNothingBehind) {
     const auto before = quick_start(to_first_cracks);
     (void)quick_start({"stages.1.steps=4", "geometry.tessellation.hexagons.spacing=0.05"});

@@ -30,11 +30,22 @@ struct HexagonLattice {
     std::uint64_t seed = 1;     ///< of the jitter
 };
 
-/// Hexagons inside `region` (everywhere without one); their edges get `interface_type`.
+/// Voronoi cells of random points, one for each square of sqrt(3)/2 spacing^2, which is also the mean area of a cell: as
+/// many cells as hexagons of that spacing. The net covers the plane; the body is a window on it.
+struct VoronoiCells {
+    double spacing = 0.0;       ///< distance of centres of hexagons of the same area (m)
+    Vec2 offset = Vec2::Zero(); ///< of the net from the lower left corner of the domain's box (m)
+    int relaxation = 0;         ///< Lloyd's passes: each moves every point to the centroid of its cell
+    std::uint64_t seed = 1;     ///< of the points
+};
+
+/// Hexagons, or the Voronoi cells where they are given, inside `region` (everywhere without one); their edges get
+/// `interface_type`.
 struct Tessellation {
     HexagonLattice hexagons;
     int interface_type = 0;
     std::optional<Polygon> region;
+    std::optional<VoronoiCells> voronoi{};
 };
 
 /// A part of the domain made of another material: blocks with their centroid inside get `material`.
@@ -77,7 +88,7 @@ struct GeometrySpec {
     int material = 0;
     std::vector<MaterialRegion> regions;
     double minimum_area =
-        0.05; ///< smallest block as a fraction of a hexagon; without a tessellation of reference_spacing's
+        0.05; ///< smallest block as a fraction of a hexagon of lattice_spacing, which is also a mean Voronoi cell
     double reference_spacing = 0.0; ///< d where there is no tessellation (m); 0 = none given
     std::vector<GivenBlock> blocks; ///< instead of domain, holes, fractures, tessellation and regions
     int blocks_interface = 0;       ///< index into the scene's interface types: of the interfaces between them

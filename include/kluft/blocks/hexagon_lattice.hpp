@@ -20,6 +20,9 @@ namespace kluft {
 [[nodiscard]] std::vector<std::pair<Vec2, Vec2>> hexagon_edges(const HexagonLattice& lattice, const Box& box,
                                                                const std::function<bool(const Vec2&)>& keeps);
 
+/// Farthest that a vertex lies from its hexagon's centre (m).
+[[nodiscard]] double hexagon_reach(const HexagonLattice& lattice);
+
 /// Area of one hexagon of spacing d: sqrt(3)/2 d^2 (m2).
 [[nodiscard]] double hexagon_area(double spacing);
 

@@ -8,6 +8,7 @@
 #include "kluft/constitutive/interface_law.hpp"
 #include "kluft/constitutive/lattice_stiffness.hpp"
 #include "kluft/constitutive/material.hpp"
+#include "kluft/constitutive/strength_noise.hpp"
 #include "kluft/kinematics/rigid.hpp"
 #include "kluft/loading/load_program.hpp"
 #include "kluft/simulation/histories.hpp"
@@ -44,7 +45,8 @@ struct ModelInput {
     Vec2 gravity = Vec2::Zero();
     std::vector<Material> materials;
     std::vector<InterfaceType> interface_types;
-    int tessellation_type = -1; ///< interface type of the hexagon net; -1 without one
+    int tessellation_type = -1; ///< interface type of the net; -1 without one
+    StrengthNoise strength_noise;
     LoadProgram loads;
     std::vector<HistoryRequest> histories;
 };

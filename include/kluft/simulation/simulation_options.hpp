@@ -1,6 +1,8 @@
 // Options of a run: how cracks are updated and how a load step is solved or integrated.
 #pragma once
 
+#include "kluft/constitutive/strength_noise.hpp"
+
 namespace kluft {
 
 enum class CrackCriterion {
@@ -20,6 +22,7 @@ struct CrackOptions {
     CrackUpdate update = CrackUpdate::event;
     int every = 1;                 ///< load steps between two checks
     double event_tolerance = 2e-2; ///< of f at an event
+    StrengthNoise strength_noise;  ///< of the potential cracks
 };
 
 enum class Tangent {
