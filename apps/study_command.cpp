@@ -16,10 +16,12 @@
 
 #include "commands.hpp"
 #include "kluft/core/diagnostics.hpp"
+#include "kluft/core/nearest_name.hpp"
 #include "kluft/output/atomic_file.hpp"
 #include "kluft/studies/ready_made_studies.hpp"
 #include "kluft/studies/study.hpp"
 #include "kluft/studies/study_emit.hpp"
+#include "kluft/studies/study_results.hpp"
 #include "kluft/studies/study_run.hpp"
 
 namespace kluft {
@@ -94,8 +96,9 @@ StudyPlace place_of(const StudyArguments& arguments) {
     const auto kinds = ready_made_names();
     if (std::ranges::find(kinds, arguments.words[0]) != kinds.end()) return ready_made(arguments);
     if (arguments.words.size() > 1)
-        throw InputError(fmt::format("kluft study: expected one study file, or one of {} and a scene, found {} {}",
-                                     fmt::join(kinds, ", "), arguments.words[0], arguments.words[1]));
+        throw InputError(fmt::format("kluft study: expected one study file, or one of {} and a scene, found {} {}{}",
+                                     listed(kinds), arguments.words[0], arguments.words[1],
+                                     suggestion(arguments.words[0], kinds)));
     const fs::path file = arguments.words[0];
     return {file, arguments.directory.empty() ? fs::path("results") / file.stem() : fs::path(arguments.directory)};
 }
@@ -122,8 +125,7 @@ void print_closing(const StudyTable& table) {
     int n_reasons = 0;
     for (const auto& one : table.cases) {
         if (one.reason.empty() || one.status == CaseStatus::waiting || ++n_reasons > most_reasons) continue;
-        fmt::print(stderr, "{}: {}: {}\n", one.name, one.status == CaseStatus::failed ? "failed" : "ended early",
-                   one.reason);
+        fmt::print(stderr, "{}: {}: {}\n", one.name, case_status_name(one.status), one.reason);
     }
     if (n_reasons > most_reasons) fmt::print(stderr, "and {} more\n", n_reasons - most_reasons);
 }

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <numbers>
+#include <set>
 #include <string_view>
 #include <tuple>
 
@@ -67,16 +68,22 @@ std::vector<std::string> short_labels(const Study& study) {
     }
 }
 
-/// A name for a directory; what cannot be in one, and what is too long, is told apart by a digest.
+/// With eight digits that tell it apart from others.
+std::string told_apart(const std::string& name, const std::string& wanted) {
+    return name + "-" + Digest().add(wanted).text().substr(0, 8);
+}
+
+/// A name for a directory, without blanks; what cannot be in one, and what is too long, is told apart by digits.
 std::string directory_name(const std::string& wanted) {
     constexpr std::string_view allowed = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._+-=,";
-    std::string name = wanted;
+    std::string plain = wanted;
+    std::erase(plain, ' ');
+    std::string name = plain;
     for (char& c : name)
         if (allowed.find(c) == std::string_view::npos) c = '_';
-    if (name == wanted && name.size() <= longest_name && !name.starts_with('.') && !name.starts_with('-')) return name;
-    constexpr std::size_t kept = 60;
     if (name.starts_with('.') || name.starts_with('-')) name.front() = '_';
-    return name.substr(0, kept) + "-" + Digest().add(wanted).text().substr(0, 8);
+    constexpr std::size_t kept = 60;
+    return name == plain && name.size() <= longest_name ? name : told_apart(name.substr(0, kept), wanted);
 }
 
 std::string case_name(const Study& study, const PlannedCase& one, const std::vector<std::string>& labels) {
@@ -151,6 +158,7 @@ std::vector<PlannedCase> planned_cases(const Study& study) {
     const auto all = combinations(study);
     const std::vector<StudyVariant> only{{}};
     std::vector<PlannedCase> cases;
+    std::set<std::string> names;
     for (const auto& variant : study.variants.empty() ? only : study.variants) {
         for (const auto& combination : all) {
             for (int replica = 0; replica < std::max(study.replicas.count, 1); ++replica) {
@@ -164,6 +172,7 @@ std::vector<PlannedCase> planned_cases(const Study& study) {
                     one.settings.push_back(one.set.back().value);
                 }
                 one.name = case_name(study, one, labels);
+                if (!names.insert(one.name).second) one.name = told_apart(one.name, fmt::format("{}", cases.size()));
                 cases.push_back(std::move(one));
             }
         }

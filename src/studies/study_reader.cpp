@@ -589,6 +589,10 @@ void add_overrides(const std::vector<std::string>& overrides, SceneSources& sour
 } // namespace
 
 ReadStudy read_study(const fs::path& file, const std::vector<std::string>& overrides) {
+    std::error_code error;
+    if (!fs::is_regular_file(file, error))
+        throw InputError(file.string() + ": expected a study file, found " +
+                         (fs::exists(file, error) ? "no regular file" : "no such file"));
     return read_study_text(read_scene_bytes(file), overrides, file);
 }
 
