@@ -23,9 +23,9 @@ constexpr int significant_digits = 12;
 /// One choice of the value of each parameter, as indices.
 using Combination = std::vector<std::size_t>;
 
-std::vector<Combination> products(const Study& study) {
+std::vector<Combination> products(const std::vector<StudyParameter>& parameters) {
     std::vector<Combination> all{{}};
-    for (const auto& parameter : study.parameters) {
+    for (const auto& parameter : parameters) {
         std::vector<Combination> longer;
         for (const auto& combination : all) {
             for (std::size_t i = 0; i < parameter.values.size(); ++i) {
@@ -38,11 +38,10 @@ std::vector<Combination> products(const Study& study) {
     return all;
 }
 
-std::vector<Combination> combinations(const Study& study) {
-    if (!study.together || study.parameters.empty()) return products(study);
+std::vector<Combination> combinations(const std::vector<StudyParameter>& parameters, bool together) {
+    if (!together || parameters.empty()) return products(parameters);
     std::vector<Combination> rows;
-    for (std::size_t i = 0; i < study.parameters.front().values.size(); ++i)
-        rows.emplace_back(study.parameters.size(), i);
+    for (std::size_t i = 0; i < parameters.front().values.size(); ++i) rows.emplace_back(parameters.size(), i);
     return rows;
 }
 
@@ -86,10 +85,30 @@ std::string directory_name(const std::string& wanted) {
     return name == plain && name.size() <= longest_name ? name : told_apart(name.substr(0, kept), wanted);
 }
 
-std::string case_name(const Study& study, const PlannedCase& one, const std::vector<std::string>& labels) {
+std::size_t place_of(const Study& study, const std::string& key) {
+    return std::ranges::find(study.parameters, key, &StudyParameter::key) - study.parameters.begin();
+}
+
+/// A value for each parameter of the study that the settings say something of; the later ones win.
+std::vector<std::string> parameter_values(const Study& study, const std::vector<StudySetting>& set) {
+    std::vector<std::string> values(study.parameters.size());
+    for (const auto& setting : set) {
+        const std::size_t p = place_of(study, setting.key);
+        if (p < values.size()) values[p] = setting.value;
+    }
+    return values;
+}
+
+/// "event,steps=25,r0": what has one value in the variant only is left out.
+std::string case_name(const Study& study, const StudyVariant& variant, const PlannedCase& one,
+                      const std::vector<std::string>& labels) {
     std::vector<std::string> parts;
-    if (!one.variant.empty()) parts.push_back(one.variant);
-    for (std::size_t p = 0; p < labels.size(); ++p) parts.push_back(labels[p] + "=" + one.settings[p]);
+    if (!variant.name.empty()) parts.push_back(variant.name);
+    for (const auto& parameter : variant.vary) {
+        if (!variant.name.empty() && parameter.values.size() == 1) continue;
+        const std::size_t p = place_of(study, parameter.key);
+        parts.push_back(labels[p] + "=" + one.settings[p]);
+    }
     if (study.replicas.count > 0) parts.push_back(fmt::format("r{}", one.replica));
     return parts.empty() ? "case" : directory_name(fmt::format("{}", fmt::join(parts, ",")));
 }
@@ -116,62 +135,60 @@ std::string rounded(double value) { return fmt::format("{:.{}g}", value, signifi
 
 constexpr double degrees = std::numbers::pi / 180.0;
 
-using CaseKey = std::tuple<std::string, std::vector<std::string>, int>;
+using CaseKey = std::tuple<int, std::string, std::vector<std::string>>;
 
-std::size_t value_index(const StudyParameter& parameter, const std::string& value) {
-    return std::ranges::find(parameter.values, value, &StudySetting::value) - parameter.values.begin();
+const StudyVariant& variant_of(const Study& study, const PlannedCase& one) {
+    return *std::ranges::find(study.variants, one.variant, &StudyVariant::name);
 }
 
-const StudySetting* chosen_value(const Study& study, const StudyParameter& parameter) {
-    const auto found = std::ranges::find(study.reference.set, parameter.key, &StudySetting::key);
-    return found == study.reference.set.end() ? nullptr : &*found;
+bool is_chosen(const Study& study, const std::string& key) {
+    return std::ranges::find(study.reference.set, key, &StudySetting::key) != study.reference.set.end();
 }
 
-/// The row of a study `together` that the reference names; without one the last row along, or the case's own.
-std::size_t reference_row(const Study& study, const PlannedCase& own) {
-    for (const auto& parameter : study.parameters)
-        if (const auto* chosen = chosen_value(study, parameter)) return value_index(parameter, chosen->value);
-    const auto& first = study.parameters.front();
-    return study.along ? first.values.size() - 1 : value_index(first, own.settings.front());
+/// The last value that a parameter takes in the variant of a case; its own where it does not vary.
+std::string last_value(const Study& study, const PlannedCase& one, std::size_t p) {
+    for (const auto& parameter : variant_of(study, one).vary)
+        if (parameter.key == study.parameters[p].key) return parameter.values.back().value;
+    return one.settings[p];
 }
 
-std::vector<std::string> reference_settings(const Study& study, const PlannedCase& own) {
-    std::vector<std::string> settings = own.settings;
-    const bool rows = study.together && !study.parameters.empty();
-    const std::size_t row = rows ? reference_row(study, own) : 0;
-    for (std::size_t p = 0; p < settings.size(); ++p) {
-        const StudyParameter& parameter = study.parameters[p];
-        if (rows)
-            settings[p] = parameter.values[row].value;
-        else if (const auto* chosen = chosen_value(study, parameter))
-            settings[p] = chosen->value;
-        else if (study.along == p)
-            settings[p] = parameter.values.back().value;
-    }
-    return settings;
+/// Whether a case has the settings of the reference.
+bool is_reference(const Study& study, const PlannedCase& one) {
+    const StudyReference& reference = study.reference;
+    if (reference.variant && *reference.variant != one.variant) return false;
+    for (const auto& setting : reference.set)
+        if (one.settings[place_of(study, setting.key)] != setting.value) return false;
+    const bool last = study.along && !is_chosen(study, study.parameters[*study.along].key) &&
+                      !(study.together && !reference.set.empty());
+    return !last || one.settings[*study.along] == last_value(study, one, *study.along);
+}
+
+/// What a case and its reference have in common. The parameters of a study `together` change all at once.
+CaseKey common_key(const Study& study, const PlannedCase& one) {
+    std::vector<std::string> settings;
+    for (std::size_t p = 0; p < study.parameters.size() && !study.together; ++p)
+        if (study.along != p && !is_chosen(study, study.parameters[p].key)) settings.push_back(one.settings[p]);
+    return {one.replica, study.reference.variant ? std::string{} : one.variant, std::move(settings)};
 }
 
 } // namespace
 
 std::vector<PlannedCase> planned_cases(const Study& study) {
     const auto labels = short_labels(study);
-    const auto all = combinations(study);
-    const std::vector<StudyVariant> only{{}};
     std::vector<PlannedCase> cases;
     std::set<std::string> names;
-    for (const auto& variant : study.variants.empty() ? only : study.variants) {
-        for (const auto& combination : all) {
+    for (const auto& variant : study.variants) {
+        for (const auto& combination : combinations(variant.vary, study.together)) {
             for (int replica = 0; replica < std::max(study.replicas.count, 1); ++replica) {
                 PlannedCase one;
                 one.variant = variant.name;
                 one.replica = replica;
                 one.set = study.set;
                 one.set.insert(one.set.end(), variant.set.begin(), variant.set.end());
-                for (std::size_t p = 0; p < combination.size(); ++p) {
-                    one.set.push_back(study.parameters[p].values[combination[p]]);
-                    one.settings.push_back(one.set.back().value);
-                }
-                one.name = case_name(study, one, labels);
+                for (std::size_t p = 0; p < combination.size(); ++p)
+                    one.set.push_back(variant.vary[p].values[combination[p]]);
+                one.settings = parameter_values(study, one.set);
+                one.name = case_name(study, variant, one, labels);
                 if (!names.insert(one.name).second) one.name = told_apart(one.name, fmt::format("{}", cases.size()));
                 cases.push_back(std::move(one));
             }
@@ -180,15 +197,19 @@ std::vector<PlannedCase> planned_cases(const Study& study) {
     return cases;
 }
 
-std::vector<StudySetting> replica_settings(const ReplicaPlan& plan, int replica, const HexagonLattice* hexagons) {
+std::vector<StudySetting> replica_settings(const ReplicaPlan& plan, int replica, const ReplicaNet& net) {
+    constexpr std::uint64_t largest_seed = 1U << 30U;
     std::vector<StudySetting> settings;
     if (plan.count == 0) return settings;
     if (plan.strength_noise > 0.0) {
-        constexpr std::uint64_t largest_seed = 1U << 30U;
         settings.push_back({"cracks.strength_noise", rounded(plan.strength_noise), plan.at});
         settings.push_back({"cracks.strength_seed", std::to_string(bits(plan, replica, 0) % largest_seed), plan.at});
     }
-    if (hexagons == nullptr) return settings;
+    if (net.voronoi && plan.offset)
+        settings.push_back(
+            {"geometry.tessellation.voronoi.seed", std::to_string(bits(plan, replica, 4) % largest_seed), plan.at});
+    if (net.voronoi || !net.hexagons) return settings;
+    const HexagonLattice* const hexagons = &*net.hexagons;
     const double turned = plan.rotation * (2.0 * uniform(plan, replica, 1) - 1.0) * degrees;
     const double angle = hexagons->rotation + turned;
     if (plan.rotation > 0.0)
@@ -212,12 +233,18 @@ std::vector<std::optional<std::size_t>> reference_cases(const Study& study, cons
     if (reference.kind != StudyReference::Kind::chosen) return result;
     if (!study.along && reference.set.empty() && !reference.variant) return result;
     std::map<CaseKey, std::size_t> places;
-    for (std::size_t i = 0; i < cases.size(); ++i)
-        places.emplace(CaseKey(cases[i].variant, cases[i].settings, cases[i].replica), i);
+    std::map<int, std::set<std::size_t>> of_copy;
     for (std::size_t i = 0; i < cases.size(); ++i) {
-        const CaseKey key(reference.variant.value_or(cases[i].variant), reference_settings(study, cases[i]),
-                          cases[i].replica);
-        if (const auto found = places.find(key); found != places.end()) result[i] = found->second;
+        if (!is_reference(study, cases[i])) continue;
+        const auto place = places.emplace(common_key(study, cases[i]), i).first;
+        of_copy[cases[i].replica].insert(place->second);
+    }
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+        const auto& all = of_copy[cases[i].replica];
+        if (const auto found = places.find(common_key(study, cases[i])); found != places.end())
+            result[i] = found->second;
+        else if (all.size() == 1)
+            result[i] = *all.begin();
     }
     return result;
 }

@@ -58,9 +58,10 @@ public:
         if (const auto title = text("title")) study_.title = *title;
         read_scene_name();
         if (const SceneNode* set = root_.find("set")) study_.set = settings(*set, "set");
-        read_parameters();
-        read_combination();
+        if (const SceneNode* vary = root_.find("vary")) common_ = parameters(*vary, "vary");
         read_variants();
+        gather_parameters();
+        read_combination();
         read_replicas();
         read_quantities();
         study_.curve = choice("curve", {"true", "false"}, "true") == "true";
@@ -146,21 +147,21 @@ private:
 
     // ---- what varies -------------------------------------------------------------------------------------------
 
-    void read_parameters() {
-        const SceneNode* vary = root_.find("vary");
-        if (vary == nullptr) return;
-        if (!vary->is_mapping())
-            return fail(*vary, "vary", "expected a mapping of keys of the scene to values, found " + found_text(*vary));
-        for (std::size_t i = 0; i < vary->items.size(); ++i) {
-            StudyParameter parameter{vary->keys[i].text, {}};
-            const std::string path = joined_path("vary", parameter.key);
-            const SceneNode& values = vary->items[i];
+    std::vector<StudyParameter> parameters(const SceneNode& vary, const std::string& path) {
+        std::vector<StudyParameter> all;
+        if (!vary.is_mapping())
+            fail(vary, path, "expected a mapping of keys of the scene to values, found " + found_text(vary));
+        for (std::size_t i = 0; i < vary.keys.size(); ++i) {
+            StudyParameter parameter{vary.keys[i].text, {}};
+            const std::string below = joined_path(path, parameter.key);
+            const SceneNode& values = vary.items[i];
             if (values.is_list())
-                read_list(values, path, parameter);
+                read_list(values, below, parameter);
             else
-                read_range(values, path, parameter);
-            if (!parameter.values.empty()) study_.parameters.push_back(std::move(parameter));
+                read_range(values, below, parameter);
+            if (!parameter.values.empty()) all.push_back(std::move(parameter));
         }
+        return all;
     }
 
     void read_list(const SceneNode& list, const std::string& path, StudyParameter& parameter) {
@@ -231,27 +232,51 @@ private:
     void read_combination() {
         study_.together = choice("combine", {"product", "together"}, "product") == "together";
         if (!study_.together) return;
-        for (const auto& parameter : study_.parameters) {
-            const auto& first = study_.parameters.front();
-            if (parameter.values.size() == first.values.size()) continue;
-            errors_.add(parameter.values.front().at, joined_path("vary", parameter.key),
-                        fmt::format("expected {} values as of {} because of combine: together, found {}",
-                                    first.values.size(), first.key, parameter.values.size()));
+        for (const auto& variant : study_.variants) {
+            for (const auto& parameter : variant.vary) {
+                const auto& first = variant.vary.front();
+                if (parameter.values.size() == first.values.size()) continue;
+                errors_.add(parameter.values.front().at, joined_path("vary", parameter.key),
+                            fmt::format("expected {} values as of {} because of combine: together, found {}",
+                                        first.values.size(), first.key, parameter.values.size()));
+            }
         }
+    }
+
+    /// All parameters with all their values; those of the whole study vary in each variant.
+    void gather_parameters() {
+        if (study_.variants.empty()) study_.variants.push_back({});
+        for (auto& variant : study_.variants) {
+            variant.vary.insert(variant.vary.begin(), common_.begin(), common_.end());
+            for (const auto& parameter : variant.vary) gather(parameter);
+        }
+    }
+
+    void gather(const StudyParameter& parameter) {
+        auto known = std::ranges::find(study_.parameters, parameter.key, &StudyParameter::key);
+        if (known == study_.parameters.end()) {
+            study_.parameters.push_back(parameter);
+            return;
+        }
+        for (const auto& value : parameter.values)
+            if (std::ranges::find(known->values, value.value, &StudySetting::value) == known->values.end())
+                known->values.push_back(value);
     }
 
     void read_variants() {
         const SceneNode* list = root_.find("variants");
         if (list == nullptr) return;
         if (!list->is_list())
-            return fail(*list, "variants", "expected a list of {name: ..., set: {...}}, found " + found_text(*list));
+            return fail(*list, "variants",
+                        "expected a list of {name: ..., set: {...}, vary: {...}}, found " + found_text(*list));
         for (std::size_t i = 0; i < list->items.size(); ++i)
             read_variant(list->items[i], fmt::format("variants.{}", i));
     }
 
     void read_variant(const SceneNode& node, const std::string& path) {
-        if (!node.is_mapping()) return fail(node, path, "expected {name: ..., set: {...}}, found " + found_text(node));
-        check_keys(node, path, {"name", "set"});
+        if (!node.is_mapping())
+            return fail(node, path, "expected {name: ..., set: {...}, vary: {...}}, found " + found_text(node));
+        check_keys(node, path, {"name", "set", "vary"});
         const SceneNode* name = node.find("name");
         if (name == nullptr || !name->is_scalar() || name->text.empty())
             return fail(name == nullptr ? node : *name, joined_path(path, "name"), "expected a name");
@@ -259,9 +284,10 @@ private:
             if (other.name == name->text)
                 return fail(*name, joined_path(path, "name"),
                             "expected a name of its own, found " + in_quotes(name->text) + " twice");
-        const SceneNode* set = node.find("set");
-        study_.variants.push_back(
-            {name->text, set == nullptr ? std::vector<StudySetting>{} : settings(*set, joined_path(path, "set"))});
+        StudyVariant variant{name->text, {}, {}};
+        if (const SceneNode* set = node.find("set")) variant.set = settings(*set, joined_path(path, "set"));
+        if (const SceneNode* vary = node.find("vary")) variant.vary = parameters(*vary, joined_path(path, "vary"));
+        study_.variants.push_back(std::move(variant));
     }
 
     void read_replicas() {
@@ -373,6 +399,12 @@ private:
 
     void choose_value(const SceneNode& node, const std::string& path, const std::string& value,
                       const StudyParameter& parameter) {
+        // Written the same before what is equal as a number only.
+        if (const auto same = std::ranges::find(parameter.values, value, &StudySetting::value);
+            same != parameter.values.end()) {
+            study_.reference.set.push_back(*same);
+            return;
+        }
         std::vector<std::string> known;
         for (const auto& each : parameter.values) {
             known.push_back(each.value);
@@ -425,6 +457,7 @@ private:
     const SceneNode& root_;
     const fs::path& file_;
     SceneErrors& errors_;
+    std::vector<StudyParameter> common_; ///< that vary in the whole study
     Study study_;
 };
 
@@ -445,14 +478,19 @@ void collect_files(const SceneNode& node, std::set<std::string>& files) {
     }
 }
 
-std::string digest_of(const Scene& scene) {
-    Digest digest;
-    digest.add(scene.text);
+/// The merged text of a scene as a tree.
+SceneNode tree_of(const Scene& scene) {
     SceneSources sources;
     SceneErrors errors(sources);
     const int source = sources.add_file("scene", scene.text);
+    return parse_scene_tree(scene.text, source, {source, 1, 1}, errors);
+}
+
+std::string digest_of(const Scene& scene) {
+    Digest digest;
+    digest.add(scene.text);
     std::set<std::string> files;
-    collect_files(parse_scene_tree(scene.text, source, {source, 1, 1}, errors), files);
+    collect_files(tree_of(scene), files);
     std::error_code error;
     for (const auto& file : files)
         if (fs::is_regular_file(file, error)) digest.add(read_file(file));
@@ -533,16 +571,34 @@ private:
     }
 
     bool add_replica(PlannedCase& one) {
-        std::optional<HexagonLattice> hexagons;
+        ReplicaNet net;
         try {
-            const Scene scene = read_scene_text(text_, assignments(one), study_.scene);
-            if (scene.geometry.tessellation) hexagons = scene.geometry.tessellation->hexagons;
+            net = net_of(read_scene_text(text_, assignments(one), study_.scene));
         } catch (const InputError&) {
             return true; // refused with its reason when it is read as a whole
         }
-        const auto added = replica_settings(study_.replicas, one.replica, hexagons ? &*hexagons : nullptr);
+        const ReplicaPlan& plan = study_.replicas;
+        if ((plan.offset || plan.rotation > 0.0) && !net.hexagons && !net.voronoi) {
+            if (said_.insert("no net").second)
+                errors_.add(plan.at, "replicas",
+                            "expected a scene with a tessellation for offset and rotation, found "
+                            "none in case " +
+                                one.name);
+            return false;
+        }
+        const auto added = replica_settings(plan, one.replica, net);
         one.set.insert(one.set.end(), added.begin(), added.end());
         return agrees_with_schema(one);
+    }
+
+    static ReplicaNet net_of(const Scene& scene) {
+        ReplicaNet net;
+        if (scene.geometry.tessellation) net.hexagons = scene.geometry.tessellation->hexagons;
+        const SceneNode tree = tree_of(scene);
+        const SceneNode* const geometry = tree.find("geometry");
+        const SceneNode* const tessellation = geometry == nullptr ? nullptr : geometry->find("tessellation");
+        net.voronoi = tessellation != nullptr && tessellation->find("voronoi") != nullptr;
+        return net;
     }
 
     const Study& study_;
@@ -552,26 +608,42 @@ private:
     std::set<std::string> said_;
 };
 
-/// Several settings of one key hide each other.
-void refuse_hidden(const Study& study, SceneErrors& errors) {
-    std::set<std::string> varied;
-    for (const auto& parameter : study.parameters) varied.insert(parameter.key);
-    const auto check = [&](const std::vector<StudySetting>& settings, const std::string& where) {
-        for (const auto& setting : settings)
-            if (varied.contains(setting.key))
-                errors.add(setting.at, where, "expected keys that do not vary, found " + in_quotes(setting.key));
-    };
-    check(study.set, "set");
-    for (const auto& variant : study.variants) check(variant.set, "variant " + variant.name);
+bool varies(const StudyVariant& variant, const std::string& key) {
+    const auto found = std::ranges::find(variant.vary, key, &StudyParameter::key);
+    return found != variant.vary.end() && found->values.size() > 1;
 }
 
-std::size_t n_cases(const Study& study) {
-    double n = static_cast<double>(std::max<std::size_t>(study.variants.size(), 1)) * std::max(study.replicas.count, 1);
-    for (const auto& parameter : study.parameters) {
-        n *= static_cast<double>(parameter.values.size());
-        if (study.together) break;
+/// Several settings of one key hide each other.
+void refuse_hidden(const Study& study, SceneErrors& errors) {
+    for (const auto& variant : study.variants) {
+        std::set<std::string> varied;
+        for (const auto& parameter : variant.vary)
+            if (!varied.insert(parameter.key).second)
+                errors.add(parameter.values.front().at, "variant " + variant.name,
+                           "expected keys that do not vary in the whole study, found " + in_quotes(parameter.key));
+        for (const auto& setting : variant.set)
+            if (varied.contains(setting.key))
+                errors.add(setting.at, "variant " + variant.name,
+                           "expected keys that do not vary, found " + in_quotes(setting.key));
     }
-    return n > 1e9 ? 1000000000 : static_cast<std::size_t>(n);
+    // A value for those variants in which a key does not vary.
+    for (const auto& setting : study.set)
+        if (std::ranges::all_of(study.variants, [&](const auto& variant) { return varies(variant, setting.key); }))
+            errors.add(setting.at, setting.at.source == 0 ? "set" : "",
+                       "expected a key that does not vary, found " + in_quotes(setting.key));
+}
+
+double n_cases(const Study& study) {
+    double n = 0.0;
+    for (const auto& variant : study.variants) {
+        double n_settings = 1.0;
+        for (const auto& parameter : variant.vary) {
+            n_settings *= static_cast<double>(parameter.values.size());
+            if (study.together) break;
+        }
+        n += n_settings * std::max(study.replicas.count, 1);
+    }
+    return n;
 }
 
 void add_overrides(const std::vector<std::string>& overrides, SceneSources& sources, SceneErrors& errors,
@@ -607,8 +679,8 @@ ReadStudy read_study_text(std::string_view text, const std::vector<std::string>&
     Study& study = result.study;
     add_overrides(overrides, sources, errors, study);
     refuse_hidden(study, errors);
-    if (n_cases(study) > most_cases)
-        errors.add(root.at, "", fmt::format("expected at most {} cases, found {}", most_cases, n_cases(study)));
+    if (n_cases(study) > static_cast<double>(most_cases))
+        errors.add(root.at, "", fmt::format("expected at most {} cases, found {:g}", most_cases, n_cases(study)));
     errors.throw_if_any();
     result.cases = planned_cases(study);
     CaseCheck check(study, errors);

@@ -29,10 +29,11 @@ struct StudyParameter {
     std::vector<StudySetting> values; ///< all of this key
 };
 
-/// A named group of settings.
+/// A named group of settings, and what varies in it.
 struct StudyVariant {
-    std::string name;
+    std::string name; ///< empty for the only one of a study without variants
     std::vector<StudySetting> set;
+    std::vector<StudyParameter> vary; ///< of the whole study first, then its own
 };
 
 /// Copies of each case that differ by a small perturbation, the same ones in every group of settings.
@@ -54,7 +55,7 @@ struct StudyReference {
         directory ///< another run
     };
     Kind kind = Kind::chosen;
-    std::optional<std::string> variant;   ///< of the case that is chosen; its own without one
+    std::optional<std::string> variant;   ///< of the case that is chosen; that of the compared case without one
     std::vector<StudySetting> set;        ///< parameters and their values
     std::map<std::string, double> values; ///< by quantity
     std::filesystem::path directory;
@@ -65,9 +66,9 @@ struct Study {
     std::string title;
     std::filesystem::path scene;   ///< absolute
     std::vector<StudySetting> set; ///< the same in all cases
-    std::vector<StudyParameter> parameters;
-    bool together = false; ///< the first values of all parameters, the second ones, ... instead of the product
     std::vector<StudyVariant> variants;
+    std::vector<StudyParameter> parameters; ///< of all variants, each once with all its values
+    bool together = false; ///< the first values of all parameters, the second ones, ... instead of the product
     ReplicaPlan replicas;
     std::vector<std::string> quantities;
     bool curve = true;
@@ -80,7 +81,7 @@ struct Study {
 struct PlannedCase {
     std::string name; ///< from its settings: "event,steps=25,r0"
     std::string variant;
-    std::vector<std::string> settings; ///< per parameter
+    std::vector<std::string> settings; ///< per parameter; empty where the variant says nothing of it
     int replica = 0;
     std::vector<StudySetting> set; ///< all settings, the later ones win
     std::string digest;            ///< of the scene with all settings and the files that it names
@@ -111,13 +112,21 @@ inline constexpr std::size_t most_cases = 10000;
 /// the settings of replicas, which depend on the scene.
 [[nodiscard]] std::vector<PlannedCase> planned_cases(const Study& study);
 
-/// The settings that perturb copy `replica` of a scene with this net of hexagons (null: none): strength noise and its
-/// seed, offset (m) by a uniform part of one period of the net beside the net's own, rotation (degrees) uniform within
-/// +-`plan.rotation` beside its own. They depend on the seed and the copy alone; the offset's part of the period too.
-[[nodiscard]] std::vector<StudySetting> replica_settings(const ReplicaPlan& plan, int replica,
-                                                         const HexagonLattice* hexagons);
+/// The net whose place and angle a copy changes.
+struct ReplicaNet {
+    std::optional<HexagonLattice> hexagons;
+    bool voronoi = false;
+};
 
-/// For each case the one that it is compared with, if the study has one. Copies are compared with the same copy.
+/// The settings that perturb copy `replica`: strength noise and its seed; of hexagons the rotation (degrees), uniform
+/// within +-`plan.rotation` beside the net's own, and the offset (m), a uniform part of the net's period beside its own;
+/// of Voronoi cells, which have neither, with `plan.offset` another seed. They depend on the seed and the copy alone;
+/// the offset's part of the period too.
+[[nodiscard]] std::vector<StudySetting> replica_settings(const ReplicaPlan& plan, int replica, const ReplicaNet& net);
+
+/// For each case the one that it is compared with, if the study has one: of those with the settings of the reference
+/// (and the last value of `along`, if that is not among them) the one that is like it in everything else; where none is,
+/// the only one that there is. Copies are compared with the same copy.
 [[nodiscard]] std::vector<std::optional<std::size_t>> reference_cases(const Study& study,
                                                                       const std::vector<PlannedCase>& cases);
 
