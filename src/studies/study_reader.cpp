@@ -489,6 +489,7 @@ SceneNode tree_of(const Scene& scene) {
 std::string digest_of(const Scene& scene) {
     Digest digest;
     digest.add(scene.text);
+    if (scene.text.find("file:") == std::string::npos) return digest.text();
     std::set<std::string> files;
     collect_files(tree_of(scene), files);
     std::error_code error;
@@ -526,7 +527,6 @@ public:
         : study_(study), errors_(errors), text_(read_scene_bytes(study.scene)) {}
 
     void complete(PlannedCase& one) {
-        if (!agrees_with_schema(one)) return;
         if (study_.replicas.count > 0 && !add_replica(one)) return;
         try {
             const Scene scene = read_scene_text(text_, assignments(one), study_.scene);
@@ -535,6 +535,7 @@ public:
             one.steps = 0;
             for (const auto& stage : scene.loads.stages) one.steps += stage.steps;
         } catch (const InputError& error) {
+            if (!agrees_with_schema(one)) return;
             one.refusal = error.messages().empty() ? error.what() : error.messages().front();
             one.digest = Digest().add(one.refusal).text();
         }
@@ -575,7 +576,7 @@ private:
         try {
             net = net_of(read_scene_text(text_, assignments(one), study_.scene));
         } catch (const InputError&) {
-            return true; // refused with its reason when it is read as a whole
+            return true; // judged when it is read as a whole
         }
         const ReplicaPlan& plan = study_.replicas;
         if ((plan.offset || plan.rotation > 0.0) && !net.hexagons && !net.voronoi) {
@@ -588,7 +589,7 @@ private:
         }
         const auto added = replica_settings(plan, one.replica, net);
         one.set.insert(one.set.end(), added.begin(), added.end());
-        return agrees_with_schema(one);
+        return true;
     }
 
     static ReplicaNet net_of(const Scene& scene) {
