@@ -24,12 +24,18 @@ std::string quoted(const std::string& text) {
     return result + '"';
 }
 
-/// The last stage that moves a platen, or else the last one.
+/// The last stage that moves a platen or reduces strengths, or else the last one.
 std::size_t studied_stage(const Scene& scene) {
     const auto& stages = scene.loads.stages;
     for (std::size_t i = stages.size(); i-- > 0;)
-        if (stages[i].motion) return i;
+        if (stages[i].motion || stages[i].strength_reduction) return i;
     return stages.size() - 1;
+}
+
+const char* quantities_of(const Stage& stage) {
+    if (stage.strength_reduction) return "factor_of_safety, cracks_tension, cracks_shear";
+    return stage.motion ? "peak_stress, peak_strain, residual_stress, youngs_modulus, cracks_tension, cracks_shear"
+                        : "peak_stress, cracks_tension, cracks_shear";
 }
 
 } // namespace
@@ -45,7 +51,6 @@ std::string ready_made_study(const std::string& name, const fs::path& scene,
 std::string step_size_study(const fs::path& scene, const std::vector<std::string>& overrides) {
     const Scene read = read_scene(scene, overrides);
     const std::size_t stage = studied_stage(read);
-    const bool has_platen = read.loads.stages[stage].motion.has_value();
     const std::string title = read.title.empty() ? read.name : read.title;
     return fmt::format(
         R"(# How the results depend on the number of load steps. Made by kluft study step-size; made anew each time.
@@ -56,8 +61,7 @@ vary:
 quantities: [{}]
 )",
         quoted("Load steps: " + title), quoted(fs::absolute(scene).lexically_normal().string()), stage,
-        has_platen ? "peak_stress, peak_strain, residual_stress, youngs_modulus, cracks_tension, cracks_shear"
-                   : "peak_stress, cracks_tension, cracks_shear");
+        quantities_of(read.loads.stages[stage]));
 }
 
 } // namespace kluft

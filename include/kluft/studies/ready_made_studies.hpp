@@ -15,7 +15,7 @@ namespace kluft {
 [[nodiscard]] std::string ready_made_study(const std::string& name, const std::filesystem::path& scene,
                                            const std::vector<std::string>& overrides = {});
 
-/// 25, 50, ..., 800 load steps of the last stage that moves a platen, or else of the last stage.
+/// 25, 50, ..., 800 load steps of the last stage that moves a platen or reduces strengths, or else of the last stage.
 [[nodiscard]] std::string step_size_study(const std::filesystem::path& scene,
                                           const std::vector<std::string>& overrides = {});
 
