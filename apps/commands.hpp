@@ -9,7 +9,7 @@ namespace kluft {
 
 enum class ExitCode {
     done = 0,
-    missed = 1, ///< a comparison or a validation case missed its tolerance
+    missed = 1, ///< a comparison or a validation case missed its tolerance, a case of a study failed
     bad_input = 2,
     no_equilibrium = 3,
     out_of_resources = 4,
@@ -68,6 +68,18 @@ struct EnvelopeArguments {
 };
 
 [[nodiscard]] ExitCode envelope(const EnvelopeArguments& arguments);
+
+struct StudyArguments {
+    std::vector<std::string> words; ///< a study file, or the name of a ready-made study and a scene
+    std::string directory;
+    std::vector<std::string> overrides;
+    int jobs = 0; ///< 0: as many as there are processors
+    std::string emit;
+    bool collect = false;
+    bool quiet = false;
+};
+
+[[nodiscard]] ExitCode study(const StudyArguments& arguments);
 
 struct ValidateArguments {
     std::vector<std::string> words; ///< for scripts/validate

@@ -194,6 +194,36 @@ void add_envelope_command(CLI::App& app, Command& command) {
     sub->callback([arguments, &command] { command = [arguments] { return kluft::envelope(*arguments); }; });
 }
 
+void add_study_command(CLI::App& app, Command& command) {
+    auto arguments = std::make_shared<kluft::StudyArguments>();
+    CLI::App* sub = app.add_subcommand("study", "Run a scene with many settings and set the results side by side");
+    sub->add_option("study", arguments->words,
+                    "Study file (YAML), or 'step-size SCENE': 25-800 load steps of the last stage that moves a platen")
+        ->required()
+        ->expected(1, 2);
+    sub->add_option("-o,--output", arguments->directory,
+                    "Directory of the results (default: results/<study name>, results/<scene>-step-size)");
+    sub->add_option("--jobs", arguments->jobs, "Cases that run at once (default: the number of processors)")
+        ->check(CLI::Range(1, most_threads));
+    sub->add_option("--set", arguments->overrides, "Replace a value of the scene in all cases")
+        ->take_all()
+        ->allow_extra_args(false);
+    CLI::Option* emit = sub->add_option("--emit", arguments->emit,
+                                        "Run nothing; write a job array for Slurm (slurm) or a makefile (make)");
+    sub->add_flag("--collect", arguments->collect, "Run nothing; gather the table of what has been run")
+        ->excludes(emit);
+    sub->add_flag("--quiet", arguments->quiet, "No progress");
+    sub->footer("Cases that have ended are not run again; interrupted ones go on from their saved states.\n"
+                "Exit codes: 0 all cases ended, 1 some failed or are missing, 2 bad input, 4 out of disk or memory, "
+                "130 interrupted.\n"
+                "Examples:\n"
+                "  kluft study models/studies/steps.yaml --jobs 4\n"
+                "  kluft study step-size models/quickstart.yaml -o results/steps\n"
+                "  kluft study models/studies/steps.yaml -o results/steps --emit slurm\n"
+                "  kluft study models/studies/steps.yaml -o results/steps --collect");
+    sub->callback([arguments, &command] { command = [arguments] { return kluft::study(*arguments); }; });
+}
+
 void add_validate_command(CLI::App& app, Command& command) {
     CLI::App* sub = app.add_subcommand("validate", "Run the validation suite, or some of its cases");
     sub->set_help_flag();
@@ -224,6 +254,7 @@ int main(int argc, char** argv) {
                "  kluft draw results/case-3-all -o picture.png\n"
                "  kluft compare results/case-3 results/case-3-all\n"
                "  kluft envelope results/case-5-all results/case-3-all results/case-4-all results/case-6-all\n"
+               "  kluft study step-size models/quickstart.yaml\n"
                "  kluft validate incline overturning");
     Command command;
     add_run_command(app, command);
@@ -231,6 +262,7 @@ int main(int argc, char** argv) {
     add_draw_command(app, command);
     add_compare_command(app, command);
     add_envelope_command(app, command);
+    add_study_command(app, command);
     add_validate_command(app, command);
     const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
     if (const std::string message = unknown_command(app, words); !message.empty()) return bad_input(message);

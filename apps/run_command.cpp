@@ -18,6 +18,7 @@
 #include "kluft/output/run_log.hpp"
 #include "kluft/output/run_writer.hpp"
 #include "kluft/output/state_file.hpp"
+#include "kluft/output/summary.hpp"
 #include "kluft/reference/explicit_simulation.hpp"
 #include "kluft/scene/scene_model.hpp"
 #include "kluft/scene/scene_reader.hpp"
@@ -82,7 +83,16 @@ RunWriterOptions writer_options(const Scene& scene, const Model& model) {
     return options;
 }
 
-RunOutcome outcome_of(const RunReport& report, const Model& model) {
+/// Processor time of the runs that this one goes on from (s): that of the last one that said so.
+double earlier_cpu_s(const fs::path& directory) {
+    try {
+        return read_summary(directory / "summary.json").cpu_s;
+    } catch (const InputError&) {
+        return 0.0; // the run before was killed
+    }
+}
+
+RunOutcome outcome_of(const RunReport& report, const Model& model, double earlier_cpu) {
     const RunSeconds& seconds = report.costs.seconds;
     RunOutcome outcome;
     outcome.status = report.status;
@@ -99,6 +109,7 @@ RunOutcome outcome_of(const RunReport& report, const Model& model) {
                       {"events", report.costs.events}};
     outcome.unknowns = unknowns_per_block(model.kinematics) * model.system.n_blocks();
     outcome.elapsed_s = report.costs.elapsed_s;
+    outcome.cpu_s = earlier_cpu + processor_seconds();
     outcome.version = std::string(version());
     outcome.seconds = {{"detection", seconds.detection},
                        {"set_up", seconds.set_up},
@@ -153,7 +164,7 @@ RunReport integrate(const Model& model, const Scene& scene, State& state, StepOb
 
 /// The run itself; whatever happens, the last committed state and the tables reach the disk if the disk allows it.
 ExitCode simulate(const Model& model, const Scene& scene, State& state, RunWriter& writer, RunLog& log,
-                  const fs::path& directory, bool quiet) {
+                  const fs::path& directory, double earlier_cpu, bool quiet) {
     RunObserver observer(writer, quiet);
     const RunReport report = integrate(model, scene, state, observer);
     observer.clear();
@@ -167,7 +178,8 @@ ExitCode simulate(const Model& model, const Scene& scene, State& state, RunWrite
     }
     RunSummary summary;
     try {
-        summary = writer.finish(outcome_of(report, model), state, [&] { return fields_of_state(model, state); });
+        summary =
+            writer.finish(outcome_of(report, model, earlier_cpu), state, [&] { return fields_of_state(model, state); });
     } catch (const ResourceError& error) {
         log.error(error.what());
         if (report.diagnosis == error.what()) return ExitCode::out_of_resources; // said already
@@ -207,6 +219,7 @@ ExitCode run(const RunArguments& arguments) {
         state = read_state(directory / "state.h5", options.fingerprint);
         options.resumed_step = state.step;
     }
+    const double earlier_cpu = arguments.resume ? earlier_cpu_s(directory) : 0.0; // before the writer removes it
     RunWriter writer(directory, model.system, std::move(options));
     RunLog log(directory / "run.log", arguments.resume);
     log.info(fmt::format("kluft {} runs {}: {} blocks, {} interfaces, {} unknowns", version(), arguments.scene,
@@ -220,7 +233,7 @@ ExitCode run(const RunArguments& arguments) {
     }
     std::signal(SIGINT, request_stop);
     std::signal(SIGTERM, request_stop);
-    return simulate(model, scene, state, writer, log, directory, arguments.quiet);
+    return simulate(model, scene, state, writer, log, directory, earlier_cpu, arguments.quiet);
 }
 
 } // namespace kluft

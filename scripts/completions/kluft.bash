@@ -2,7 +2,7 @@
 
 _kluft() {
     local word=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
-    local commands="run check draw compare envelope validate"
+    local commands="run check draw compare envelope study validate"
     COMPREPLY=()
 
     local command="" index
@@ -19,7 +19,11 @@ _kluft() {
     fi
 
     case "$previous" in
-    --set | --threads | --mark | --limit | --title | --compare | --tolerance) return ;;
+    --set | --threads | --mark | --limit | --title | --compare | --tolerance | --jobs) return ;;
+    --emit)
+        mapfile -t COMPREPLY < <(compgen -W "slurm make" -- "$word")
+        return
+        ;;
     -o | --output)
         mapfile -t COMPREPLY < <(compgen -f -- "$word")
         return
@@ -33,6 +37,7 @@ _kluft() {
     draw) options+=" -o --output --curve --blocks --mark --limit --title --set" ;;
     compare) options+=" -o --output --tolerance" ;;
     envelope) options+=" -o --output --compare --title" ;;
+    study) options+=" -o --output --jobs --set --emit --collect --quiet" ;;
     validate) options+=" -o --output --jobs --list" ;;
     esac
     if [[ $word == -* ]]; then
@@ -42,6 +47,10 @@ _kluft() {
 
     case "$command" in
     run | check | draw) _kluft_scenes "$word" ;;
+    study)
+        _kluft_scenes "$word"
+        mapfile -t -O "${#COMPREPLY[@]}" COMPREPLY < <(compgen -W "step-size" -- "$word")
+        ;;
     compare | envelope) mapfile -t COMPREPLY < <(compgen -d -- "$word") ;;
     esac
 }

@@ -195,6 +195,7 @@ RunSummary RunWriter::summary_of(const RunOutcome& outcome) const {
     summary.unknowns = outcome.unknowns;
     summary.counts = outcome.counts;
     summary.elapsed_s = outcome.elapsed_s;
+    summary.cpu_s = outcome.cpu_s;
     summary.peak_memory_bytes = peak_memory_bytes();
     summary.version = outcome.version;
     summary.seconds = outcome.seconds;

@@ -184,6 +184,7 @@ RunSummary summary_in(const Json& json) {
     json.at("unknowns").get_to(summary.unknowns);
     for (const char* name : count_names) json.at(name).get_to(summary.counts[name]);
     summary.elapsed_s = optional_number(json, "elapsed_s").value_or(0.0);
+    if (json.contains("cpu_s")) summary.cpu_s = optional_number(json, "cpu_s").value_or(0.0);
     json.at("peak_memory_bytes").get_to(summary.peak_memory_bytes);
     json.at("version").get_to(summary.version);
     for (const auto& [stage, seconds] : json.at("seconds").items())
@@ -272,6 +273,7 @@ std::string summary_json(const RunSummary& summary) {
         json["energy_error"] = number(summary.motion->energy_error);
     }
     json["elapsed_s"] = number(summary.elapsed_s);
+    json["cpu_s"] = number(summary.cpu_s);
     json["peak_memory_bytes"] = summary.peak_memory_bytes;
     json["platen_stage"] = summary.platen_stage ? Json(*summary.platen_stage) : Json(nullptr);
     json["version"] = summary.version;
@@ -294,6 +296,14 @@ RunSummary read_summary(const std::filesystem::path& path) {
     } catch (const InputError& error) {
         throw InputError(path.string() + ": " + error.what());
     }
+}
+
+double processor_seconds() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    constexpr double micro = 1e-6;
+    return static_cast<double>(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
+           micro * static_cast<double>(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
 }
 
 /// Not the maximum of getrusage, in which the program that started this one counts as well.

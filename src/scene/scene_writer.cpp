@@ -57,7 +57,7 @@ public:
         return text;
     }
 
-private:
+    /// The value of a key on one line.
     [[nodiscard]] std::string inline_text(const SceneNode& node, const std::string& path) const {
         switch (node.kind) {
         case SceneNode::Kind::nothing:
@@ -71,6 +71,7 @@ private:
         return {};
     }
 
+private:
     [[nodiscard]] std::string collection_text(const SceneNode& node, const std::string& path) const {
         std::string text;
         for (std::size_t i = 0; i < node.items.size(); ++i) {
@@ -95,6 +96,11 @@ private:
 
 std::string write_scene_tree(const SceneNode& root, const SceneSources& sources) {
     return TreeWriter(sources).block(root, {}, 0);
+}
+
+std::string write_scene_value(const SceneNode& value) {
+    const SceneSources none;
+    return TreeWriter(none).inline_text(value, {});
 }
 
 } // namespace kluft

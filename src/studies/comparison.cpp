@@ -58,17 +58,6 @@ std::vector<CrackMatch> pairs_within(const std::vector<CrackRecord>& a, const st
 
 // ---- curves ------------------------------------------------------------------------------------------------------
 
-/// (axial strain, differential stress) of the balanced rows, strains growing.
-std::vector<Vec2> growing_curve(const Rows& rows) {
-    std::vector<Vec2> curve;
-    for (const StepRecord& row : rows) {
-        const Vec2 point(row.axial_strain, row.differential_stress);
-        if (!row.balanced || !point.allFinite()) continue;
-        if (curve.empty() || point.x() > curve.back().x()) curve.push_back(point);
-    }
-    return curve;
-}
-
 /// Stress of a growing curve at a strain inside its range.
 double stress_at(const std::vector<Vec2>& curve, double strain) {
     const auto after = std::ranges::lower_bound(curve, strain, {}, [](const Vec2& point) { return point.x(); });
@@ -321,6 +310,16 @@ std::vector<CrackMatch> match_cracks(const std::vector<CrackRecord>& a, const st
     return matches;
 }
 
+std::vector<Vec2> growing_curve(const std::vector<StepRecord>& rows) {
+    std::vector<Vec2> curve;
+    for (const StepRecord& row : rows) {
+        const Vec2 point(row.axial_strain, row.differential_stress);
+        if (!row.balanced || !point.allFinite()) continue;
+        if (curve.empty() || point.x() > curve.back().x()) curve.push_back(point);
+    }
+    return curve;
+}
+
 std::optional<CurveDifference> curve_difference(const std::vector<StepRecord>& a, const std::vector<StepRecord>& b,
                                                 double end, double scale) {
     const auto curve_a = growing_curve(a);
@@ -339,6 +338,23 @@ std::optional<CurveDifference> curve_difference(const std::vector<StepRecord>& a
     }
     result.end = to;
     return result;
+}
+
+std::optional<double> curve_distance(const std::vector<Vec2>& reference, const std::vector<Vec2>& curve) {
+    if (reference.empty() || curve.empty()) return std::nullopt;
+    const double from = std::max(reference.front().x(), curve.front().x());
+    const double to = std::min(reference.back().x(), curve.back().x());
+    if (!(to > from)) return std::nullopt;
+    double distance = 0.0, norm = 0.0;
+    for (int i = 0; i < n_curve_points; ++i) {
+        const double strain = std::lerp(from, to, static_cast<double>(i) / (n_curve_points - 1));
+        const double weight = i == 0 || i == n_curve_points - 1 ? 0.5 : 1.0; // trapezoids
+        const double stress = stress_at(reference, strain);
+        const double difference = stress_at(curve, strain) - stress;
+        distance += weight * difference * difference;
+        norm += weight * stress * stress;
+    }
+    return norm > 0.0 ? std::optional(std::sqrt(distance / norm)) : std::nullopt;
 }
 
 Comparison compare_runs(const FinishedRun& a, const FinishedRun& b, double tolerance) {

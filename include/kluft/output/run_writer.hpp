@@ -42,6 +42,7 @@ struct RunOutcome {
     std::optional<int> open_close_iterations;   ///< all linear solves; none: the sum over the rows of history.csv
     int unknowns = 0;
     double elapsed_s = 0.0;
+    double cpu_s = 0.0;
     std::map<std::string, double> seconds; ///< by stage of the computation
     std::string version;
     std::optional<double> factor_of_safety;

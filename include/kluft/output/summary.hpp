@@ -63,6 +63,7 @@ struct RunSummary {
     std::map<std::string, std::int64_t> counts; ///< of what was computed: factorizations, analyses, updates,
                                                 ///< rank, refinements, relaxations, events
     double elapsed_s = 0.0;
+    double cpu_s = 0.0; ///< processor time of all threads, in the system included
     std::int64_t peak_memory_bytes = 0;
     std::string version;
     std::map<std::string, double> seconds;  ///< by stage of the computation
@@ -77,6 +78,9 @@ struct RunSummary {
 void write_summary(const std::filesystem::path& path, const RunSummary& summary);
 /// Reads summary.json back. Throws InputError.
 [[nodiscard]] RunSummary read_summary(const std::filesystem::path& path);
+
+/// Processor time that this program has taken so far, that of the system for it included (s).
+[[nodiscard]] double processor_seconds();
 
 /// Largest memory that this program has had so far (bytes).
 [[nodiscard]] std::int64_t peak_memory_bytes();

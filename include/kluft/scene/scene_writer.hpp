@@ -11,4 +11,7 @@ namespace kluft {
 /// scene wherever the text lies.
 [[nodiscard]] std::string write_scene_tree(const SceneNode& root, const SceneSources& sources);
 
+/// A value on one line, as an override takes it: 0.5, "25 MPa", [0, 1], {spacing: 0.1}.
+[[nodiscard]] std::string write_scene_value(const SceneNode& value);
+
 } // namespace kluft

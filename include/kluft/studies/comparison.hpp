@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "kluft/core/vector.hpp"
 #include "kluft/output/comparison_table.hpp"
 #include "kluft/output/cracks_picture.hpp"
 #include "kluft/simulation/step_record.hpp"
@@ -41,6 +42,13 @@ inline constexpr int n_curve_points = 201;
 /// with a scale that is not positive.
 [[nodiscard]] std::optional<CurveDifference>
 curve_difference(const std::vector<StepRecord>& a, const std::vector<StepRecord>& b, double end, double scale);
+
+/// (axial strain, differential stress) of the balanced rows whose strain grows beyond all before.
+[[nodiscard]] std::vector<Vec2> growing_curve(const std::vector<StepRecord>& rows);
+
+/// L2 distance of two growing curves over the strains that both have, on n_curve_points, relative to the L2 norm of the
+/// reference there. Nothing without a common range, or for a reference that is zero.
+[[nodiscard]] std::optional<double> curve_distance(const std::vector<Vec2>& reference, const std::vector<Vec2>& curve);
 
 struct Comparison {
     ComparisonTable table;

@@ -19,7 +19,7 @@ enum class CaseStatus {
 };
 
 struct StudyCase {
-    std::string name;                  ///< of its directory below cases/: "0000", "0001", ...
+    std::string name;                  ///< of its directory below cases/, made of its settings: "event,steps=25,r0"
     std::string variant;               ///< name of its group of settings; empty without variants
     std::vector<std::string> settings; ///< per parameter of the table, as YAML text
     int replica = 0;                   ///< from 0; cases that differ in nothing else are copies

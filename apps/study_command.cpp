@@ -1,0 +1,186 @@
+// kluft study STUDY.yaml | step-size SCENE | trade SCENE
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include "commands.hpp"
+#include "kluft/core/diagnostics.hpp"
+#include "kluft/core/nearest_name.hpp"
+#include "kluft/output/atomic_file.hpp"
+#include "kluft/studies/ready_made_studies.hpp"
+#include "kluft/studies/study.hpp"
+#include "kluft/studies/study_emit.hpp"
+#include "kluft/studies/study_results.hpp"
+#include "kluft/studies/study_run.hpp"
+
+namespace kluft {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::atomic<bool> stop_requested{false};
+
+void request_stop(int) { stop_requested = true; }
+
+fs::path this_program() {
+    std::error_code error;
+    const fs::path program = fs::read_symlink("/proc/self/exe", error);
+    if (error) throw InputError("kluft study: cannot find the path of this program: " + error.message());
+    return program;
+}
+
+/// Where the study stands: a line that is rewritten on a terminal, elsewhere one now and then.
+class StudyProgressLine {
+public:
+    void show(const StudyProgress& progress) {
+        const std::string text = study_progress_text(progress);
+        const auto now = Clock::now();
+        const std::chrono::duration<double> pause(terminal_ ? 0.2 : 10.0);
+        if (text == shown_ || now - last_ < pause) return;
+        fmt::print(stderr, "{}{}{}", terminal_ ? "\r" : "", cut(text), terminal_ ? "\033[K" : "\n");
+        std::fflush(stderr);
+        shown_ = text;
+        last_ = now;
+    }
+    void clear() {
+        if (terminal_ && !shown_.empty()) fmt::print(stderr, "\r\033[K");
+        std::fflush(stderr);
+    }
+
+private:
+    using Clock = std::chrono::steady_clock;
+
+    [[nodiscard]] std::string cut(const std::string& text) const {
+        winsize size{};
+        if (!terminal_ || ioctl(STDERR_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return text;
+        return text.substr(0, size.ws_col - 1);
+    }
+
+    bool terminal_ = isatty(STDERR_FILENO) == 1;
+    std::string shown_;
+    Clock::time_point last_{};
+};
+
+/// The study file that the words name, and the directory of the results.
+struct StudyPlace {
+    fs::path file;
+    fs::path directory;
+};
+
+/// Writes the text of a ready-made study into the directory.
+StudyPlace ready_made(const StudyArguments& arguments) {
+    const std::string& kind = arguments.words[0];
+    if (arguments.words.size() < 2) throw InputError("kluft study " + kind + ": expected a scene after it, found none");
+    const fs::path scene = arguments.words[1];
+    const fs::path directory = arguments.directory.empty() ? fs::path("results") / (scene.stem().string() + "-" + kind)
+                                                           : fs::path(arguments.directory);
+    const std::string text = ready_made_study(kind, scene, arguments.overrides);
+    make_directory(directory);
+    write_file(directory / "study.yaml", text);
+    return {directory / "study.yaml", directory};
+}
+
+StudyPlace place_of(const StudyArguments& arguments) {
+    const auto kinds = ready_made_names();
+    if (std::ranges::find(kinds, arguments.words[0]) != kinds.end()) return ready_made(arguments);
+    if (arguments.words.size() > 1)
+        throw InputError(fmt::format("kluft study: expected one study file, or one of {} and a scene, found {} {}{}",
+                                     listed(kinds), arguments.words[0], arguments.words[1],
+                                     suggestion(arguments.words[0], kinds)));
+    const fs::path file = arguments.words[0];
+    return {file, arguments.directory.empty() ? fs::path("results") / file.stem() : fs::path(arguments.directory)};
+}
+
+/// The table, and everything that is made of it.
+void write_results(const StudyTable& table) { write_study_table(table); }
+
+std::size_t n_with(const StudyTable& table, CaseStatus status) {
+    return std::ranges::count(table.cases, status, &StudyCase::status);
+}
+
+/// "12 cases: 10 done, 1 without equilibrium, 1 failed; table in results/study.csv", and what failed and why.
+void print_closing(const StudyTable& table) {
+    std::string text = fmt::format("{} cases: {} done", table.cases.size(), n_with(table, CaseStatus::done));
+    const auto add = [&](CaseStatus status, const char* what) {
+        if (const auto n = n_with(table, status); n > 0) text += fmt::format(", {} {}", n, what);
+    };
+    add(CaseStatus::no_equilibrium, "without equilibrium");
+    add(CaseStatus::refused, "refused");
+    add(CaseStatus::failed, "failed");
+    add(CaseStatus::waiting, "not run to the end");
+    fmt::print("{}; table in {}\n", text, (table.directory / "study.csv").string());
+    constexpr int most_reasons = 10;
+    int n_reasons = 0;
+    for (const auto& one : table.cases) {
+        if (one.reason.empty() || one.status == CaseStatus::waiting || ++n_reasons > most_reasons) continue;
+        fmt::print(stderr, "{}: {}: {}\n", one.name, case_status_name(one.status), one.reason);
+    }
+    if (n_reasons > most_reasons) fmt::print(stderr, "and {} more\n", n_reasons - most_reasons);
+}
+
+ExitCode exit_code(const StudyTable& table) {
+    if (stop_requested) return ExitCode::interrupted;
+    const bool missing = n_with(table, CaseStatus::failed) + n_with(table, CaseStatus::waiting) > 0;
+    return missing ? ExitCode::missed : ExitCode::done;
+}
+
+int default_jobs() { return static_cast<int>(std::max(std::thread::hardware_concurrency(), 1U)); }
+
+/// The words that gather the results of an emitted study.
+std::vector<std::string> collect_command(const StudyArguments& arguments, const StudyPlace& place) {
+    std::vector<std::string> words{this_program(), "study"};
+    for (const auto& word : arguments.words) {
+        std::error_code error;
+        words.push_back(fs::is_regular_file(word, error) ? fs::absolute(word).lexically_normal().string() : word);
+    }
+    words.insert(words.end(), {"-o", fs::absolute(place.directory).lexically_normal(), "--collect"});
+    for (const auto& override_text : arguments.overrides) words.insert(words.end(), {"--set", override_text});
+    return words;
+}
+
+} // namespace
+
+ExitCode study(const StudyArguments& arguments) {
+    const StudyPlace place = place_of(arguments);
+    const ReadStudy read = read_study(place.file, arguments.overrides);
+    const fs::path directory = fs::absolute(place.directory).lexically_normal();
+    if (arguments.collect) {
+        const StudyTable table = collect_study(read, directory);
+        make_directory(directory);
+        write_results(table);
+        print_closing(table);
+        return exit_code(table);
+    }
+    const StudyLock lock(directory);
+    const int jobs = arguments.jobs > 0 ? arguments.jobs : default_jobs();
+    prepare_study(read, this_program(), directory);
+    if (!arguments.emit.empty()) {
+        const auto next = emit_study(arguments.emit, read, directory, jobs, collect_command(arguments, place));
+        fmt::print("{}", next);
+        return ExitCode::done;
+    }
+    std::signal(SIGINT, request_stop);
+    std::signal(SIGTERM, request_stop);
+    StudyProgressLine line;
+    StudyRunOptions options{this_program(), jobs, {}};
+    if (!arguments.quiet) options.show = [&](const StudyProgress& progress) { line.show(progress); };
+    const StudyTable table = run_study(read, directory, options, stop_requested);
+    line.clear();
+    write_results(table);
+    print_closing(table);
+    return exit_code(table);
+}
+
+} // namespace kluft

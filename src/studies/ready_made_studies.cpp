@@ -1,0 +1,67 @@
+#include "kluft/studies/ready_made_studies.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "kluft/core/diagnostics.hpp"
+#include "kluft/core/nearest_name.hpp"
+#include "kluft/scene/scene_reader.hpp"
+
+namespace kluft {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A text in YAML's double quotes.
+std::string quoted(const std::string& text) {
+    std::string result = "\"";
+    for (const char c : text) {
+        if (c == '"' || c == '\\') result += '\\';
+        result += c;
+    }
+    return result + '"';
+}
+
+/// The last stage that moves a platen or reduces strengths, or else the last one.
+std::size_t studied_stage(const Scene& scene) {
+    const auto& stages = scene.loads.stages;
+    for (std::size_t i = stages.size(); i-- > 0;)
+        if (stages[i].motion || stages[i].strength_reduction) return i;
+    return stages.size() - 1;
+}
+
+const char* quantities_of(const Stage& stage) {
+    if (stage.strength_reduction) return "factor_of_safety, cracks_tension, cracks_shear";
+    return stage.motion ? "peak_stress, peak_strain, residual_stress, youngs_modulus, cracks_tension, cracks_shear"
+                        : "peak_stress, cracks_tension, cracks_shear";
+}
+
+} // namespace
+
+std::vector<std::string> ready_made_names() { return {"step-size"}; }
+
+std::string ready_made_study(const std::string& name, const fs::path& scene,
+                             const std::vector<std::string>& overrides) {
+    if (name == "step-size") return step_size_study(scene, overrides);
+    throw InputError("kluft study: expected one of " + listed(ready_made_names()) + ", found '" + name + "'");
+}
+
+std::string step_size_study(const fs::path& scene, const std::vector<std::string>& overrides) {
+    const Scene read = read_scene(scene, overrides);
+    const std::size_t stage = studied_stage(read);
+    const std::string title = read.title.empty() ? read.name : read.title;
+    return fmt::format(
+        R"(# How the results depend on the number of load steps. Made by kluft study step-size; made anew each time.
+title: {}
+scene: {}
+vary:
+  stages.{}.steps: [25, 50, 100, 200, 400, 800]
+quantities: [{}]
+)",
+        quoted("Load steps: " + title), quoted(fs::absolute(scene).lexically_normal().string()), stage,
+        quantities_of(read.loads.stages[stage]));
+}
+
+} // namespace kluft

@@ -1,0 +1,394 @@
+#include "kluft/studies/study_results.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <set>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "kluft/core/diagnostics.hpp"
+#include "kluft/output/atomic_file.hpp"
+#include "kluft/output/history_table.hpp"
+#include "kluft/output/progress_line.hpp"
+#include "kluft/output/summary.hpp"
+#include "kluft/studies/comparison.hpp"
+
+namespace kluft {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+const std::vector<std::string_view> curve_columns{"step", "stage", "axial_strain", "axial_stress",
+                                                  "differential_stress"};
+
+/// The JSON of a file; null where there is none or it cannot be understood.
+Json json_of(const fs::path& path) {
+    std::error_code error;
+    if (!fs::is_regular_file(path, error)) return {};
+    Json json = Json::parse(read_file(path), nullptr, false);
+    return json.is_object() ? json : Json{};
+}
+
+template <class T> T value_or(const Json& json, const char* key, T fallback) {
+    const auto found = json.is_object() ? json.find(key) : json.end();
+    if (found == json.end()) return fallback;
+    try {
+        return found->template get<T>();
+    } catch (const Json::exception&) {
+        return fallback;
+    }
+}
+
+std::optional<double> number_in(const Json& json, const std::string& key) {
+    const auto found = json.is_object() ? json.find(key) : json.end();
+    if (found == json.end()) return std::nullopt;
+    if (found->is_boolean()) return found->get<bool>() ? 1.0 : 0.0;
+    return found->is_number() ? std::optional(found->get<double>()) : std::nullopt;
+}
+
+std::vector<std::optional<double>> quantities_in(const Json& summary, const std::vector<std::string>& names) {
+    std::vector<std::optional<double>> values;
+    for (const auto& name : names) values.push_back(number_in(summary, name));
+    return values;
+}
+
+std::vector<Vec2> curve_in(const fs::path& directory, const Json& summary) {
+    try {
+        const auto rows = read_history(directory / "history.csv", curve_columns);
+        return growing_curve(platen_rows(rows, value_or(summary, "platen_stage", 0)));
+    } catch (const InputError&) {
+        return {};
+    }
+}
+
+std::string first_message(const fs::path& directory) {
+    const fs::path path = directory / "messages.txt";
+    std::error_code error;
+    if (!fs::is_regular_file(path, error)) return {};
+    const std::string text = read_file(path);
+    return text.substr(0, text.find('\n'));
+}
+
+Json description(const PlannedCase& one) {
+    Json json;
+    json["settings"] = Json::array();
+    for (const auto& setting : one.set) json["settings"].push_back(setting.assignment());
+    json["digest"] = one.digest;
+    return json;
+}
+
+bool is_described(const fs::path& directory, const PlannedCase& one) {
+    return value_or(json_of(directory / "case.json"), "digest", std::string{}) == one.digest;
+}
+
+/// Why a program that left no final summary ended.
+void judge_outcome(const Study& study, const CaseOutcome& outcome, const std::string& message, CaseResult& result) {
+    constexpr int bad_input = 2, out_of_resources = 4, interrupted = 130;
+    const std::string why = message.empty() ? "" : ": " + message;
+    result.status = CaseStatus::failed;
+    if (outcome.out_of_time) {
+        result.reason = "stopped after the time limit of " + readable_time(study.time_limit);
+    } else if (outcome.exit_code == bad_input) {
+        result.status = CaseStatus::refused;
+        result.reason = message;
+    } else if (outcome.exit_code == out_of_resources) {
+        result.reason = "out of disk or memory" + why;
+    } else if (outcome.exit_code == interrupted) {
+        result.status = CaseStatus::waiting;
+        result.reason = "interrupted";
+    } else if (outcome.signal != 0) {
+        result.reason = fmt::format("killed by signal {} ({}){}", outcome.signal, strsignal(outcome.signal), why);
+    } else {
+        result.reason = fmt::format("exit code {}{}", outcome.exit_code, why);
+    }
+}
+
+/// Takes over what a final summary says; whether it is one.
+bool judge_summary(const Json& summary, CaseResult& result) {
+    const auto status = value_or(summary, "status", std::string{});
+    if (status == status_name(RunStatus::done) || status == status_name(RunStatus::collapsed)) {
+        result.status = CaseStatus::done;
+        return true;
+    }
+    if (status != status_name(RunStatus::no_equilibrium)) return false;
+    result.status = CaseStatus::no_equilibrium;
+    const auto message = value_or(summary, "message", std::string{});
+    result.reason = message.substr(0, message.find('\n'));
+    return true;
+}
+
+// ---- comparison with the reference ---------------------------------------------------------------------------------
+
+/// What one case is compared with.
+struct Target {
+    std::vector<std::optional<double>> quantities;
+    std::vector<Vec2> curve;
+};
+
+std::optional<double> relative_error(const std::optional<double>& value, const std::optional<double>& reference) {
+    if (!value || !reference) return std::nullopt;
+    if (*value == *reference) return 0.0;
+    const double error = (*value - *reference) / std::abs(*reference);
+    return std::isfinite(error) ? std::optional(error) : std::nullopt;
+}
+
+/// The same target for all cases; none where they are compared with each other.
+std::optional<Target> common_target(const Study& study) {
+    const StudyReference& reference = study.reference;
+    Target target;
+    if (reference.kind == StudyReference::Kind::values) {
+        for (const auto& name : study.quantities) {
+            const auto found = reference.values.find(name);
+            target.quantities.push_back(found == reference.values.end() ? std::nullopt : std::optional(found->second));
+        }
+        return target;
+    }
+    if (reference.kind != StudyReference::Kind::directory) return std::nullopt;
+    const Json summary = json_of(reference.directory / "summary.json");
+    target.quantities = quantities_in(summary, study.quantities);
+    target.curve = curve_in(reference.directory, summary);
+    return target;
+}
+
+void compare(const Study& study, const Target& target, const CaseResult& result, StudyCase& row) {
+    row.errors.clear();
+    for (std::size_t i = 0; i < study.quantities.size(); ++i)
+        row.errors.push_back(relative_error(row.quantities[i], target.quantities[i]));
+    if (study.curve) row.curve_error = curve_distance(target.curve, result.curve);
+}
+
+std::string settings_in_words(const Study& study, const PlannedCase& one) {
+    std::vector<std::string> words;
+    if (!one.variant.empty()) words.push_back("variant: " + one.variant);
+    for (std::size_t p = 0; p < study.parameters.size(); ++p)
+        words.push_back(study.parameters[p].key + ": " + one.settings[p]);
+    return fmt::format("{}", fmt::join(words, ", "));
+}
+
+/// "the same case with stages.1.steps: 800".
+std::string chosen_in_words(const Study& study) {
+    std::vector<std::string> words;
+    if (study.reference.variant) words.push_back("variant: " + *study.reference.variant);
+    bool along_chosen = false;
+    for (const auto& setting : study.reference.set) {
+        words.push_back(setting.key + ": " + setting.value);
+        along_chosen = along_chosen || (study.along && study.parameters[*study.along].key == setting.key);
+    }
+    if (study.along && !along_chosen) {
+        const auto& finest = study.parameters[*study.along];
+        words.push_back(finest.key + ": " + finest.values.back().value);
+    }
+    return fmt::format("the same case with {}", fmt::join(words, ", "));
+}
+
+void name_reference(const ReadStudy& read, const std::vector<std::optional<std::size_t>>& references,
+                    StudyTable& table) {
+    const Study& study = read.study;
+    switch (study.reference.kind) {
+    case StudyReference::Kind::none:
+        table.reference_name = "none";
+        return;
+    case StudyReference::Kind::values:
+        table.reference_name = "closed form";
+        return;
+    case StudyReference::Kind::directory:
+        table.reference_name = study.reference.directory.string();
+        return;
+    case StudyReference::Kind::chosen:
+        break;
+    }
+    std::set<std::size_t> different;
+    for (const auto& each : references)
+        if (each) different.insert(*each);
+    if (different.empty()) {
+        table.reference_name = "none";
+    } else if (different.size() == 1) {
+        table.reference = *different.begin();
+        const PlannedCase& one = read.cases[*table.reference];
+        table.reference_name = fmt::format("case {} ({})", one.name, settings_in_words(study, one));
+    } else {
+        table.reference_name = chosen_in_words(study);
+    }
+}
+
+StudyCase row_of(const Study& study, const PlannedCase& one, const CaseResult& result) {
+    StudyCase row;
+    row.name = one.name;
+    row.variant = one.variant;
+    row.settings = one.settings;
+    row.replica = one.replica;
+    row.status = result.status;
+    row.reason = result.reason;
+    row.quantities = result.quantities;
+    row.quantities.resize(study.quantities.size());
+    row.errors.resize(study.quantities.size());
+    row.cpu_s = result.cpu_s;
+    row.elapsed_s = result.elapsed_s;
+    return row;
+}
+
+// ---- CSV -----------------------------------------------------------------------------------------------------------
+
+std::string csv_text(const std::string& text) {
+    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+    std::string quoted = "\"";
+    for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+    return quoted + '"';
+}
+
+std::string csv_number(const std::optional<double>& value) { return value ? fmt::format("{}", *value) : ""; }
+
+std::string csv_line(const std::vector<std::string>& cells) { return fmt::format("{}\n", fmt::join(cells, ",")); }
+
+std::string csv_header(const StudyTable& table) {
+    std::vector<std::string> cells{"case", "variant"};
+    for (const auto& key : table.parameters) cells.push_back(csv_text(key));
+    cells.insert(cells.end(), {"replica", "status"});
+    for (const auto& name : table.quantities) cells.push_back(name);
+    for (const auto& name : table.quantities) cells.push_back("error_" + name);
+    cells.insert(cells.end(), {"curve_error", "cpu_s", "elapsed_s", "reason"});
+    return csv_line(cells);
+}
+
+std::string csv_row(const StudyCase& row) {
+    std::vector<std::string> cells{csv_text(row.name), csv_text(row.variant)};
+    for (const auto& value : row.settings) cells.push_back(csv_text(value));
+    cells.insert(cells.end(), {std::to_string(row.replica), case_status_name(row.status)});
+    for (const auto* values : {&row.quantities, &row.errors})
+        for (const auto& value : *values) cells.push_back(csv_number(value));
+    cells.push_back(csv_number(row.curve_error));
+    for (const auto& seconds : {row.cpu_s, row.elapsed_s})
+        cells.push_back(seconds ? fmt::format("{:.6g}", *seconds) : "");
+    cells.push_back(csv_text(row.reason));
+    return csv_line(cells);
+}
+
+} // namespace
+
+std::vector<std::string> summary_quantities() {
+    RunSummary summary;
+    summary.motion = MotionReport{};
+    std::vector<std::string> names;
+    const Json json = Json::parse(summary_json(summary));
+    for (const auto& [key, value] : json.items())
+        if (value.is_number() || value.is_boolean() || (value.is_null() && key != "platen_stage")) names.push_back(key);
+    return names;
+}
+
+fs::path case_directory(const fs::path& study_directory, const PlannedCase& one) {
+    return study_directory / "cases" / one.name;
+}
+
+void prepare_case(const fs::path& directory, const PlannedCase& one) {
+    if (is_described(directory, one)) return;
+    std::error_code error;
+    fs::remove_all(directory, error);
+    make_directory(directory);
+    write_file(directory / "case.json", description(one).dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
+}
+
+void write_outcome(const fs::path& directory, const CaseOutcome& outcome) {
+    Json json;
+    json["exit_code"] = outcome.exit_code;
+    json["signal"] = outcome.signal;
+    json["out_of_time"] = outcome.out_of_time;
+    if (outcome.cpu_s) json["cpu_s"] = *outcome.cpu_s;
+    if (outcome.elapsed_s) json["elapsed_s"] = *outcome.elapsed_s;
+    write_file(directory / "outcome.json", json.dump() + '\n');
+}
+
+std::optional<CaseOutcome> read_outcome(const fs::path& directory) {
+    const Json json = json_of(directory / "outcome.json");
+    if (json.is_null()) return std::nullopt;
+    CaseOutcome outcome;
+    outcome.exit_code = value_or(json, "exit_code", -1);
+    outcome.signal = value_or(json, "signal", 0);
+    outcome.out_of_time = value_or(json, "out_of_time", false);
+    outcome.cpu_s = number_in(json, "cpu_s");
+    outcome.elapsed_s = number_in(json, "elapsed_s");
+    return outcome;
+}
+
+CaseResult read_case(const Study& study, const PlannedCase& one, const fs::path& directory) {
+    CaseResult result;
+    if (!one.refusal.empty()) {
+        result.status = CaseStatus::refused;
+        result.reason = one.refusal.substr(0, one.refusal.find('\n'));
+        return result;
+    }
+    if (!is_described(directory, one)) return result;
+    const Json summary = json_of(directory / "summary.json");
+    const auto outcome = read_outcome(directory);
+    result.cpu_s = outcome && outcome->cpu_s ? outcome->cpu_s : number_in(summary, "cpu_s");
+    result.elapsed_s = outcome && outcome->elapsed_s ? outcome->elapsed_s : number_in(summary, "elapsed_s");
+    if (judge_summary(summary, result)) {
+        result.quantities = quantities_in(summary, study.quantities);
+        if (study.curve) result.curve = curve_in(directory, summary);
+    } else if (outcome) {
+        judge_outcome(study, *outcome, first_message(directory), result);
+    }
+    return result;
+}
+
+std::vector<CaseResult> read_cases(const ReadStudy& read, const fs::path& directory) {
+    std::vector<CaseResult> results;
+    for (const auto& one : read.cases) results.push_back(read_case(read.study, one, case_directory(directory, one)));
+    return results;
+}
+
+StudyTable study_table(const ReadStudy& read, const std::vector<CaseResult>& results, const fs::path& directory) {
+    const Study& study = read.study;
+    StudyTable table;
+    table.title = study.title.empty() ? study.name : study.title;
+    table.directory = directory;
+    table.quantities = study.quantities;
+    table.along = study.along;
+    for (const auto& parameter : study.parameters) table.parameters.push_back(parameter.key);
+    const auto references = reference_cases(study, read.cases);
+    name_reference(read, references, table);
+    const auto common = common_target(study);
+    for (std::size_t i = 0; i < read.cases.size(); ++i) {
+        table.cases.push_back(row_of(study, read.cases[i], results[i]));
+        if (results[i].quantities.empty()) continue;
+        if (common) {
+            compare(study, *common, results[i], table.cases.back());
+        } else if (references[i] && !results[*references[i]].quantities.empty()) {
+            const CaseResult& reference = results[*references[i]];
+            compare(study, {reference.quantities, reference.curve}, results[i], table.cases.back());
+        }
+    }
+    return table;
+}
+
+std::string case_status_name(CaseStatus status) {
+    switch (status) {
+    case CaseStatus::waiting:
+        return "waiting";
+    case CaseStatus::running:
+        return "running";
+    case CaseStatus::done:
+        return "done";
+    case CaseStatus::no_equilibrium:
+        return "no_equilibrium";
+    case CaseStatus::refused:
+        return "refused";
+    case CaseStatus::failed:
+        return "failed";
+    }
+    return "";
+}
+
+std::string study_csv(const StudyTable& table) {
+    std::string text = csv_header(table);
+    for (const auto& row : table.cases) text += csv_row(row);
+    return text;
+}
+
+} // namespace kluft

@@ -1,0 +1,301 @@
+// Running a study: what is run and what is not, what a case leaves, and what others than Kluft run.
+#include "kluft/studies/study_run.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <thread>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include "kluft/core/diagnostics.hpp"
+#include "kluft/studies/ready_made_studies.hpp"
+#include "kluft/studies/study_emit.hpp"
+#include "kluft/studies/study_results.hpp"
+#include "output/temporary_directory.hpp"
+#include "scene/scene_text.hpp"
+
+namespace kluft {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+using ::testing::SizeIs;
+using testing::TemporaryDirectory;
+
+// Six blocks, two stages, cracks: runs in a tenth of a second.
+const char* const tiny_scene = R"(kluft: 1
+title: Tiny
+materials:
+  rock: {density: 2300, youngs_modulus: 1500 MPa, poissons_ratio: 0.25, cohesion: 0.05 MPa, friction_angle: 40, tensile_strength: 0.05 MPa}
+interfaces:
+  joint: {kind: fracture, normal_stiffness_times_spacing: 200 MPa, shear_stiffness_times_spacing: 100 MPa, friction_angle: 20, cohesion: 0.02 MPa}
+  bond: {kind: potential_crack, normal_stiffness_times_spacing: 200 MPa, shear_stiffness_times_spacing: 100 MPa, fails_to: joint}
+geometry:
+  domain: {rectangle: {width: 0.2, height: 0.4}}
+  tessellation: {hexagons: {spacing: 0.1}, interface: bond}
+boundaries: {bottom: {support: smooth}}
+stages:
+  - {name: pressure, pressure: {left: 0.1 MPa, right: 0.1 MPa, top: 0.1 MPa}, steps: 2}
+  - {name: platen, strain: {boundary: top, value: 1 %}, steps: 8}
+output: {pictures: false, fields: false}
+)";
+
+// Stands in for the program: says in `starts` that it was started and in summary.json a peak that is the number of load
+// steps. 66 steps kill it, 77 end as bad input, 88 take longer than anyone waits, 99 save a state when they are stopped.
+const char* const stand_in = R"(#!/bin/bash
+for ((i = 1; i <= $#; ++i)); do
+    case ${!i} in
+    -o) j=$((i + 1)); directory=${!j} ;;
+    stages.1.steps=*) steps=${!i#stages.1.steps=} ;;
+    esac
+done
+echo "$steps ${*: -1}" >>"$(dirname "$0")/starts"
+case $steps in
+66) kill -9 $$ ;;
+77) echo 'the scene is wrong' >&2; exit 2 ;;
+88) sleep 100 & trap 'kill $!; exit 130' INT; wait ;;
+99) if [[ ${*: -1} != --resume ]]; then touch "$directory/state.h5"; exit 130; fi ;;
+esac
+echo "{\"status\": \"done\", \"peak_stress\": $steps, \"peak_strain\": null, \"cpu_s\": 1.5}" >"$directory/summary.json"
+)";
+
+std::string content_of(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+    std::vector<std::string> lines;
+    std::istringstream stream(text);
+    for (std::string line; std::getline(stream, line);) lines.push_back(line);
+    return lines;
+}
+
+int exit_code_of(const std::string& command) { return WEXITSTATUS(std::system(command.c_str())); }
+
+class StudyRuns : public ::testing::Test {
+protected:
+    StudyRuns() {
+        std::ofstream(directory_ / "scene.yaml") << tiny_scene;
+        std::ofstream(directory_ / "program") << stand_in;
+        fs::permissions(directory_ / "program", fs::perms::owner_all);
+    }
+
+    ReadStudy read(const std::string& text) const {
+        return read_study_text("scene: scene.yaml\n" + text, {}, directory_ / "study.yaml");
+    }
+    StudyTable run(const ReadStudy& study, const fs::path& program, int jobs = 2) const {
+        prepare_study(study, program, results_);
+        return run_study(study, results_, {program, jobs, {}}, stop_);
+    }
+    StudyTable run(const std::string& text) const { return run(read(text), directory_ / "program"); }
+
+    /// Steps and last words of the starts since the last call, sorted.
+    std::vector<std::string> starts() const {
+        auto lines = lines_of(content_of(directory_ / "starts"));
+        fs::remove(directory_ / "starts");
+        std::ranges::sort(lines);
+        return lines;
+    }
+
+    TemporaryDirectory directory_;
+    fs::path results_ = directory_ / "results";
+    std::atomic<bool> stop_{false};
+};
+
+std::vector<CaseStatus> statuses_of(const StudyTable& table) {
+    std::vector<CaseStatus> statuses;
+    for (const auto& one : table.cases) statuses.push_back(one.status);
+    return statuses;
+}
+
+std::string steps(const std::string& list) { return "vary: {stages.1.steps: [" + list + "]}\n"; }
+
+TEST_F(StudyRuns, EveryCaseIsRunOnceAndNeverAgain) {
+    const StudyTable table = run(steps("10, 20, 40"));
+    EXPECT_THAT(statuses_of(table), ::testing::Each(CaseStatus::done));
+    EXPECT_THAT(starts(), ElementsAre("10 --quiet", "20 --quiet", "40 --quiet"));
+    EXPECT_EQ(table.cases[0].quantities[0], 10.0);
+    EXPECT_EQ(table.cases[0].errors[0], (10.0 - 40.0) / 40.0);
+    EXPECT_EQ(table.cases[0].quantities[1], std::nullopt);
+    ASSERT_TRUE(table.reference);
+    EXPECT_EQ(*table.reference, 2U);
+    EXPECT_EQ(table.reference_name, "case steps=40 (stages.1.steps: 40)");
+
+    (void)run(steps("10, 20, 40"));
+    EXPECT_THAT(starts(), IsEmpty());
+    EXPECT_THAT(statuses_of(run(steps("5, 10, 20, 40"))), SizeIs(4));
+    EXPECT_THAT(starts(), ElementsAre("5 --quiet"));
+}
+
+TEST_F(StudyRuns, ChangedScenesAndSettingsAreRunAgain) {
+    (void)run(steps("10, 20"));
+    (void)starts();
+    (void)run(steps("10, 20") + "set: {solver.tolerance: 1e-4}\n");
+    EXPECT_THAT(starts(), SizeIs(2));
+    std::ofstream(directory_ / "scene.yaml", std::ios::app) << "cracks: {update: all}\n";
+    EXPECT_EQ(collect_study(read(steps("10, 20")), results_).cases[0].status, CaseStatus::waiting);
+    (void)run(steps("10, 20"));
+    EXPECT_THAT(starts(), SizeIs(2));
+}
+
+TEST_F(StudyRuns, KilledAndRefusedCasesAreToldAndTheOthersGoOn) {
+    const StudyTable table = run(steps("10, 66, 77, 20"));
+    EXPECT_THAT(statuses_of(table),
+                ElementsAre(CaseStatus::done, CaseStatus::failed, CaseStatus::refused, CaseStatus::done));
+    EXPECT_EQ(table.cases[1].reason, "killed by signal 9 (Killed)");
+    EXPECT_EQ(table.cases[2].reason, "the scene is wrong");
+    EXPECT_EQ(table.cases[1].quantities[0], std::nullopt);
+    (void)starts();
+    (void)run(steps("10, 66, 77, 20"));
+    EXPECT_THAT(starts(), ElementsAre("66 --quiet")); // what failed is tried again
+}
+
+TEST_F(StudyRuns, CaseThatTakesTooLongIsStopped) {
+    const StudyTable table = run(steps("10, 88") + "time_limit: 0.3\n");
+    EXPECT_EQ(table.cases[1].status, CaseStatus::failed);
+    EXPECT_THAT(table.cases[1].reason, HasSubstr("time limit"));
+    EXPECT_LT(*table.cases[1].elapsed_s, 10.0);
+}
+
+TEST_F(StudyRuns, InterruptedCaseGoesOnFromItsSavedState) {
+    EXPECT_EQ(run(steps("10, 99")).cases[1].status, CaseStatus::waiting);
+    EXPECT_THAT(starts(), ElementsAre("10 --quiet", "99 --quiet"));
+    EXPECT_EQ(run(steps("10, 99")).cases[1].status, CaseStatus::done);
+    EXPECT_THAT(starts(), ElementsAre("99 --resume"));
+}
+
+TEST_F(StudyRuns, InterruptedStudyStopsItsCasesAndLeavesATable) {
+    const ReadStudy study = read(steps("88, 10"));
+    prepare_study(study, directory_ / "program", results_);
+    std::thread user([&] {
+        while (!fs::exists(directory_ / "starts")) std::this_thread::yield();
+        stop_ = true;
+    });
+    const StudyTable table = run_study(study, results_, {directory_ / "program", 1, {}}, stop_);
+    user.join();
+    EXPECT_THAT(statuses_of(table), ElementsAre(CaseStatus::waiting, CaseStatus::waiting));
+    EXPECT_THAT(lines_of(content_of(results_ / "study.csv")), SizeIs(3));
+}
+
+TEST_F(StudyRuns, TwoStudiesInOneDirectoryAreRefused) {
+    const StudyLock first(results_);
+    EXPECT_THROW(StudyLock{results_}, InputError);
+}
+
+TEST_F(StudyRuns, ClosedFormAndOtherRunsAreReferencesToo) {
+    const StudyTable closed = run(steps("10, 20") + "reference: {values: {peak_stress: 16}}\n");
+    EXPECT_EQ(closed.cases[0].errors[0], -0.375);
+    EXPECT_EQ(closed.reference_name, "closed form");
+    const StudyTable other = run(steps("10, 20") + "reference: {directory: results/cases/steps=20}\n");
+    EXPECT_EQ(other.cases[0].errors[0], -0.5);
+    EXPECT_THAT(other.reference_name, HasSubstr("cases/steps=20"));
+}
+
+TEST_F(StudyRuns, TableHasTheColumnsOfTheContractAndQuotesWhatNeedsIt) {
+    (void)run(steps("10, 77") + "variants: [{name: 'a, b'}]\n");
+    const auto table = collect_study(read(steps("10, 77") + "variants: [{name: 'a, b'}]\n"), results_);
+    const auto lines = lines_of(study_csv(table));
+    EXPECT_EQ(lines[0], "case,variant,stages.1.steps,replica,status,peak_stress,peak_strain,error_peak_stress,"
+                        "error_peak_strain,curve_error,cpu_s,elapsed_s,reason");
+    EXPECT_THAT(lines[1], HasSubstr(",\"a, b\",10,0,done,10,,,,,"));
+    EXPECT_THAT(lines[2], AllOf(HasSubstr(",77,0,refused,,,,,,"), HasSubstr(",the scene is wrong")));
+}
+
+// The program itself. The L2 distance of a curve to itself is zero.
+TEST_F(StudyRuns, RealCasesHaveCurvesAndCosts) {
+    const ReadStudy study = read(steps("5, 20") + "quantities: [peak_stress, cracks_shear, peak_reached]\n");
+    const StudyTable table = run(study, KLUFT_PROGRAM);
+    ASSERT_THAT(statuses_of(table), ::testing::Each(CaseStatus::done));
+    EXPECT_EQ(table.cases[1].curve_error, 0.0);
+    EXPECT_GT(*table.cases[0].curve_error, 1e-6);
+    EXPECT_LT(*table.cases[0].curve_error, 0.2);
+    for (const auto& one : table.cases) {
+        EXPECT_GT(*one.cpu_s, 0.0);
+        EXPECT_LT(*one.cpu_s, 60.0);
+        EXPECT_GT(*one.quantities[0], 1e5);
+    }
+    EXPECT_EQ(study_csv(collect_study(study, results_)), content_of(results_ / "study.csv"));
+    EXPECT_THAT(content_of(results_ / "cases" / "steps=5" / "summary.json"), HasSubstr("\"cpu_s\""));
+}
+
+// ---- others that run the cases -------------------------------------------------------------------------------------
+
+TEST_F(StudyRuns, MakefileRunsWhatHasNotEndedAndGathersTheSameTable) {
+    const ReadStudy study = read(steps("10, 66, 77, 99"));
+    prepare_study(study, directory_ / "program", results_);
+    const std::string next = emit_study("make", study, results_, 2, {"/bin/sh", "-c", "echo $HOME >collected"});
+    EXPECT_EQ(next, "make -j2 -C " + results_.string() + "\n");
+    EXPECT_EQ(exit_code_of("make -s -j2 -C '" + results_.string() + "' >/dev/null 2>&1"), 0);
+    EXPECT_EQ(content_of(results_ / "collected"), std::string(std::getenv("HOME")) + "\n");
+    EXPECT_THAT(starts(), ElementsAre("10 --quiet", "66 --quiet", "77 --quiet", "99 --quiet"));
+    auto statuses = statuses_of(collect_study(study, results_));
+    EXPECT_THAT(statuses, ElementsAre(CaseStatus::done, CaseStatus::failed, CaseStatus::refused, CaseStatus::waiting));
+    EXPECT_EQ(collect_study(study, results_).cases[1].reason, "killed by signal 9 (Killed)");
+
+    EXPECT_EQ(exit_code_of("make -s -C '" + results_.string() + "' >/dev/null 2>&1"), 0);
+    EXPECT_THAT(starts(), ElementsAre("66 --quiet", "99 --resume"));
+    statuses = statuses_of(collect_study(study, results_));
+    EXPECT_EQ(statuses[3], CaseStatus::done);
+}
+
+TEST_F(StudyRuns, JobArrayHasOneJobForEachLineOfCommands) {
+    const ReadStudy study = read("vary: {stages.1.steps: [10, 20], interfaces.bond.kind: [potential_crack, fracture], "
+                                 "title: [\"it's\", \"$HOME\"]}\n");
+    prepare_study(study, "/opt/kluft", results_);
+    const auto lines = lines_of(content_of(results_ / "cases.txt"));
+    ASSERT_THAT(lines, SizeIs(4)); // without those that the scene's reader refuses
+    EXPECT_EQ(lines[0],
+              fmt::format("/opt/kluft run {} -o {}/cases/{} --set stages.1.steps=10 --set "
+                          "interfaces.bond.kind=potential_crack --set 'title=\"it'\\''s\"' --threads 1 --quiet",
+                          (directory_ / "scene.yaml").string(), results_.string(), study.cases[0].name));
+    const std::string next = emit_study("slurm", study, results_, 3, {"collect"});
+    EXPECT_THAT(next, AllOf(HasSubstr("sbatch"), HasSubstr("\ncollect\n")));
+    const std::string script = content_of(results_ / "study.slurm");
+    EXPECT_THAT(script, AllOf(HasSubstr("#SBATCH --array=0-3%3\n"), HasSubstr("#SBATCH --requeue\n"),
+                              HasSubstr("#SBATCH --signal=B:USR1@120\n"), Not(HasSubstr("--time"))));
+    EXPECT_EQ(exit_code_of("bash -n '" + (results_ / "run-case").string() + "'"), 0);
+    EXPECT_THROW((void)emit_study("pbs", study, results_, 3, {}), InputError);
+}
+
+// ---- ready-made studies and the command ----------------------------------------------------------------------------
+
+TEST_F(StudyRuns, StepSizeStudyTakesTheLastStageThatMovesAPlaten) {
+    std::ofstream(directory_ / "made.yaml") << step_size_study(directory_ / "scene.yaml");
+    const ReadStudy study = read_study(directory_ / "made.yaml");
+    ASSERT_THAT(study.cases, SizeIs(6));
+    EXPECT_EQ(study.study.parameters[0].key, "stages.1.steps");
+    EXPECT_EQ(study.cases[5].settings[0], "800");
+    EXPECT_THROW((void)ready_made_study("step", directory_ / "scene.yaml"), InputError);
+}
+
+TEST_F(StudyRuns, CommandWritesTheTableAndAnswersMistakesWithTheirPlace) {
+    std::ofstream(directory_ / "study.yaml") << "scene: scene.yaml\n" << steps("4, 8");
+    const std::string in = "cd '" + (directory_ / ".").string() + "' && " + KLUFT_PROGRAM + " study ";
+    EXPECT_EQ(exit_code_of(in + "study.yaml -o out >said 2>&1"), 0);
+    EXPECT_THAT(content_of(directory_ / "said"), HasSubstr("2 cases: 2 done; table in "));
+    const std::string table = content_of(directory_ / "out" / "study.csv");
+    EXPECT_THAT(lines_of(table), SizeIs(3));
+    EXPECT_EQ(exit_code_of(in + "study.yaml -o out --collect >said 2>&1"), 0);
+    EXPECT_EQ(content_of(directory_ / "out" / "study.csv"), table);
+    EXPECT_EQ(exit_code_of(in + "study.yaml -o other --collect >said 2>&1"), 1);
+    EXPECT_THAT(content_of(directory_ / "said"), HasSubstr("2 not run to the end"));
+    EXPECT_EQ(exit_code_of(in + "step-siz scene.yaml >said 2>&1"), 2);
+    EXPECT_THAT(content_of(directory_ / "said"), HasSubstr("did you mean 'step-size'?"));
+    EXPECT_EQ(exit_code_of(in + "absent.yaml >said 2>&1"), 2);
+    EXPECT_THAT(content_of(directory_ / "said"), HasSubstr("absent.yaml: expected a study file, found no such file"));
+}
+
+} // namespace
+} // namespace kluft
