@@ -45,19 +45,12 @@ bool known(const std::optional<double>& value) { return value && std::isfinite(*
 
 bool is_done(const StudyTable& table, std::size_t index) { return table.cases[index].status == CaseStatus::done; }
 
-bool same_results(const StudyCase& a, const StudyCase& b) {
-    if (a.status != CaseStatus::done || b.status != CaseStatus::done) return true; // nothing known against it
-    return a.quantities == b.quantities && a.curve_error == b.curve_error;
-}
-
 /// Whether variants hold settings that the table does not show.
 bool variants_matter(const StudyTable& table) {
-    std::map<std::pair<std::vector<std::string>, int>, const StudyCase*> seen;
-    for (const StudyCase& each : table.cases) {
-        const auto [found, is_new] = seen.emplace(std::pair{each.settings, each.replica}, &each);
-        if (!is_new && found->second->variant != each.variant && !same_results(*found->second, each)) return true;
-    }
-    return false;
+    std::map<std::pair<std::vector<std::string>, int>, std::string> seen;
+    return std::ranges::any_of(table.cases, [&](const StudyCase& each) {
+        return seen.emplace(std::pair{each.settings, each.replica}, each.variant).first->second != each.variant;
+    });
 }
 
 bool refines(const StudyTable& table, std::size_t parameter) {
@@ -189,6 +182,11 @@ double relative(double difference, double to) {
     return to != 0.0 ? std::abs(difference / to) : std::numeric_limits<double>::infinity();
 }
 
+/// Of values that go one way, relative to the finest one.
+double three_mean_changes(const Values& values) {
+    return relative(3.0 * (values.back() - values.front()) / static_cast<double>(values.size() - 1), values.back());
+}
+
 void give_limit(double order, double limit, double difference, Convergence& result) {
     result.kind = ConvergenceKind::monotone;
     result.order = order;
@@ -204,7 +202,7 @@ void extrapolate_equal_ratios(const Values& sizes, const Values& values, Converg
     const auto before = n > 3 ? observed_order(ratio, values[n - 4], values[n - 3], values[n - 2]) : order;
     constexpr double most_different = 1.0;
     if (!order || !before || !is_believable(*order) || std::abs(*order - *before) > most_different) {
-        result.uncertainty = relative(3.0 * last, values.back());
+        result.uncertainty = three_mean_changes(values);
         return;
     }
     const double correction = last / (std::pow(ratio, *order) - 1.0);
@@ -216,7 +214,7 @@ void extrapolate_by_fit(const Values& sizes, const Values& values, Convergence& 
     const double correction = fit.limit - values.back();
     const double spread = std::abs(values[values.size() - 2] - values.back());
     if (!is_believable(fit.order) || fit.residual > spread) {
-        result.uncertainty = relative(3.0 * spread, values.back());
+        result.uncertainty = three_mean_changes(values);
         return;
     }
     give_limit(fit.order, fit.limit, 1.25 * std::abs(correction) + fit.residual, result);
@@ -240,7 +238,7 @@ bool contains_case(const StudyGroup& group, const std::vector<bool>& marks) {
     return std::ranges::any_of(group.cases, [&](std::size_t i) { return i < marks.size() && marks[i]; });
 }
 
-bool has_reference(const StudyTable& table, const StudyGroup& group) {
+bool has_table_reference(const StudyTable& table, const StudyGroup& group) {
     return table.reference && std::ranges::find(group.cases, *table.reference) != group.cases.end();
 }
 
@@ -260,9 +258,9 @@ bool is_finer(const StudyTable& table, const StudyGroup& fine, const StudyGroup&
 
 /// There are finer groups, and the error of each is below the bound.
 bool is_confirmed(const StudyTable& table, const std::vector<StudyGroup>& groups,
-                  const std::vector<std::optional<double>>& errors, std::size_t group, double bound) {
-    if (has_reference(table, groups[group])) return true;
-    const bool with_variants = variants_matter(table);
+                  const std::vector<std::optional<double>>& errors, bool with_variants, std::size_t group,
+                  double bound) {
+    if (has_table_reference(table, groups[group])) return true;
     bool any = false;
     for (std::size_t i = 0; i < groups.size(); ++i) {
         if (!is_finer(table, groups[i], groups[group], with_variants)) continue;
@@ -272,9 +270,48 @@ bool is_confirmed(const StudyTable& table, const std::vector<StudyGroup>& groups
     return any;
 }
 
-std::string short_name(std::string_view key) {
-    const std::size_t dot = key.rfind('.');
-    return std::string(dot == std::string_view::npos ? key : key.substr(dot + 1));
+bool makes_the_model(const StudyTable& table, std::size_t parameter) {
+    return table.along != parameter && parameter_kind(table.parameters[parameter]) == ParameterKind::model;
+}
+
+std::vector<std::string> model_settings(const StudyTable& table, const std::vector<std::string>& settings) {
+    std::vector<std::string> some;
+    for (std::size_t p = 0; p < settings.size(); ++p)
+        if (makes_the_model(table, p)) some.push_back(settings[p]);
+    return some;
+}
+
+std::vector<std::string> numerical_settings(const StudyTable& table, const std::vector<std::string>& settings) {
+    std::vector<std::string> some;
+    for (std::size_t p = 0; p < settings.size(); ++p)
+        if (!makes_the_model(table, p)) some.push_back(settings[p]);
+    return some;
+}
+
+/// Settings that make the models of the references.
+std::set<std::vector<std::string>> reference_models(const StudyTable& table) {
+    std::set<std::vector<std::string>> models;
+    const auto marks = reference_marks(table);
+    for (std::size_t i = 0; i < marks.size(); ++i)
+        if (marks[i]) models.insert(model_settings(table, table.cases[i].settings));
+    return models;
+}
+
+std::optional<double> reference_cost(const StudyTable& table) {
+    StudyGroup references;
+    const auto marks = reference_marks(table);
+    for (std::size_t i = 0; i < marks.size(); ++i)
+        if (marks[i]) references.cases.push_back(i);
+    return group_cost(table, references);
+}
+
+/// The last key of the parameter's path, or all of it where another one ends alike.
+std::string short_name(const StudyTable& table, std::size_t parameter) {
+    const auto last_key = [](std::string_view path) { return path.substr(path.rfind('.') + 1); };
+    const std::string& path = table.parameters[parameter];
+    const auto n_alike = std::ranges::count_if(
+        table.parameters, [&](const std::string& other) { return last_key(other) == last_key(path); });
+    return n_alike > 1 ? path : std::string(last_key(path));
 }
 
 /// The setting that most groups have of a parameter, if that is more than half of them.
@@ -284,6 +321,18 @@ std::optional<std::string> usual_setting(const std::vector<StudyGroup>& groups, 
     const auto most = std::ranges::max_element(counts, {}, [](const auto& entry) { return entry.second; });
     if (most == counts.end() || 2 * most->second <= groups.size()) return std::nullopt;
     return most->first;
+}
+
+template <typename IsNamed>
+std::string words_for(const StudyTable& table, const std::vector<StudyGroup>& groups, std::size_t group,
+                      const IsNamed& is_named) {
+    std::vector<std::string> words;
+    if (variants_matter(table) && !groups[group].variant.empty()) words.push_back(groups[group].variant);
+    for (std::size_t p = 0; p < table.parameters.size(); ++p) {
+        const std::string& setting = groups[group].settings[p];
+        if (!setting.empty() && is_named(p)) words.push_back(fmt::format("{} {}", short_name(table, p), setting));
+    }
+    return words.empty() ? "usual settings" : listed(words);
 }
 
 } // namespace
@@ -312,6 +361,21 @@ std::optional<double> refinement_size(std::string_view key, std::string_view set
     const auto number = setting_number(key, setting);
     if (!known(number) || *number <= 0.0) return std::nullopt;
     return is_step_count(key) ? 1.0 / *number : *number;
+}
+
+std::vector<bool> reference_marks(const StudyTable& table) {
+    std::vector<bool> marks(table.cases.size(), false);
+    if (table.reference) {
+        marks[*table.reference] = true;
+        return marks;
+    }
+    for (std::size_t i = 0; i < marks.size(); ++i) {
+        CaseValues errors = table.cases[i].errors;
+        errors.push_back(table.cases[i].curve_error);
+        std::erase_if(errors, [](const std::optional<double>& error) { return !error; });
+        marks[i] = !errors.empty() && std::ranges::all_of(errors, [](const auto& error) { return *error == 0.0; });
+    }
+    return marks;
 }
 
 std::vector<StudyMeasure> study_measures(const StudyTable& table) {
@@ -343,10 +407,7 @@ std::vector<StudyGroup> study_groups(const StudyTable& table) {
         if (with_variants) key.push_back(each.variant);
         const auto [place, is_new] = places.emplace(std::move(key), groups.size());
         if (is_new) groups.push_back({each.settings, each.variant, {}});
-        StudyGroup& group = groups[place->second];
-        const bool listed_already = std::ranges::any_of(
-            group.cases, [&](std::size_t other) { return table.cases[other].replica == each.replica; });
-        if (!listed_already || table.reference == i) group.cases.push_back(i);
+        groups[place->second].cases.push_back(i);
     }
     for (StudyGroup& group : groups)
         std::ranges::stable_sort(group.cases, {}, [&](std::size_t i) { return table.cases[i].replica; });
@@ -395,6 +456,35 @@ std::vector<StudySeries> study_series(const StudyTable& table, const std::vector
     return all;
 }
 
+SeriesValues series_values(const StudyTable& table, const std::vector<StudyGroup>& groups, const StudySeries& series,
+                           const StudyMeasure& measure) {
+    const auto replicas_with_value = [&](const StudyGroup& group) {
+        std::set<int> replicas;
+        for (const std::size_t i : group.cases)
+            if (is_done(table, i) && known(measure.values[i])) replicas.insert(table.cases[i].replica);
+        return replicas;
+    };
+    std::optional<std::set<int>> common;
+    for (const SeriesLevel& level : series.levels) {
+        const auto here = replicas_with_value(groups[level.group]);
+        if (here.empty()) continue;
+        if (!common) common = here;
+        std::erase_if(*common, [&](int replica) { return !here.contains(replica); });
+    }
+    SeriesValues found;
+    if (!common) return found;
+    for (const SeriesLevel& level : series.levels) {
+        StudyGroup members = groups[level.group];
+        if (!common->empty())
+            std::erase_if(members.cases, [&](std::size_t i) { return !common->contains(table.cases[i].replica); });
+        if (const auto mean = group_mean(table, members, measure.values)) {
+            found.sizes.push_back(level.size);
+            found.values.push_back(*mean);
+        }
+    }
+    return found;
+}
+
 Convergence convergence(const Values& sizes, const Values& values) {
     Convergence result;
     const std::size_t n = std::min<std::size_t>(values.size(), 4);
@@ -423,10 +513,10 @@ Convergence convergence(const Values& sizes, const Values& values) {
 std::vector<WorkPoint> work_precision(const StudyTable& table, const StudyMeasure& measure,
                                       const std::vector<bool>& chosen, const std::vector<bool>& unbalanced) {
     std::vector<WorkPoint> points;
+    const auto references = reference_marks(table);
     for (std::size_t i = 0; i < table.cases.size(); ++i) {
         const auto& cost = table.cases[i].cpu_s;
-        if (table.reference == i || !chosen[i] || !is_done(table, i) || !known(cost) || !known(measure.errors[i]))
-            continue;
+        if (references[i] || !chosen[i] || !is_done(table, i) || !known(cost) || !known(measure.errors[i])) continue;
         points.push_back({i, *cost, std::abs(*measure.errors[i]), !unbalanced[i], false});
     }
     std::ranges::sort(points, {}, [](const WorkPoint& p) { return std::tuple(p.cpu_s, p.error, p.study_case); });
@@ -434,29 +524,24 @@ std::vector<WorkPoint> work_precision(const StudyTable& table, const StudyMeasur
     return points;
 }
 
-bool is_other_model(const StudyTable& table, const StudyGroup& group) {
-    if (!table.reference) return false;
-    const StudyCase& reference = table.cases[*table.reference];
-    for (std::size_t p = 0; p < table.parameters.size(); ++p) {
-        if (table.along == p || parameter_kind(table.parameters[p]) != ParameterKind::model) continue;
-        if (group.settings[p] != reference.settings[p]) return true;
-    }
-    return false;
+std::vector<bool> other_model_marks(const StudyTable& table, const std::vector<StudyGroup>& groups) {
+    const auto models = reference_models(table);
+    std::vector<bool> marks;
+    for (const StudyGroup& group : groups)
+        marks.push_back(!models.empty() && !models.contains(model_settings(table, group.settings)));
+    return marks;
 }
 
 std::vector<ModelChoice> model_choices(const StudyTable& table, const std::vector<StudyGroup>& groups,
                                        const StudyMeasure& measure) {
-    std::map<std::vector<std::string>, std::size_t> own_groups;
+    const auto others = other_model_marks(table, groups);
+    std::map<std::vector<std::string>, std::size_t> own_groups; // by the settings that do not make the model
     for (std::size_t i = 0; i < groups.size(); ++i)
-        if (!is_other_model(table, groups[i])) own_groups.emplace(groups[i].settings, i);
+        if (!others[i]) own_groups.emplace(numerical_settings(table, groups[i].settings), i);
     std::vector<ModelChoice> choices;
     for (std::size_t i = 0; i < groups.size(); ++i) {
-        if (!is_other_model(table, groups[i])) continue;
-        std::vector<std::string> settings = groups[i].settings;
-        for (std::size_t p = 0; p < table.parameters.size(); ++p)
-            if (table.along != p && parameter_kind(table.parameters[p]) == ParameterKind::model)
-                settings[p] = table.cases[*table.reference].settings[p];
-        const auto own = own_groups.find(settings);
+        if (!others[i]) continue;
+        const auto own = own_groups.find(numerical_settings(table, groups[i].settings));
         if (own == own_groups.end()) continue;
         ModelChoice choice{i, own->second, std::nullopt, std::nullopt};
         const auto value = group_mean(table, groups[i], measure.values);
@@ -490,11 +575,13 @@ std::vector<Advice> cheapest_settings(const StudyTable& table, const std::vector
     CaseValues errors;
     CaseValues costs;
     std::vector<std::size_t> by_cost;
+    const auto others = other_model_marks(table, groups);
+    const auto reference = reference_cost(table);
+    const bool with_variants = variants_matter(table);
     for (std::size_t i = 0; i < groups.size(); ++i) {
         errors.push_back(group_error(table, groups[i], measure));
         costs.push_back(group_cost(table, groups[i]));
-        if (errors[i] && costs[i] && !is_other_model(table, groups[i]) && !contains_case(groups[i], unbalanced))
-            by_cost.push_back(i);
+        if (errors[i] && costs[i] && !others[i] && !contains_case(groups[i], unbalanced)) by_cost.push_back(i);
     }
     std::ranges::stable_sort(by_cost, {}, [&](std::size_t i) { return *costs[i]; });
     std::vector<Advice> advice;
@@ -503,14 +590,13 @@ std::vector<Advice> cheapest_settings(const StudyTable& table, const std::vector
         each.bound = bound;
         for (const std::size_t i : by_cost) {
             if (*errors[i] > bound) continue;
-            if (!is_confirmed(table, groups, errors, i, bound)) {
+            if (!is_confirmed(table, groups, errors, with_variants, i, bound)) {
                 each.not_confirmed.push_back(i);
                 continue;
             }
             each.group = i;
             each.error = *errors[i];
             each.cpu_s = *costs[i];
-            const auto reference = table.reference ? table.cases[*table.reference].cpu_s : std::nullopt;
             if (known(reference) && *reference > 0.0) each.reference_share = each.cpu_s / *reference;
             break;
         }
@@ -521,14 +607,16 @@ std::vector<Advice> cheapest_settings(const StudyTable& table, const std::vector
 
 std::string group_label(const StudyTable& table, const std::vector<StudyGroup>& groups, std::size_t group,
                         std::optional<std::size_t> without) {
-    std::vector<std::string> words;
-    if (variants_matter(table) && !groups[group].variant.empty()) words.push_back(groups[group].variant);
-    for (std::size_t p = 0; p < table.parameters.size(); ++p) {
-        const std::string& setting = groups[group].settings[p];
-        if (setting.empty() || without == p || usual_setting(groups, p) == setting) continue;
-        words.push_back(fmt::format("{} {}", short_name(table.parameters[p]), setting));
-    }
-    return words.empty() ? "own settings" : listed(words);
+    return words_for(table, groups, group, [&](std::size_t p) {
+        return without != p && (table.along == p || usual_setting(groups, p) != groups[group].settings[p]);
+    });
+}
+
+std::string full_group_label(const StudyTable& table, const std::vector<StudyGroup>& groups, std::size_t group) {
+    return words_for(table, groups, group, [&](std::size_t p) {
+        return std::ranges::any_of(
+            groups, [&](const StudyGroup& other) { return other.settings[p] != groups[group].settings[p]; });
+    });
 }
 
 } // namespace kluft

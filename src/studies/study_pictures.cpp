@@ -31,24 +31,12 @@ std::string with_unit(const StudyMeasure& measure) {
 
 std::string size_name(const std::string& key) { return key.ends_with(".steps") ? "1/" + key : key; }
 
-/// Values of a series in the unit of the plot, from coarse to fine.
-std::vector<Vec2> series_points(const StudyTable& table, const std::vector<StudyGroup>& groups,
-                                const StudySeries& series, const StudyMeasure& measure) {
-    std::vector<Vec2> points;
-    for (const SeriesLevel& level : series.levels)
-        if (const auto value = group_mean(table, groups[level.group], measure.values))
-            points.push_back({level.size, *value / quantity_unit(measure.name).size});
-    return points;
-}
-
-Convergence convergence_of(const std::vector<Vec2>& points) {
-    std::vector<double> sizes;
-    std::vector<double> values;
-    for (const Vec2& point : points) {
-        sizes.push_back(point.x());
-        values.push_back(point.y());
-    }
-    return convergence(sizes, values);
+/// Values of a series in the unit of the plot.
+SeriesValues plotted_values(const StudyTable& table, const std::vector<StudyGroup>& groups, const StudySeries& series,
+                            const StudyMeasure& measure) {
+    SeriesValues found = series_values(table, groups, series, measure);
+    for (double& value : found.values) value /= quantity_unit(measure.name).size;
+    return found;
 }
 
 /// Sizes over more than this ratio are drawn on a logarithmic axis.
@@ -121,12 +109,13 @@ CurvePlot convergence_plot(const StudyTable& table, const std::vector<StudyGroup
     plot.y_name = with_unit(measure);
     plot.y_from_zero = false;
     for (const StudySeries& each : series) {
-        const auto points = series_points(table, groups, each, measure);
-        if (points.empty()) continue;
+        const SeriesValues found = plotted_values(table, groups, each, measure);
+        if (found.values.empty()) continue;
         PlottedCurve curve;
         curve.label = group_label(table, groups, each.levels.front().group, each.parameter);
-        for (const Vec2& point : points) curve.points.push_back({point, true});
-        const Convergence result = convergence_of(points);
+        for (std::size_t i = 0; i < found.values.size(); ++i)
+            curve.points.push_back({{found.sizes[i], found.values[i]}, true});
+        const Convergence result = convergence(found.sizes, found.values);
         if (result.kind == ConvergenceKind::monotone) {
             curve.label += fmt::format(": limit {:.4g}, order {:.2g}", *result.limit, *result.order);
             plot.references.push_back({"extrapolated", 0.0, *result.limit, plot.curves.size()});
@@ -152,6 +141,8 @@ CurvePlot work_precision_plot(const StudyTable& table, const std::vector<StudyGr
     plot.log_x = plot.log_y = true;
     plot.unbalanced_name = "with unbalanced steps";
     constexpr std::size_t most_series = 5; // that have a colour of their own
+    constexpr double worth_a_text = 0.8;   // of the error of the point of the front that was named last
+    double last_named = std::numeric_limits<double>::infinity();
     std::map<std::size_t, std::size_t> curve_of_group;
     for (const StudySeries& each : series) {
         if (table.along != each.parameter || plot.curves.size() == most_series) continue;
@@ -166,7 +157,7 @@ CurvePlot work_precision_plot(const StudyTable& table, const std::vector<StudyGr
     rest.joined = false;
     if (!plot.curves.empty()) rest.colour = most_series;
     PlottedCurve front;
-    front.label = "the best for their cost";
+    front.label = "best for their cost";
     front.colour = grey;
     front.dashed = true;
     for (const WorkPoint& point : points) {
@@ -175,8 +166,10 @@ CurvePlot work_precision_plot(const StudyTable& table, const std::vector<StudyGr
         const auto curve = curve_of_group.find(group);
         (curve == curve_of_group.end() ? rest : plot.curves[curve->second]).points.push_back({place, point.balanced});
         if (!point.on_front) continue;
+        const bool much_better = point.error < worth_a_text * last_named;
+        if (much_better) last_named = point.error;
         front.points.push_back({place, true});
-        front.point_texts.push_back(group_label(table, groups, group));
+        front.point_texts.push_back(much_better ? group_label(table, groups, group) : "");
     }
     plot.curves.push_back(std::move(rest));
     std::erase_if(plot.curves, [](const PlottedCurve& curve) { return curve.points.empty(); });

@@ -30,6 +30,13 @@ constexpr std::string_view picture_prefix = "study-";
 
 std::string percent_text(double fraction) { return fmt::format("{:.3g} %", percent * fraction); }
 
+/// With its sign if it has one; nothing is written of what is round-off.
+std::string error_text(double error, bool has_sign) {
+    constexpr double round_off = 1e-10;
+    if (std::abs(error) < round_off) return "0 %";
+    return has_sign ? fmt::format("{:+.3g} %", percent * error) : percent_text(error);
+}
+
 std::string value_text(const StudyMeasure& measure, double value) {
     const QuantityUnit unit = quantity_unit(measure.name);
     return fmt::format("{:.5g}{}{}", value / unit.size, unit.name.empty() ? "" : " ", unit.name);
@@ -74,7 +81,9 @@ class ReportBuilder {
 public:
     ReportBuilder(const StudyTable& table, fs::path directory, const StudyReportOptions& options)
         : table_(table), directory_(std::move(directory)), options_(options), measures_(study_measures(table)),
-          groups_(study_groups(table)), series_(study_series(table, groups_)) {
+          groups_(study_groups(table)), series_(study_series(table, groups_)),
+          other_models_(other_model_marks(table, groups_)) {
+        for (std::size_t g = 0; g < groups_.size(); ++g) labels_.push_back(group_label(table, groups_, g));
         for (const StudyCase& each : table.cases) {
             runs_.push_back(read_case_run(table.directory / "cases" / each.name));
             unbalanced_.push_back(runs_.back() && runs_.back()->unbalanced_steps > 0);
@@ -112,7 +121,7 @@ private:
     [[nodiscard]] std::string sentence(const Advice& advice, const StudyMeasure& measure) const;
     [[nodiscard]] std::string reference_doubt(const StudyMeasure& measure) const;
     [[nodiscard]] std::vector<bool> same_model() const;
-    [[nodiscard]] std::string label_of(std::size_t group) const { return group_label(table_, groups_, group); }
+    [[nodiscard]] const std::string& label_of(std::size_t group) const { return labels_[group]; }
     /// The quantity that is recommended for, and the curve.
     [[nodiscard]] std::vector<const StudyMeasure*> judged_measures() const;
 
@@ -122,6 +131,8 @@ private:
     std::vector<StudyMeasure> measures_;
     std::vector<StudyGroup> groups_;
     std::vector<StudySeries> series_;
+    std::vector<bool> other_models_;           ///< per group
+    std::vector<std::string> labels_;          ///< per group
     std::vector<std::optional<CaseRun>> runs_; ///< per case
     std::vector<bool> unbalanced_;             ///< per case
     std::optional<std::size_t> chosen_;        ///< index of the measure that is recommended for
@@ -196,28 +207,12 @@ std::string verdict_text(const StudyMeasure& measure, const Convergence& result,
     return "";
 }
 
-struct SeriesValues {
-    std::vector<double> sizes;
-    std::vector<double> values;
-};
-
-SeriesValues values_along(const StudyTable& table, const std::vector<StudyGroup>& groups, const StudySeries& series,
-                          const StudyMeasure& measure) {
-    SeriesValues found;
-    for (const SeriesLevel& level : series.levels)
-        if (const auto value = group_mean(table, groups[level.group], measure.values)) {
-            found.sizes.push_back(level.size);
-            found.values.push_back(*value);
-        }
-    return found;
-}
-
 void ReportBuilder::add_convergence() {
     ReportTable rows{{"quantity", "refined", "with", "from", "to", "finest value", "verdict"}, {}, {}, 7};
     for (const StudyMeasure& measure : measures_) {
         if (measure.is_curve) continue;
         for (const StudySeries& series : series_) {
-            const SeriesValues found = values_along(table_, groups_, series, measure);
+            const SeriesValues found = series_values(table_, groups_, series, measure);
             if (found.values.empty()) continue;
             const auto setting = [&](const SeriesLevel& level) {
                 return groups_[level.group].settings[series.parameter];
@@ -240,7 +235,7 @@ void ReportBuilder::add_convergence() {
     if (!chosen_ || measures_[*chosen_].is_curve) return;
     std::map<std::size_t, std::vector<StudySeries>> by_parameter;
     for (const StudySeries& series : series_) {
-        if (is_other_model(table_, groups_[series.levels.front().group])) continue;
+        if (other_models_[series.levels.front().group]) continue;
         by_parameter[series.parameter].push_back(series);
     }
     for (const auto& [parameter, series] : by_parameter)
@@ -250,8 +245,8 @@ void ReportBuilder::add_convergence() {
 
 std::vector<bool> ReportBuilder::same_model() const {
     std::vector<bool> same(table_.cases.size(), false);
-    for (const StudyGroup& group : groups_)
-        for (const std::size_t i : group.cases) same[i] = !is_other_model(table_, group);
+    for (std::size_t g = 0; g < groups_.size(); ++g)
+        for (const std::size_t i : groups_[g].cases) same[i] = !other_models_[g];
     return same;
 }
 
@@ -356,13 +351,14 @@ void ReportBuilder::add_curves() {
         const std::string with = group_label(table_, groups_, series.levels.front().group, series.parameter);
         const std::string& key = table_.parameters[series.parameter];
         add_picture(fmt::format("curves-{}-{}", key, with),
-                    curves_plot(fmt::format("{}: {}", key, with), runs, labels));
+                    curves_plot(fmt::format("{}, by {}", with, key), runs, labels));
     }
 }
 
 void ReportBuilder::add_cases() {
     if (table_.cases.empty()) return;
     ReportTable rows{{"case"}, {}, {}, 0};
+    const auto references = reference_marks(table_);
     const bool with_variants = std::ranges::any_of(table_.cases, [](const StudyCase& c) { return !c.variant.empty(); });
     const bool with_replicas = std::ranges::any_of(table_.cases, [](const StudyCase& c) { return c.replica > 0; });
     if (with_variants) rows.head.emplace_back("variant");
@@ -381,11 +377,10 @@ void ReportBuilder::add_cases() {
         if (with_variants) row.push_back(each.variant);
         for (const std::string& setting : each.settings) row.push_back(setting.empty() ? "as the scene" : setting);
         if (with_replicas) row.push_back(fmt::format("{}", each.replica));
-        row.push_back(table_.reference == i ? "reference"
-                                            : status_text(each.status) + (unbalanced_[i] ? ", unbalanced" : ""));
+        row.push_back(references[i] ? "reference" : status_text(each.status) + (unbalanced_[i] ? ", unbalanced" : ""));
         for (const StudyMeasure& measure : measures_) {
             if (!measure.is_curve) row.push_back(measure.values[i] ? value_text(measure, *measure.values[i]) : unknown);
-            row.push_back(measure.errors[i] ? fmt::format("{:+.3g} %", percent * *measure.errors[i]) : unknown);
+            row.push_back(measure.errors[i] ? error_text(*measure.errors[i], !measure.is_curve) : unknown);
         }
         row.push_back(each.cpu_s ? seconds_text(*each.cpu_s) : unknown);
         if (each.status != CaseStatus::done) rows.marked.push_back(rows.rows.size());
@@ -412,7 +407,7 @@ void ReportBuilder::add_failures() {
 void ReportBuilder::add_model_choices() {
     if (!chosen_ || measures_[*chosen_].is_curve) return;
     const StudyMeasure& measure = measures_[*chosen_];
-    ReportTable rows{{"choice", measure.name, "against the scene's own", "CPU time against its own"}, {}, {}, 1};
+    ReportTable rows{{"choice", measure.name, "against the own model", "CPU time against it"}, {}, {}, 1};
     std::vector<double> deviations;
     for (const ModelChoice& choice : model_choices(table_, groups_, measure)) {
         const auto value = group_mean(table_, groups_[choice.group], measure.values);
@@ -429,17 +424,19 @@ void ReportBuilder::add_model_choices() {
     add(std::move(rows));
     if (deviations.size() < 2) return;
     const EnsembleStatistics found = ensemble_statistics(deviations);
-    add(ReportParagraph{fmt::format("Over {} choices {} differs from that of the scene by {:+.2g} % in the mean (bias) "
-                                    "with a standard deviation of {:.2g} % (scatter).",
-                                    found.n, measure.name, percent * found.mean, percent * found.deviation)});
+    add(ReportParagraph{
+        fmt::format("Over {} choices {} differs from that of the own model by {:+.2g} % in the mean (bias) "
+                    "with a standard deviation of {:.2g} % (scatter).",
+                    found.n, measure.name, percent * found.mean, percent * found.deviation)});
 }
 
 std::string ReportBuilder::sentence(const Advice& advice, const StudyMeasure& measure) const {
     const std::string what = measure.is_curve ? std::string("in the whole curve") : "on " + measure.name;
     std::string text = fmt::format("For {:.3g} % error {}: ", percent * advice.bound, what);
     if (advice.group) {
-        text += fmt::format("{} (error {:.2g} %) costs {} of CPU time", label_of(*advice.group), percent * advice.error,
-                            seconds_text(advice.cpu_s));
+        text +=
+            fmt::format("{} (error {:.2g} %) costs {} of CPU time", full_group_label(table_, groups_, *advice.group),
+                        percent * advice.error, seconds_text(advice.cpu_s));
         if (advice.reference_share) text += fmt::format(" ({:.2g} of the reference)", *advice.reference_share);
         text += ".";
     } else {
@@ -459,19 +456,23 @@ std::string ReportBuilder::sentence(const Advice& advice, const StudyMeasure& me
 
 /// What is known of the reference's own error.
 std::string ReportBuilder::reference_doubt(const StudyMeasure& measure) const {
-    if (!table_.reference || measure.is_curve) return "";
+    const auto references = reference_marks(table_);
+    if (measure.is_curve || std::ranges::find(references, true) == references.end()) return "";
+    std::optional<double> uncertainty;
+    std::optional<double> scatter;
     for (const StudySeries& series : series_) {
         const StudyGroup& finest = groups_[series.levels.back().group];
-        if (std::ranges::find(finest.cases, *table_.reference) == finest.cases.end()) continue;
-        const SeriesValues found = values_along(table_, groups_, series, measure);
+        if (std::ranges::none_of(finest.cases, [&](std::size_t i) { return references[i]; })) continue;
+        const SeriesValues found = series_values(table_, groups_, series, measure);
         const Convergence result = convergence(found.sizes, found.values);
-        if (result.uncertainty)
-            return fmt::format("The reference itself is uncertain by {}, which comes on top.",
-                               percent_text(*result.uncertainty));
-        if (result.kind == ConvergenceKind::scattered)
-            return fmt::format("The values that lead to the reference scatter by {}: errors below that mean nothing.",
-                               percent_text(result.scatter));
+        if (result.uncertainty) uncertainty = std::max(uncertainty.value_or(0.0), *result.uncertainty);
+        if (result.kind == ConvergenceKind::scattered) scatter = std::max(scatter.value_or(0.0), result.scatter);
     }
+    if (scatter)
+        return fmt::format("The values that lead to the reference scatter by {}: errors below that mean nothing.",
+                           percent_text(*scatter));
+    if (uncertainty)
+        return fmt::format("The reference itself is uncertain by {}, which comes on top.", percent_text(*uncertainty));
     return "The reference's own error is not known from this study, and comes on top.";
 }
 

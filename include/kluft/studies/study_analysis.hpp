@@ -29,6 +29,10 @@ enum class ParameterKind {
 /// where the setting is no positive number.
 [[nodiscard]] std::optional<double> refinement_size(std::string_view key, std::string_view setting);
 
+/// Per case, whether others are compared with it: the table's reference, or where each group of settings has one of its
+/// own every case whose known errors are all zero.
+[[nodiscard]] std::vector<bool> reference_marks(const StudyTable& table);
+
 /// One number of each case and its error against the reference; the whole curve has an error only.
 struct StudyMeasure {
     std::string name;
@@ -47,8 +51,8 @@ struct StudyGroup {
     std::vector<std::size_t> cases; ///< by replica
 };
 
-/// In the order of the table. Of cases that are equal in settings and replica only the first counts. The names of
-/// variants do not matter unless two cases that differ in nothing else have different results.
+/// In the order of the table. The names of variants do not matter unless two cases differ in nothing else: then their
+/// variants hold settings that are no parameters of the table.
 [[nodiscard]] std::vector<StudyGroup> study_groups(const StudyTable& table);
 
 /// Mean over those members of the group that ended as `done` and have the value.
@@ -74,6 +78,16 @@ struct StudySeries {
 /// have a group in them which is in none of the former.
 [[nodiscard]] std::vector<StudySeries> study_series(const StudyTable& table, const std::vector<StudyGroup>& groups);
 
+struct SeriesValues {
+    std::vector<double> sizes; ///< from coarse to fine
+    std::vector<double> values;
+};
+
+/// Means over the replicas that all levels with a value have in common (over all members if there are none); levels
+/// without a value are left out.
+[[nodiscard]] SeriesValues series_values(const StudyTable& table, const std::vector<StudyGroup>& groups,
+                                         const StudySeries& series, const StudyMeasure& measure);
+
 enum class ConvergenceKind {
     too_few,   ///< fewer than three values
     constant,  ///< all equal to ten digits
@@ -95,10 +109,10 @@ struct Convergence {
 /// r: p = ln((q1 - q2)/(q2 - q3))/ln r, q0 = q3 + (q3 - q2)/(r^p - 1), uncertainty 1.25 |q3 - q2|/(r^p - 1) (grid
 /// convergence index; Roache, P. J. 1994, J. Fluids Eng. 116, 405-413). With other ratios q = q0 + C h^p is fitted by
 /// least squares to the last values, at most four, and the root mean square of what remains is added to the
-/// uncertainty (Eca, L. & Hoekstra, M. 2014, J. Comput. Phys. 262, 104-130).
-/// No order and no limit are given unless the last values, at most four, change in one direction in steps that become
-/// smaller, and p is between 0.3 and 4.5. With four values p of the first three must not differ by more than 1 from
-/// that of the last three; else the uncertainty is 3 |q3 - q2|.
+/// uncertainty. No order and no limit are given unless the last values, at most four, change in one direction in steps
+/// that become smaller, and p is between 0.3 and 4.5. With four values p of the first three must not differ by more than
+/// 1 from that of the last three; else the uncertainty is three times the mean change from one value to the next (Eca,
+/// L. & Hoekstra, M. 2014, J. Comput. Phys. 262, 104-130).
 [[nodiscard]] Convergence convergence(const std::vector<double>& sizes, const std::vector<double>& values);
 
 /// A case that can be had for a price.
@@ -110,7 +124,7 @@ struct WorkPoint {
     bool on_front = false; ///< no other point is as cheap and as right and better in one of the two
 };
 
-/// Points of all cases that ended as `done` and have an error and a CPU time, except the reference; `chosen`: per case
+/// Points of all cases that ended as `done` and have an error and a CPU time, except references; `chosen`: per case
 /// whether it takes part. Ascending in cost. `unbalanced` (per case): it has unbalanced load steps; the front is made
 /// of balanced points only.
 [[nodiscard]] std::vector<WorkPoint> work_precision(const StudyTable& table, const StudyMeasure& measure,
@@ -120,14 +134,14 @@ struct WorkPoint {
 /// The settings that differ in nothing but the model of the rock, and what that changes.
 struct ModelChoice {
     std::size_t group = 0;
-    std::size_t own = 0;              ///< the group with the same settings and the model of the reference
+    std::size_t own = 0;              ///< the group with the same settings and the model of a reference
     std::optional<double> deviation;  ///< of the measure from that of `own`, relative
     std::optional<double> cost_ratio; ///< CPU time over that of `own`
 };
 
-/// Whether the group is another model of the rock than the reference: nothing is unless the reference is a case. What
+/// Per group, whether it is another model of the rock than every reference: none is unless references are cases. What
 /// the study runs along is no choice of the model.
-[[nodiscard]] bool is_other_model(const StudyTable& table, const StudyGroup& group);
+[[nodiscard]] std::vector<bool> other_model_marks(const StudyTable& table, const std::vector<StudyGroup>& groups);
 
 /// Of all groups that are another model of the rock and have their counterpart in the study.
 [[nodiscard]] std::vector<ModelChoice> model_choices(const StudyTable& table, const std::vector<StudyGroup>& groups,
@@ -143,21 +157,26 @@ struct Advice {
     std::optional<std::size_t> group;       ///< the cheapest one that holds it
     double error = 0.0;                     ///< of this group, see group_error
     double cpu_s = 0.0;                     ///< of one of its cases
-    std::optional<double> reference_share;  ///< cpu_s over that of the reference
+    std::optional<double> reference_share;  ///< cpu_s over the mean of the references
     std::vector<std::size_t> not_confirmed; ///< cheaper groups below the bound that are not trusted
 };
 
 /// The cheapest group whose error is below each bound. A group counts only if it is confirmed: there is a finer one,
 /// and every finer one is below the bound too (finer: equal in all settings but refining ones, and no coarser in any of
-/// these). The reference itself counts as confirmed. Groups of other models of the rock, and those with a
+/// these). The table's reference itself counts as confirmed. Groups of other models of the rock, and those with a
 /// case in `unbalanced`, take no part.
 [[nodiscard]] std::vector<Advice> cheapest_settings(const StudyTable& table, const std::vector<StudyGroup>& groups,
                                                     const StudyMeasure& measure, const std::vector<bool>& unbalanced,
                                                     const std::vector<double>& bounds);
 
-/// Short words for a group's settings: "steps 100, update all". Settings that more than half of the groups have are left
-/// out, and so is the parameter `without`; "own settings" where nothing is left.
+/// Short words for a group's settings: "steps 100, update all". What more than half of the groups have is left out, but
+/// for the parameter that the study runs along, and so is the parameter `without`; "usual settings" where nothing is
+/// left.
 [[nodiscard]] std::string group_label(const StudyTable& table, const std::vector<StudyGroup>& groups, std::size_t group,
                                       std::optional<std::size_t> without = {});
+
+/// The same with every setting in which any two groups differ.
+[[nodiscard]] std::string full_group_label(const StudyTable& table, const std::vector<StudyGroup>& groups,
+                                           std::size_t group);
 
 } // namespace kluft
