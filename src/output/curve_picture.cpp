@@ -411,18 +411,18 @@ void draw_plot(Canvas& canvas, const CurvePlot& plot, const LegendGrid& below) {
     canvas.begin_clip(frame.corner - room + above, frame.size + 2.0 * room - above);
     for (const PlottedBand& band : plot.bands) draw_band(canvas, frame, band);
     draw_references(canvas, frame, plot.references);
+    Obstacles obstacles = obstacles_of(plot, frame);
+    for (std::size_t i = 0; i < plot.curves.size(); ++i) // below the markers, which they might hide
+        draw_point_texts(canvas, frame, plot.curves[i], curve_stroke(plot, i).colour, obstacles);
     for (std::size_t i = 0; i < plot.curves.size(); ++i)
         draw_curve(canvas, frame, plot.curves[i], curve_stroke(plot, i));
     canvas.end_clip();
-    Obstacles obstacles = obstacles_of(plot, frame);
     below.draw(canvas, {frame.corner.x(), plot_height});
     if (plot.curves.size() < 2 && plot.bands.empty()) draw_legend_inside(canvas, frame, plot, obstacles);
     for (const PlottedReference& reference : plot.references)
         if (!reference.x) draw_level_label(canvas, frame, reference, obstacles);
     for (std::size_t i = 0; i < plot.curves.size(); ++i)
         draw_peak(canvas, frame, plot.curves[i], series_colour(plot.curves[i].colour.value_or(i)));
-    for (std::size_t i = 0; i < plot.curves.size(); ++i)
-        draw_point_texts(canvas, frame, plot.curves[i], curve_stroke(plot, i).colour, obstacles);
 }
 
 Vec2 plotted(const StepRecord& record) { return {percent * record.axial_strain, record.differential_stress / mega}; }

@@ -613,9 +613,11 @@ std::string group_label(const StudyTable& table, const std::vector<StudyGroup>& 
 }
 
 std::string full_group_label(const StudyTable& table, const std::vector<StudyGroup>& groups, std::size_t group) {
+    const auto others = other_model_marks(table, groups);
     return words_for(table, groups, group, [&](std::size_t p) {
-        return std::ranges::any_of(
-            groups, [&](const StudyGroup& other) { return other.settings[p] != groups[group].settings[p]; });
+        for (std::size_t i = 0; i < groups.size(); ++i)
+            if (!others[i] && groups[i].settings[p] != groups[group].settings[p]) return true;
+        return false;
     });
 }
 

@@ -232,6 +232,11 @@ void ReportBuilder::add_convergence() {
         "of the finest value against it (grid convergence index). Where values go up and down there "
         "is no order and no limit; the scatter is the range of these values over their mean."});
     add(std::move(rows));
+    if (std::ranges::find(measures_, std::string("residual_stress"), &StudyMeasure::name) != measures_.end())
+        add(ReportParagraph{
+            "residual_stress comes after the peak, where runs part from each other: what single runs say "
+            "of it does not converge. Only its mean over replicas means something, with its "
+            "confidence."});
     if (!chosen_ || measures_[*chosen_].is_curve) return;
     std::map<std::size_t, std::vector<StudySeries>> by_parameter;
     for (const StudySeries& series : series_) {
@@ -418,9 +423,8 @@ void ReportBuilder::add_model_choices() {
     }
     if (rows.rows.empty()) return;
     add(ReportHeading{2, "Model choices"});
-    add(ReportParagraph{
-        "These cases are other models of the rock, each with the numerical settings of the scene: their "
-        "differences are no errors, and no finer step makes them smaller."});
+    add(ReportParagraph{"These cases are other models of the rock, each beside the own model with the same numerical "
+                        "settings: their differences are no errors, and no finer step makes them smaller."});
     add(std::move(rows));
     if (deviations.size() < 2) return;
     const EnsembleStatistics found = ensemble_statistics(deviations);
@@ -449,7 +453,8 @@ std::string ReportBuilder::sentence(const Advice& advice, const StudyMeasure& me
             names.push_back("(" + label_of(advice.not_confirmed[i]) + ")");
         const std::size_t others = advice.not_confirmed.size() - names.size();
         if (others > 0) names.push_back(fmt::format("{} others", others));
-        text += " Below it, but not trusted since finer cases are not or are missing: " + listed(names) + ".";
+        text += " Cheaper and below it too, but not trusted, since finer cases are above it or are missing: " +
+                listed(names) + ".";
     }
     return text;
 }

@@ -129,7 +129,7 @@ TEST(StudyReport, SeparatesModelChoicesFromErrors) {
     const std::string text = read_file(directory / "study.md");
     EXPECT_THAT(text, HasSubstr("## Model choices"));
     EXPECT_THAT(text, HasSubstr("+10 %"));
-    EXPECT_THAT(text, HasSubstr("For 5 % error on peak\\_stress: steps 50, kinematics affine"));
+    EXPECT_THAT(text, HasSubstr("For 5 % error on peak\\_stress: steps 50 (error 1 %)"));
 }
 
 TEST(StudyReport, OfNothingYetHasTheCasesOnlyAndNoPictures) {

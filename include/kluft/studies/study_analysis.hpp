@@ -175,7 +175,7 @@ struct Advice {
 [[nodiscard]] std::string group_label(const StudyTable& table, const std::vector<StudyGroup>& groups, std::size_t group,
                                       std::optional<std::size_t> without = {});
 
-/// The same with every setting in which any two groups differ.
+/// The same with every setting in which a group of the references' model differs from this one.
 [[nodiscard]] std::string full_group_label(const StudyTable& table, const std::vector<StudyGroup>& groups,
                                            std::size_t group);
 
