@@ -406,7 +406,7 @@ void draw_plot(Canvas& canvas, const CurvePlot& plot, const LegendGrid& below) {
     canvas.text_within(frame.size.x(), {frame.corner.x(), 24.0}, plot.title,
                        {.size = 11.5, .colour = text_colour, .bold = true});
     draw_axes(canvas, frame, plot.x_name, plot.y_name);
-    const Vec2 room(4.0, 4.0); // markers on the frame are drawn whole, but nothing above a limit
+    const Vec2 room(5.0, 5.0); // markers on the frame are drawn whole, but nothing above a limit
     const Vec2 above(0.0, plot.y_limit ? room.y() : 0.0);
     canvas.begin_clip(frame.corner - room + above, frame.size + 2.0 * room - above);
     for (const PlottedBand& band : plot.bands) draw_band(canvas, frame, band);

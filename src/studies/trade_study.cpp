@@ -177,12 +177,18 @@ private:
         if (is_known("solver.accuracy")) add("accuracy", {{"solver.accuracy", {"0.05", "0.02", "0.01"}}});
     }
 
+    /// Step counts of a method that is looked at beside the scene's: two, so that one can confirm the other.
+    [[nodiscard]] Texts own_and_twice() const {
+        const std::string& steps = *own(steps_key_);
+        return {steps, number_text(2.0 * *read_number(steps))};
+    }
+
     void add_methods() {
         const bool can_be_explicit = scene_.kinematics == Kinematics::affine && !reduces_strengths(scene_);
         if (scene_.integrator == Integrator::explicit_)
-            add("implicit", {{"analysis.integrator", {"implicit"}}});
+            add("implicit", {{steps_key_, own_and_twice()}, {"analysis.integrator", {"implicit"}}});
         else if (can_be_explicit)
-            add("explicit", {{"analysis.integrator", {"explicit"}}});
+            add("explicit", {{steps_key_, own_and_twice()}, {"analysis.integrator", {"explicit"}}});
     }
 
     void add_models() {
