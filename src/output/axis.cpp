@@ -1,6 +1,7 @@
 #include "kluft/output/axis.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -19,16 +20,58 @@ double round_step(double rough) {
     return best;
 }
 
+constexpr std::array<double, 3> digits{1.0, 2.0, 5.0};
+constexpr double log_slack = 1e-9;
+
+/// 1, 2 and 5 times the powers of ten, or the powers only, from low to high.
+std::vector<double> log_values(double low, double high, bool all) {
+    std::vector<double> values;
+    for (double power = std::floor(std::log10(low)); power <= std::log10(high) + log_slack; power += 1.0)
+        for (const double digit : digits) {
+            const double value = digit * std::pow(10.0, power);
+            const bool inside = value >= low * (1.0 - log_slack) && value <= high * (1.0 + log_slack);
+            if (inside && (all || digit == 1.0)) values.push_back(value);
+        }
+    return values;
+}
+
+std::string superscript(int exponent) {
+    static const std::array<const char*, 10> figures{"\u2070", "\u00b9", "\u00b2", "\u00b3", "\u2074",
+                                                     "\u2075", "\u2076", "\u2077", "\u2078", "\u2079"};
+    std::string text = exponent < 0 ? "\u207b" : "";
+    for (const char figure : fmt::format("{}", std::abs(exponent)))
+        text += figures[static_cast<std::size_t>(figure - '0')];
+    return text;
+}
+
+/// 0.002, 5000; beyond these as a digit times a power of ten.
+std::string log_label(double tick) {
+    if (tick >= 0.999e-3 && tick < 1e5) return fmt::format("{:.6g}", tick);
+    const double exponent = std::floor(std::log10(tick) + log_slack);
+    const double digit = std::round(tick / std::pow(10.0, exponent));
+    return (digit == 1.0 ? "" : fmt::format("{:.0f}\u00b7", digit)) + "10" + superscript(static_cast<int>(exponent));
+}
+
 } // namespace
 
 std::vector<double> Axis::ticks() const {
+    if (logarithmic) {
+        constexpr std::size_t few = 4;
+        auto values = log_values(low, high, false);
+        return values.size() < few ? log_values(low, high, true) : values;
+    }
     std::vector<double> values;
     const double slack = 1e-6;
     for (double i = std::ceil(low / step - slack); i <= high / step + slack; i += 1.0) values.push_back(i * step);
     return values;
 }
 
+double Axis::fraction(double value) const {
+    return logarithmic ? std::log(value / low) / std::log(high / low) : (value - low) / (high - low);
+}
+
 std::string Axis::label(double tick) const {
+    if (logarithmic) return log_label(tick);
     const int decimals = std::max(0, static_cast<int>(std::ceil(-std::log10(step) - 1e-9)));
     if (std::abs(tick) < 1e-9 * step) tick = 0.0;
     std::string text = fmt::format("{:.{}f}", tick, decimals);
@@ -45,9 +88,17 @@ Axis round_axis(double low, double high, int n_ticks) {
     return {std::floor(low / step + slack) * step, std::ceil(high / step - slack) * step, step};
 }
 
+Axis round_log_axis(double low, double high) {
+    if (!std::isfinite(low) || !std::isfinite(high) || low <= 0.0 || high < low) return {0.1, 1.0, 0.1, true};
+    const auto below = log_values(0.1 * low, low, true);
+    const auto above = log_values(high, 10.0 * high, true);
+    Axis axis{below.back(), above.front(), 0.1, true};
+    if (axis.high <= axis.low) axis.high = above.at(1);
+    return axis;
+}
+
 Vec2 PlotFrame::place(const Vec2& value) const {
-    return {corner.x() + size.x() * (value.x() - x.low) / (x.high - x.low),
-            corner.y() + size.y() * (y.high - value.y()) / (y.high - y.low)};
+    return {corner.x() + size.x() * x.fraction(value.x()), corner.y() + size.y() * (1.0 - y.fraction(value.y()))};
 }
 
 void draw_axes(Canvas& canvas, const PlotFrame& frame, const std::string& x_name, const std::string& y_name) {

@@ -25,6 +25,7 @@ constexpr double right_margin = 18.0;
 constexpr double pixels_per_point = 3.2;
 constexpr double percent = 100.0;
 constexpr double mega = 1e6;
+constexpr double band_opacity = 0.22;
 const Colour unbalanced_colour = colour(0xD7191C);
 const Colour reference_colour = colour(0x666666);
 const Colour text_colour = colour(0x222222);
@@ -33,8 +34,14 @@ const Colour white = colour(0xFFFFFF);
 /// Each curve has a colour; beyond as many curves as there are colours, dashes tell them apart.
 Stroke curve_stroke(const CurvePlot& plot, std::size_t index) {
     constexpr std::size_t n_colours = 7;
-    Stroke stroke{series_colour(index), 1.5, {}, true};
-    if (index >= n_colours || plot.curves[index].dashed) stroke.dash = {5.0, 3.0};
+    const PlottedCurve& curve = plot.curves[index];
+    const std::size_t number = curve.colour.value_or(index);
+    Stroke stroke{series_colour(number), 1.5, {}, true};
+    if (number >= n_colours || curve.dashed) stroke.dash = {5.0, 3.0};
+    if (curve.thin) {
+        stroke.width = 0.6;
+        stroke.colour.alpha = 0.5;
+    }
     return stroke;
 }
 
@@ -44,10 +51,33 @@ Colour reference_stroke_colour(const PlottedReference& reference) {
 
 bool finite(const Vec2& v) { return std::isfinite(v.x()) && std::isfinite(v.y()); }
 
-/// Smallest box around all that is plotted; always contains zero in y.
+/// Whether the axes of the plot have a place for it.
+bool has_place(const CurvePlot& plot, const Vec2& v) {
+    return finite(v) && !(plot.log_x && v.x() <= 0.0) && !(plot.log_y && v.y() <= 0.0);
+}
+
+/// The plot without what its axes have no place for.
+CurvePlot drawable(CurvePlot plot) {
+    if (!plot.log_x && !plot.log_y) return plot;
+    const double nowhere = std::numeric_limits<double>::quiet_NaN();
+    const auto hide = [&](Vec2& v) {
+        if (!has_place(plot, v)) v = {nowhere, nowhere};
+    };
+    for (PlottedCurve& curve : plot.curves) {
+        for (PlottedPoint& point : curve.points) hide(point.value);
+        for (Vec2& point : curve.fine) hide(point);
+        if (curve.peak) hide(*curve.peak);
+    }
+    std::erase_if(plot.references, [&](const PlottedReference& reference) {
+        return !has_place(plot, {reference.x.value_or(1.0), reference.y});
+    });
+    return plot;
+}
+
+/// Smallest box around all that is plotted.
 struct Range {
-    Vec2 low{std::numeric_limits<double>::infinity(), 0.0};
-    Vec2 high{-std::numeric_limits<double>::infinity(), 0.0};
+    Vec2 low = Vec2::Constant(std::numeric_limits<double>::infinity());
+    Vec2 high = Vec2::Constant(-std::numeric_limits<double>::infinity());
 
     void cover(const Vec2& v) {
         if (!finite(v)) return;
@@ -58,6 +88,12 @@ struct Range {
 
 Range range_of(const CurvePlot& plot) {
     Range range;
+    if (plot.y_from_zero && !plot.log_y) range.low.y() = range.high.y() = 0.0;
+    for (const PlottedBand& band : plot.bands)
+        for (std::size_t i = 0; i < band.x.size(); ++i) {
+            range.cover({band.x[i], band.low[i]});
+            range.cover({band.x[i], band.high[i]});
+        }
     for (const PlottedCurve& curve : plot.curves) {
         for (const PlottedPoint& point : curve.points) range.cover(point.value);
         for (const Vec2& point : curve.fine) range.cover(point);
@@ -68,16 +104,22 @@ Range range_of(const CurvePlot& plot) {
     return range;
 }
 
+double height_of(const Range& range) { return range.high.y() - range.low.y(); }
+
 PlotFrame frame_of(const CurvePlot& plot) {
     const Range range = range_of(plot);
     const bool any_text = std::any_of(plot.curves.begin(), plot.curves.end(),
                                       [](const PlottedCurve& curve) { return !curve.peak_text.empty(); });
-    const double room_above = any_text ? 1.1 : 1.04; // for the text beside a peak
+    const double room_above = any_text ? 0.1 : 0.04; // for the text beside a peak
     PlotFrame frame;
     frame.corner = {left_margin, plot.title.empty() ? 18.0 : 38.0};
     frame.size = Vec2(page_width - right_margin, plot_height - 46.0) - frame.corner;
-    frame.x = round_axis(std::min(0.0, range.low.x()), range.high.x(), 8);
-    frame.y = round_axis(range.low.y(), room_above * range.high.y(), 6);
+    frame.x = plot.log_x ? round_log_axis(range.low.x(), range.high.x())
+                         : round_axis(std::min(0.0, range.low.x()), range.high.x(), 8);
+    frame.y = plot.log_y
+                  ? round_log_axis(range.low.y(), range.high.y())
+                  : round_axis(range.low.y() - (plot.y_from_zero ? 0.0 : room_above * height_of(range)),
+                               range.high.y() + room_above * (plot.y_from_zero ? range.high.y() : height_of(range)), 6);
     if (plot.y_limit) frame.y = round_axis(std::min(range.low.y(), *plot.y_limit), *plot.y_limit, 6);
     return frame;
 }
@@ -123,15 +165,17 @@ void draw_curve(Canvas& canvas, const PlotFrame& frame, const PlottedCurve& curv
         faint.alpha = 0.35;
         canvas.polyline(places(frame, curve.fine), {faint, 0.6});
     }
-    draw_line(canvas, frame, curve.points, stroke);
+    if (curve.joined) draw_line(canvas, frame, curve.points, stroke);
+    if (curve.thin) return;
     constexpr std::size_t most_markers = 60;
+    const double radius = curve.joined ? 1.5 : 2.4;
     for (const PlottedPoint& point : curve.points) {
         if (!finite(point.value)) continue;
         const Vec2 at = frame.place(point.value);
         if (!point.balanced)
             draw_unbalanced_marker(canvas, at);
         else if (curve.points.size() <= most_markers)
-            canvas.circle(at, 1.5, stroke.colour, {stroke.colour, 0.3});
+            canvas.circle(at, radius, stroke.colour, {stroke.colour, 0.3});
     }
 }
 
@@ -181,7 +225,11 @@ Obstacles obstacles_of(const CurvePlot& plot, const PlotFrame& frame) {
     for (const PlottedCurve& curve : plot.curves) {
         std::vector<Vec2> values;
         for (const PlottedPoint& point : curve.points) values.push_back(point.value);
-        obstacles.lines.push_back(places(frame, values));
+        if (curve.joined) {
+            obstacles.lines.push_back(places(frame, values));
+        } else {
+            for (const Vec2& at : places(frame, values)) obstacles.lines.push_back({at, at + Vec2(0.1, 0.1)});
+        }
         if (!has_shown_peak(frame, curve)) continue;
         const Vec2 at = frame.place(*curve.peak);
         const double above = curve.peak_text.empty() ? 4.0 : 8.0 + 11.0 * static_cast<double>(curve.peak_text.size());
@@ -189,6 +237,45 @@ Obstacles obstacles_of(const CurvePlot& plot, const PlotFrame& frame) {
         obstacles.boxes.push_back({at - Vec2(beside, above), at + Vec2(beside, 4.0)});
     }
     return obstacles;
+}
+
+void draw_band(Canvas& canvas, const PlotFrame& frame, const PlottedBand& band) {
+    std::vector<Vec2> loop;
+    for (std::size_t i = 0; i < band.x.size(); ++i) loop.push_back(frame.place({band.x[i], band.high[i]}));
+    for (std::size_t i = band.x.size(); i-- > 0;) loop.push_back(frame.place({band.x[i], band.low[i]}));
+    Colour fill = series_colour(band.colour);
+    fill.alpha = band_opacity;
+    canvas.fill_polygon({loop}, fill);
+}
+
+/// Texts beside points, each on that side where it meets the fewest curves and texts.
+void draw_point_texts(Canvas& canvas, const PlotFrame& frame, const PlottedCurve& curve, const Colour& line,
+                      Obstacles& obstacles) {
+    const TextStyle style{.size = 7.5, .colour = line, .halo = 2.0};
+    constexpr double height = 6.0;
+    for (std::size_t i = 0; i < std::min(curve.points.size(), curve.point_texts.size()); ++i) {
+        const std::string& text = curve.point_texts[i];
+        if (text.empty() || !finite(curve.points[i].value)) continue;
+        const Vec2 at = frame.place(curve.points[i].value);
+        const double width = canvas.text_width(text, style);
+        PageBox best;
+        std::size_t fewest = std::numeric_limits<std::size_t>::max();
+        const std::vector<Vec2> corners{at + Vec2(6.0, -0.5 * height), at + Vec2(4.0, -4.0 - height),
+                                        at + Vec2(4.0, 4.0),           at + Vec2(-6.0 - width, -0.5 * height),
+                                        at + Vec2(-4.0 - width, 4.0),  at + Vec2(-4.0 - width, -4.0 - height),
+                                        at + Vec2(-0.5 * width, 7.0),  at + Vec2(-0.5 * width, -7.0 - height)};
+        for (const Vec2& low : corners) {
+            const PageBox box{low - Vec2(1.0, 1.0), low + Vec2(width + 1.0, height + 1.0)};
+            if (box.low.x() < frame.corner.x() || box.high.x() > frame.corner.x() + frame.size.x()) continue;
+            const std::size_t n_met = obstacles.met_by(box);
+            if (n_met >= fewest) continue;
+            fewest = n_met;
+            best = box;
+        }
+        if (fewest == std::numeric_limits<std::size_t>::max()) continue;
+        canvas.text({best.low.x() + 1.0, best.high.y() - 1.0}, text, style);
+        obstacles.boxes.push_back(best);
+    }
 }
 
 /// The label of a level stands above it or below, where it meets the fewest curves; rather to the right.
@@ -233,7 +320,22 @@ std::vector<LegendEntry> legend_of(const CurvePlot& plot) {
     std::vector<LegendEntry> entries;
     for (std::size_t i = 0; i < plot.curves.size(); ++i) {
         if (plot.curves[i].label.empty()) continue;
-        entries.push_back(line_entry(plot.curves[i].label, curve_stroke(plot, i)));
+        const Stroke stroke = curve_stroke(plot, i);
+        if (plot.curves[i].joined) {
+            entries.push_back(line_entry(plot.curves[i].label, stroke));
+        } else {
+            entries.push_back({plot.curves[i].label, [line = stroke.colour](Canvas& canvas, const Vec2& middle) {
+                                   canvas.circle(middle, 2.4, line, {line, 0.3});
+                               }});
+        }
+    }
+    for (const PlottedBand& band : plot.bands) {
+        if (band.label.empty()) continue;
+        entries.push_back({band.label, [number = band.colour](Canvas& canvas, const Vec2& middle) {
+                               Colour fill = series_colour(number);
+                               fill.alpha = band_opacity;
+                               canvas.fill_rectangle(middle - Vec2(9.0, 4.0), {18.0, 8.0}, fill);
+                           }});
     }
     for (const PlottedReference& reference : plot.references) {
         const bool listed = std::any_of(entries.begin(), entries.end(),
@@ -243,7 +345,7 @@ std::vector<LegendEntry> legend_of(const CurvePlot& plot) {
         entries.push_back(
             {reference.label, [line](Canvas& canvas, const Vec2& middle) { draw_cross(canvas, middle, line); }});
     }
-    if (any_unbalanced(plot)) entries.push_back({"unbalanced step", draw_unbalanced_marker});
+    if (any_unbalanced(plot)) entries.push_back({plot.unbalanced_name, draw_unbalanced_marker});
     return entries;
 }
 
@@ -295,7 +397,7 @@ void draw_legend_inside(Canvas& canvas, const PlotFrame& frame, const CurvePlot&
 
 /// The legend of several curves stands below the plot.
 LegendGrid legend_below(const CurvePlot& plot) {
-    if (plot.curves.size() < 2) return {};
+    if (plot.curves.size() < 2 && plot.bands.empty()) return {};
     return {legend_of(plot), page_width - left_margin - right_margin};
 }
 
@@ -304,19 +406,23 @@ void draw_plot(Canvas& canvas, const CurvePlot& plot, const LegendGrid& below) {
     canvas.text_within(frame.size.x(), {frame.corner.x(), 24.0}, plot.title,
                        {.size = 11.5, .colour = text_colour, .bold = true});
     draw_axes(canvas, frame, plot.x_name, plot.y_name);
-    const Vec2 room(4.0, 4.0); // markers on the frame are drawn whole, but nothing above a limit
+    const Vec2 room(5.0, 5.0); // markers on the frame are drawn whole, but nothing above a limit
     const Vec2 above(0.0, plot.y_limit ? room.y() : 0.0);
     canvas.begin_clip(frame.corner - room + above, frame.size + 2.0 * room - above);
+    for (const PlottedBand& band : plot.bands) draw_band(canvas, frame, band);
     draw_references(canvas, frame, plot.references);
+    Obstacles obstacles = obstacles_of(plot, frame);
+    for (std::size_t i = 0; i < plot.curves.size(); ++i) // below the markers, which they might hide
+        draw_point_texts(canvas, frame, plot.curves[i], curve_stroke(plot, i).colour, obstacles);
     for (std::size_t i = 0; i < plot.curves.size(); ++i)
         draw_curve(canvas, frame, plot.curves[i], curve_stroke(plot, i));
     canvas.end_clip();
-    Obstacles obstacles = obstacles_of(plot, frame);
     below.draw(canvas, {frame.corner.x(), plot_height});
-    if (plot.curves.size() < 2) draw_legend_inside(canvas, frame, plot, obstacles);
+    if (plot.curves.size() < 2 && plot.bands.empty()) draw_legend_inside(canvas, frame, plot, obstacles);
     for (const PlottedReference& reference : plot.references)
         if (!reference.x) draw_level_label(canvas, frame, reference, obstacles);
-    for (std::size_t i = 0; i < plot.curves.size(); ++i) draw_peak(canvas, frame, plot.curves[i], series_colour(i));
+    for (std::size_t i = 0; i < plot.curves.size(); ++i)
+        draw_peak(canvas, frame, plot.curves[i], series_colour(plot.curves[i].colour.value_or(i)));
 }
 
 Vec2 plotted(const StepRecord& record) { return {percent * record.axial_strain, record.differential_stress / mega}; }
@@ -356,7 +462,8 @@ CurvePlot stress_strain_plot(const std::string& title, const std::vector<RunCurv
     return plot;
 }
 
-std::string draw_curves(const CurvePlot& plot, PictureFormat format) {
+std::string draw_curves(const CurvePlot& given, PictureFormat format) {
+    const CurvePlot plot = drawable(given);
     const LegendGrid below = legend_below(plot);
     return draw_picture(format, page_width, plot_height + below.height(), pixels_per_point,
                         [&](Canvas& canvas) { draw_plot(canvas, plot, below); });

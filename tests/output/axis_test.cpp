@@ -1,5 +1,6 @@
 #include "kluft/output/axis.hpp"
 
+#include <cmath>
 #include <limits>
 
 #include <gmock/gmock.h>
@@ -32,6 +33,33 @@ TEST(Axis, SurvivesRangesWithoutLength) {
     for (const auto& axis : {round_axis(0.0, 0.0, 5), round_axis(2.0, 2.0, 5), round_axis(infinity, -infinity, 5)}) {
         EXPECT_GT(axis.high, axis.low);
         EXPECT_LE(axis.ticks().size(), 12U);
+    }
+}
+
+TEST(Axis, LogarithmicHasTicksAtPowersOfTenOrAtFewOfThemBetween) {
+    const Axis wide = round_log_axis(3e-7, 0.04);
+    EXPECT_DOUBLE_EQ(wide.low, 2e-7);
+    EXPECT_DOUBLE_EQ(wide.high, 0.05);
+    EXPECT_THAT(wide.ticks(), ::testing::SizeIs(5)); // 1e-6 ... 1e-2
+    const Axis narrow = round_log_axis(1.2, 15.0);
+    EXPECT_THAT(narrow.ticks(), ::testing::Pointwise(::testing::DoubleEq(), {1.0, 2.0, 5.0, 10.0, 20.0}));
+    EXPECT_DOUBLE_EQ(narrow.fraction(1.0), 0.0);
+    EXPECT_NEAR(narrow.fraction(std::sqrt(20.0)), 0.5, 1e-12);
+}
+
+TEST(Axis, LogarithmicLabelsAreShort) {
+    const Axis axis = round_log_axis(1e-7, 1e6);
+    EXPECT_EQ(axis.label(0.002), "0.002");
+    EXPECT_EQ(axis.label(100.0), "100");
+    EXPECT_EQ(axis.label(1e-5), "10\u207b\u2075");
+    EXPECT_EQ(axis.label(2e-6), "2\u00b710\u207b\u2076");
+}
+
+TEST(Axis, LogarithmicSurvivesValuesThatHaveNoLogarithm) {
+    for (const auto& axis : {round_log_axis(0.0, 1.0), round_log_axis(-1.0, 2.0), round_log_axis(2.0, 2.0),
+                             round_log_axis(std::numeric_limits<double>::infinity(), 1.0)}) {
+        EXPECT_GT(axis.low, 0.0);
+        EXPECT_GT(axis.high, axis.low);
     }
 }
 

@@ -22,9 +22,22 @@ struct PlottedCurve {
     std::vector<PlottedPoint> points;
     std::vector<Vec2> fine; ///< drawn faintly underneath: every balanced equilibrium
     std::optional<Vec2> peak;
-    std::vector<std::string> peak_text; ///< lines beside the peak
-    bool peak_reached = true;           ///< otherwise drawn dashed: the curve was still rising
-    bool dashed = false;                ///< so that a curve that it covers is seen
+    std::vector<std::string> peak_text;        ///< lines beside the peak
+    bool peak_reached = true;                  ///< otherwise drawn dashed: the curve was still rising
+    bool dashed = false;                       ///< so that a curve that it covers is seen
+    bool joined = true;                        ///< by lines; otherwise larger markers only
+    bool thin = false;                         ///< a faint line without markers
+    std::optional<std::size_t> colour = {};    ///< number of its colour; otherwise its place among the curves
+    std::vector<std::string> point_texts = {}; ///< beside its points, in their order; may be empty or shorter
+};
+
+/// The area between two lines over common places.
+struct PlottedBand {
+    std::string label; ///< in the legend; empty: not listed there
+    std::vector<double> x;
+    std::vector<double> low;
+    std::vector<double> high;
+    std::size_t colour = 0; ///< number of its colour
 };
 
 /// A published value to compare with, in the units of the plot: a level across it (no x; the label stands on the line)
@@ -43,6 +56,11 @@ struct CurvePlot {
     std::vector<PlottedCurve> curves;
     std::vector<PlottedReference> references;
     std::optional<double> y_limit = {}; ///< end of the vertical axis, which cuts off what is above; none: all is shown
+    std::vector<PlottedBand> bands = {};
+    bool log_x = false; ///< what is not above zero is not shown then
+    bool log_y = false;
+    bool y_from_zero = true;                         ///< otherwise the axis covers the values only
+    std::string unbalanced_name = "unbalanced step"; ///< of hollow red markers in the legend
 };
 
 /// The rows of one run as written to its tables.

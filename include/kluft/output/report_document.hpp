@@ -1,0 +1,50 @@
+// A report of headings, paragraphs, lists, tables and pictures: as Markdown, and as one HTML file that needs no other.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace kluft {
+
+struct ReportHeading {
+    int level = 2; ///< 1 is the title
+    std::string text;
+};
+
+struct ReportParagraph {
+    std::string text;
+};
+
+struct ReportList {
+    std::vector<std::string> items;
+};
+
+struct ReportTable {
+    std::vector<std::string> head;
+    std::vector<std::vector<std::string>> rows;
+    std::vector<std::size_t> marked = {}; ///< rows that stand out in the HTML
+    std::size_t n_words = 1;              ///< columns from the left that hold words; the others are set to the right
+};
+
+/// An SVG picture that stands beside the Markdown and inside the HTML.
+struct ReportPicture {
+    std::string file; ///< name of the PNG beside the report
+    std::string text; ///< what it shows
+    std::string svg;
+};
+
+using ReportPart = std::variant<ReportHeading, ReportParagraph, ReportList, ReportTable, ReportPicture>;
+using ReportDocument = std::vector<ReportPart>;
+
+/// Text is plain: what has a meaning in Markdown or HTML is escaped.
+[[nodiscard]] std::string report_markdown(const ReportDocument& document);
+/// The title is that of the first heading.
+[[nodiscard]] std::string report_html(const ReportDocument& document);
+
+/// Base64 with padding (RFC 4648).
+[[nodiscard]] std::string base64(std::string_view bytes);
+
+} // namespace kluft

@@ -1,0 +1,527 @@
+#include "kluft/studies/study_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "kluft/core/diagnostics.hpp"
+#include "kluft/core/nearest_name.hpp"
+#include "kluft/output/atomic_file.hpp"
+#include "kluft/output/report_document.hpp"
+#include "kluft/studies/ensemble.hpp"
+#include "kluft/studies/study_analysis.hpp"
+#include "kluft/studies/study_pictures.hpp"
+
+namespace kluft {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double percent = 100.0;
+constexpr double precision_wanted = 0.01; // of the mean of an ensemble
+constexpr const char* unknown = "-";
+constexpr std::string_view picture_prefix = "study-";
+
+std::string percent_text(double fraction) { return fmt::format("{:.3g} %", percent * fraction); }
+
+/// With its sign if it has one; nothing is written of what is round-off.
+std::string error_text(double error, bool has_sign) {
+    constexpr double round_off = 1e-10;
+    if (std::abs(error) < round_off) return "0 %";
+    return has_sign ? fmt::format("{:+.3g} %", percent * error) : percent_text(error);
+}
+
+std::string value_text(const StudyMeasure& measure, double value) {
+    const QuantityUnit unit = quantity_unit(measure.name);
+    return fmt::format("{:.5g}{}{}", value / unit.size, unit.name.empty() ? "" : " ", unit.name);
+}
+
+std::string seconds_text(double seconds) { return fmt::format("{:.3g} s", seconds); }
+
+std::string counted(std::size_t n, const std::string& thing) {
+    return fmt::format("{} {}{}", n, thing, n == 1 ? "" : "s");
+}
+
+std::string status_text(CaseStatus status) {
+    switch (status) {
+    case CaseStatus::waiting:
+        return "waiting";
+    case CaseStatus::running:
+        return "running";
+    case CaseStatus::done:
+        return "done";
+    case CaseStatus::no_equilibrium:
+        return "no equilibrium";
+    case CaseStatus::refused:
+        return "refused";
+    case CaseStatus::failed:
+        return "failed";
+    }
+    return "";
+}
+
+/// "kept-letters-only" for the name of a file.
+std::string file_word(const std::string& text) {
+    std::string word;
+    for (const char c : text) {
+        const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+        word += plain || c == '_' ? c : '-';
+    }
+    return word;
+}
+
+/// The report while it grows.
+class ReportBuilder {
+public:
+    ReportBuilder(const StudyTable& table, fs::path directory, const StudyReportOptions& options)
+        : table_(table), directory_(std::move(directory)), options_(options), measures_(study_measures(table)),
+          groups_(study_groups(table)), series_(study_series(table, groups_)),
+          other_models_(other_model_marks(table, groups_)) {
+        for (std::size_t g = 0; g < groups_.size(); ++g) labels_.push_back(group_label(table, groups_, g));
+        for (const StudyCase& each : table.cases) {
+            runs_.push_back(read_case_run(table.directory / "cases" / each.name));
+            unbalanced_.push_back(runs_.back() && runs_.back()->unbalanced_steps > 0);
+        }
+        choose_measure();
+    }
+
+    ReportDocument build() {
+        add_head();
+        add_convergence();
+        add_work_precision();
+        add_replicas();
+        add_curves();
+        add_cases();
+        add_model_choices();
+        add_recommendation();
+        return std::move(document_);
+    }
+
+private:
+    void add(ReportPart part) { document_.push_back(std::move(part)); }
+
+    void choose_measure();
+    void add_picture(const std::string& name, const CurvePlot& plot);
+    void add_head();
+    void add_convergence();
+    void add_work_precision();
+    void add_replicas();
+    void add_curves();
+    void add_cases();
+    void add_failures();
+    void add_model_choices();
+    void add_recommendation();
+    void add_band(const StudyGroup& group, const std::string& label);
+    [[nodiscard]] std::string sentence(const Advice& advice, const StudyMeasure& measure) const;
+    [[nodiscard]] std::string reference_doubt(const StudyMeasure& measure) const;
+    [[nodiscard]] std::vector<bool> same_model() const;
+    [[nodiscard]] const std::string& label_of(std::size_t group) const { return labels_[group]; }
+    /// The quantity that is recommended for, and the curve.
+    [[nodiscard]] std::vector<const StudyMeasure*> judged_measures() const;
+
+    const StudyTable& table_;
+    fs::path directory_;
+    const StudyReportOptions& options_;
+    std::vector<StudyMeasure> measures_;
+    std::vector<StudyGroup> groups_;
+    std::vector<StudySeries> series_;
+    std::vector<bool> other_models_;           ///< per group
+    std::vector<std::string> labels_;          ///< per group
+    std::vector<std::optional<CaseRun>> runs_; ///< per case
+    std::vector<bool> unbalanced_;             ///< per case
+    std::optional<std::size_t> chosen_;        ///< index of the measure that is recommended for
+    ReportDocument document_;
+};
+
+void ReportBuilder::choose_measure() {
+    if (!options_.quantity.empty() && options_.quantity != "curve" &&
+        std::ranges::find(table_.quantities, options_.quantity) == table_.quantities.end())
+        throw InputError("study report: expected a quantity of the study, found '" + options_.quantity + "'" +
+                         suggestion(options_.quantity, table_.quantities));
+    for (std::size_t i = 0; i < measures_.size() && !chosen_; ++i)
+        if (options_.quantity.empty() || measures_[i].name == options_.quantity) chosen_ = i;
+}
+
+std::vector<const StudyMeasure*> ReportBuilder::judged_measures() const {
+    std::vector<const StudyMeasure*> judged;
+    for (std::size_t i = 0; i < measures_.size(); ++i) {
+        const bool has_errors = std::ranges::any_of(
+            measures_[i].errors, [](const std::optional<double>& error) { return error.has_value(); });
+        if (has_errors && (chosen_ == i || measures_[i].is_curve)) judged.push_back(&measures_[i]);
+    }
+    return judged;
+}
+
+void ReportBuilder::add_picture(const std::string& name, const CurvePlot& plot) {
+    const std::string stem = std::string(picture_prefix) + file_word(name);
+    const std::string svg = draw_curves(plot, PictureFormat::svg);
+    write_file(directory_ / (stem + ".svg"), svg);
+    write_file(directory_ / (stem + ".png"), draw_curves(plot, PictureFormat::png));
+    add(ReportPicture{stem + ".png", plot.title, svg});
+}
+
+void ReportBuilder::add_head() {
+    add(ReportHeading{1, table_.title.empty() ? "Study" : table_.title});
+    std::map<CaseStatus, std::size_t> counts;
+    double cpu = 0.0;
+    for (const StudyCase& each : table_.cases) {
+        ++counts[each.status];
+        cpu += each.cpu_s.value_or(0.0);
+    }
+    std::vector<std::string> parts;
+    for (const auto& [status, count] : counts) parts.push_back(fmt::format("{} {}", count, status_text(status)));
+    std::vector<std::string> items{fmt::format("{}: {}; {} of CPU time in all.", counted(table_.cases.size(), "case"),
+                                               listed(parts), seconds_text(cpu)),
+                                   "Varied: " + listed(table_.parameters) + "."};
+    if (!table_.reference_name.empty()) items.push_back("Errors are those against " + table_.reference_name + ".");
+    const auto n_unbalanced = std::ranges::count(unbalanced_, true);
+    if (n_unbalanced > 0)
+        items.push_back(fmt::format("{} unbalanced load steps: marked in the plots, and never recommended.",
+                                    counted(static_cast<std::size_t>(n_unbalanced), "case") +
+                                        (n_unbalanced == 1 ? " has" : " have")));
+    add(ReportList{std::move(items)});
+}
+
+/// What a series says of a measure, in words.
+std::string verdict_text(const StudyMeasure& measure, const Convergence& result, std::size_t n_values) {
+    const std::string scatter = percent_text(result.scatter);
+    switch (result.kind) {
+    case ConvergenceKind::too_few:
+        return n_values < 2 ? "one value only" : fmt::format("two values: {} apart", scatter);
+    case ConvergenceKind::constant:
+        return "no change";
+    case ConvergenceKind::monotone:
+        return fmt::format("order {:.2g}, limit {} \u00b1 {}", *result.order, value_text(measure, *result.limit),
+                           percent_text(*result.uncertainty));
+    case ConvergenceKind::unsettled:
+        return fmt::format("one way, but no order: finest value \u00b1 {}", percent_text(*result.uncertainty));
+    case ConvergenceKind::scattered:
+        return fmt::format("no order: scatter {}", scatter);
+    }
+    return "";
+}
+
+void ReportBuilder::add_convergence() {
+    ReportTable rows{{"quantity", "refined", "with", "from", "to", "finest value", "verdict"}, {}, {}, 7};
+    for (const StudyMeasure& measure : measures_) {
+        if (measure.is_curve) continue;
+        for (const StudySeries& series : series_) {
+            const SeriesValues found = series_values(table_, groups_, series, measure);
+            if (found.values.empty()) continue;
+            const auto setting = [&](const SeriesLevel& level) {
+                return groups_[level.group].settings[series.parameter];
+            };
+            rows.rows.push_back({measure.name, table_.parameters[series.parameter],
+                                 group_label(table_, groups_, series.levels.front().group, series.parameter),
+                                 setting(series.levels.front()), setting(series.levels.back()),
+                                 value_text(measure, found.values.back()),
+                                 verdict_text(measure, convergence(found.sizes, found.values), found.values.size())});
+        }
+    }
+    if (rows.rows.empty()) return;
+    add(ReportHeading{2, "Convergence"});
+    add(ReportParagraph{
+        "Richardson's extrapolation of the last four values of each series (three where there are no "
+        "more): the observed order p of q = q0 + C h^p, the limit q0, and behind \u00b1 the uncertainty "
+        "of the finest value against it (grid convergence index). Where values go up and down there "
+        "is no order and no limit; the scatter is the range of these values over their mean."});
+    add(std::move(rows));
+    if (std::ranges::find(measures_, std::string("residual_stress"), &StudyMeasure::name) != measures_.end())
+        add(ReportParagraph{
+            "residual_stress comes after the peak, where runs part from each other: what single runs say "
+            "of it does not converge. Only its mean over replicas means something, with its "
+            "confidence."});
+    if (!chosen_ || measures_[*chosen_].is_curve) return;
+    std::map<std::size_t, std::vector<StudySeries>> by_parameter;
+    for (const StudySeries& series : series_) {
+        if (other_models_[series.levels.front().group]) continue;
+        by_parameter[series.parameter].push_back(series);
+    }
+    for (const auto& [parameter, series] : by_parameter)
+        add_picture("convergence-" + table_.parameters[parameter],
+                    convergence_plot(table_, groups_, series, measures_[*chosen_]));
+}
+
+std::vector<bool> ReportBuilder::same_model() const {
+    std::vector<bool> same(table_.cases.size(), false);
+    for (std::size_t g = 0; g < groups_.size(); ++g)
+        for (const std::size_t i : groups_[g].cases) same[i] = !other_models_[g];
+    return same;
+}
+
+void ReportBuilder::add_work_precision() {
+    bool has_heading = false;
+    for (const StudyMeasure* const measure : judged_measures()) {
+        const auto points = work_precision(table_, *measure, same_model(), unbalanced_);
+        if (points.size() < 2) continue;
+        if (!std::exchange(has_heading, true)) {
+            add(ReportHeading{2, "Error against time"});
+            add(ReportParagraph{"Each point is a case that ended as it should. The dashed line joins those that no "
+                                "other case beats in both cost and error; a single point of it may be a lucky hit."});
+        }
+        add_picture("work-" + measure->name, work_precision_plot(table_, groups_, series_, *measure, points));
+    }
+}
+
+void ReportBuilder::add_band(const StudyGroup& group, const std::string& label) {
+    std::vector<CaseRun> runs;
+    std::vector<std::vector<Vec2>> curves;
+    for (const std::size_t i : group.cases) {
+        if (table_.cases[i].status != CaseStatus::done || !runs_[i] || runs_[i]->curve.size() < 2) continue;
+        runs.push_back(*runs_[i]);
+        curves.push_back(runs_[i]->curve);
+    }
+    constexpr int n_points = 201;
+    const CurveBand band = curve_band(curves, n_points);
+    if (band.x.empty()) return;
+    add_picture("band-" + label, band_plot(fmt::format("{} replicas, {}", runs.size(), label), runs, band));
+    const auto top = std::ranges::max_element(band.mean);
+    const auto peak = static_cast<std::size_t>(top - band.mean.begin());
+    if (peak + 1 == band.mean.size()) return;
+    add(ReportParagraph{fmt::format(
+        "The mean curve has its highest point, {:.4g} \u00b1 {:.2g} MPa, at {:.3g} % strain; at the end of the common "
+        "range, {:.3g} %, it is {:.4g} \u00b1 {:.2g} MPa (one standard deviation, {:.2g} % of the mean). Values after "
+        "the peak of a single run mean little: they are given with this band only.",
+        *top, band.deviation[peak], band.x[peak], band.x.back(), band.mean.back(), band.deviation.back(),
+        percent * band.deviation.back() / std::abs(band.mean.back()))});
+}
+
+/// Done members' values of a measure.
+std::vector<double> member_values(const StudyTable& table, const StudyGroup& group, const StudyMeasure& measure) {
+    std::vector<double> values;
+    for (const std::size_t i : group.cases)
+        if (table.cases[i].status == CaseStatus::done && measure.values[i]) values.push_back(*measure.values[i]);
+    return values;
+}
+
+void ReportBuilder::add_replicas() {
+    ReportTable rows{
+        {"settings", "quantity", "members", "mean", "standard deviation", "95 % confidence", "members for \u00b11 %"},
+        {},
+        {},
+        2};
+    std::vector<std::size_t> ensembles;
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+        for (const StudyMeasure& measure : measures_) {
+            const auto values = member_values(table_, groups_[g], measure);
+            if (values.size() < 2) continue;
+            const EnsembleStatistics found = ensemble_statistics(values);
+            const double deviation = found.mean != 0.0 ? found.deviation / std::abs(found.mean) : 0.0;
+            rows.rows.push_back({label_of(g), measure.name, fmt::format("{}", found.n), value_text(measure, found.mean),
+                                 percent_text(deviation),
+                                 "\u00b1 " + percent_text(*found.half_width / std::max(std::abs(found.mean), 1e-300)),
+                                 fmt::format("{}", members_needed(deviation, precision_wanted))});
+        }
+        if (groups_[g].cases.size() > 1) ensembles.push_back(g);
+    }
+    if (rows.rows.empty()) return;
+    add(ReportHeading{2, "Replicas"});
+    add(ReportParagraph{"Copies that differ in nothing but small perturbations. The confidence is that of the mean "
+                        "(Student's t); the last column says how many members would bring it to \u00b11 %, if the "
+                        "standard deviation stays as it is."});
+    add(std::move(rows));
+    constexpr std::size_t most_bands = 6;
+    if (ensembles.size() > most_bands) {
+        add(ReportParagraph{fmt::format("Bands are drawn for {} of {} ensembles, the last ones of the table.",
+                                        most_bands, ensembles.size())});
+        ensembles.erase(ensembles.begin(), ensembles.end() - most_bands);
+    }
+    for (const std::size_t g : ensembles) add_band(groups_[g], label_of(g));
+}
+
+void ReportBuilder::add_curves() {
+    constexpr std::size_t most_pictures = 8;
+    std::size_t n_pictures = 0;
+    for (const StudySeries& series : series_) {
+        std::vector<CaseRun> runs;
+        std::vector<std::string> labels;
+        for (const SeriesLevel& level : series.levels) {
+            const std::size_t first = groups_[level.group].cases.front();
+            if (!runs_[first] || runs_[first]->points.empty()) continue;
+            runs.push_back(*runs_[first]);
+            labels.push_back(groups_[level.group].settings[series.parameter]);
+        }
+        if (runs.size() < 2 || n_pictures == most_pictures) continue;
+        if (n_pictures++ == 0) {
+            add(ReportHeading{2, "Curves"});
+            add(ReportParagraph{"Up to the peak the curves of a series go to one; what a single run does after its "
+                                "peak is one of many ways that are equally likely."});
+        }
+        const std::string with = group_label(table_, groups_, series.levels.front().group, series.parameter);
+        const std::string& key = table_.parameters[series.parameter];
+        add_picture(fmt::format("curves-{}-{}", key, with),
+                    curves_plot(fmt::format("{}, by {}", with, key), runs, labels));
+    }
+}
+
+void ReportBuilder::add_cases() {
+    if (table_.cases.empty()) return;
+    ReportTable rows{{"case"}, {}, {}, 0};
+    const auto references = reference_marks(table_);
+    const bool with_variants = std::ranges::any_of(table_.cases, [](const StudyCase& c) { return !c.variant.empty(); });
+    const bool with_replicas = std::ranges::any_of(table_.cases, [](const StudyCase& c) { return c.replica > 0; });
+    if (with_variants) rows.head.emplace_back("variant");
+    for (const std::string& parameter : table_.parameters) rows.head.push_back(parameter);
+    if (with_replicas) rows.head.emplace_back("replica");
+    rows.head.emplace_back("status");
+    rows.n_words = rows.head.size();
+    for (const StudyMeasure& measure : measures_) {
+        if (!measure.is_curve) rows.head.push_back(measure.name);
+        rows.head.emplace_back(measure.is_curve ? "error of the curve" : "error");
+    }
+    rows.head.emplace_back("CPU time");
+    for (std::size_t i = 0; i < table_.cases.size(); ++i) {
+        const StudyCase& each = table_.cases[i];
+        std::vector<std::string> row{each.name};
+        if (with_variants) row.push_back(each.variant);
+        for (const std::string& setting : each.settings) row.push_back(setting.empty() ? "as the scene" : setting);
+        if (with_replicas) row.push_back(fmt::format("{}", each.replica));
+        row.push_back(references[i] ? "reference" : status_text(each.status) + (unbalanced_[i] ? ", unbalanced" : ""));
+        for (const StudyMeasure& measure : measures_) {
+            if (!measure.is_curve) row.push_back(measure.values[i] ? value_text(measure, *measure.values[i]) : unknown);
+            row.push_back(measure.errors[i] ? error_text(*measure.errors[i], !measure.is_curve) : unknown);
+        }
+        row.push_back(each.cpu_s ? seconds_text(*each.cpu_s) : unknown);
+        if (each.status != CaseStatus::done) rows.marked.push_back(rows.rows.size());
+        rows.rows.push_back(std::move(row));
+    }
+    add(ReportHeading{2, "Cases"});
+    add(std::move(rows));
+    add_failures();
+}
+
+void ReportBuilder::add_failures() {
+    ReportTable rows{{"case", "how it ended", "why"}, {}, {}, 3};
+    for (const StudyCase& each : table_.cases) {
+        if (each.status == CaseStatus::done || each.status == CaseStatus::waiting || each.status == CaseStatus::running)
+            continue;
+        rows.rows.push_back({each.name, status_text(each.status), each.reason.empty() ? unknown : each.reason});
+    }
+    if (rows.rows.empty()) return;
+    add(ReportHeading{2, "Cases without a result"});
+    add(ReportParagraph{"They take no part in what this report concludes."});
+    add(std::move(rows));
+}
+
+void ReportBuilder::add_model_choices() {
+    if (!chosen_ || measures_[*chosen_].is_curve) return;
+    const StudyMeasure& measure = measures_[*chosen_];
+    ReportTable rows{{"choice", measure.name, "against the own model", "CPU time against it"}, {}, {}, 1};
+    std::vector<double> deviations;
+    for (const ModelChoice& choice : model_choices(table_, groups_, measure)) {
+        const auto value = group_mean(table_, groups_[choice.group], measure.values);
+        if (choice.deviation) deviations.push_back(*choice.deviation);
+        rows.rows.push_back({label_of(choice.group), value ? value_text(measure, *value) : unknown,
+                             choice.deviation ? fmt::format("{:+.3g} %", percent * *choice.deviation) : unknown,
+                             choice.cost_ratio ? fmt::format("{:.3g}", *choice.cost_ratio) : unknown});
+    }
+    if (rows.rows.empty()) return;
+    add(ReportHeading{2, "Model choices"});
+    add(ReportParagraph{"These cases are other models of the rock, each beside the own model with the same numerical "
+                        "settings: their differences are no errors, and no finer step makes them smaller."});
+    add(std::move(rows));
+    if (deviations.size() < 2) return;
+    const EnsembleStatistics found = ensemble_statistics(deviations);
+    add(ReportParagraph{
+        fmt::format("Over {} choices {} differs from that of the own model by {:+.2g} % in the mean (bias) "
+                    "with a standard deviation of {:.2g} % (scatter).",
+                    found.n, measure.name, percent * found.mean, percent * found.deviation)});
+}
+
+std::string ReportBuilder::sentence(const Advice& advice, const StudyMeasure& measure) const {
+    const std::string what = measure.is_curve ? std::string("in the whole curve") : "on " + measure.name;
+    std::string text = fmt::format("For {:.3g} % error {}: ", percent * advice.bound, what);
+    if (advice.group) {
+        text +=
+            fmt::format("{} (error {:.2g} %) costs {} of CPU time", full_group_label(table_, groups_, *advice.group),
+                        percent * advice.error, seconds_text(advice.cpu_s));
+        if (advice.reference_share) text += fmt::format(" ({:.2g} of the reference)", *advice.reference_share);
+        text += ".";
+    } else {
+        text += "no settings of this study hold it with a finer case that confirms them.";
+    }
+    if (!advice.not_confirmed.empty()) {
+        constexpr std::size_t most_named = 3;
+        std::vector<std::string> names;
+        for (std::size_t i = 0; i < std::min(most_named, advice.not_confirmed.size()); ++i)
+            names.push_back("(" + label_of(advice.not_confirmed[i]) + ")");
+        const std::size_t others = advice.not_confirmed.size() - names.size();
+        if (others > 0) names.push_back(fmt::format("{} others", others));
+        text += " Cheaper and below it too, but not trusted, since finer cases are above it or are missing: " +
+                listed(names) + ".";
+    }
+    return text;
+}
+
+/// What is known of the reference's own error.
+std::string ReportBuilder::reference_doubt(const StudyMeasure& measure) const {
+    const auto references = reference_marks(table_);
+    if (measure.is_curve || std::ranges::find(references, true) == references.end()) return "";
+    std::optional<double> uncertainty;
+    std::optional<double> scatter;
+    for (const StudySeries& series : series_) {
+        const StudyGroup& finest = groups_[series.levels.back().group];
+        if (std::ranges::none_of(finest.cases, [&](std::size_t i) { return references[i]; })) continue;
+        const SeriesValues found = series_values(table_, groups_, series, measure);
+        const Convergence result = convergence(found.sizes, found.values);
+        if (result.uncertainty) uncertainty = std::max(uncertainty.value_or(0.0), *result.uncertainty);
+        if (result.kind == ConvergenceKind::scattered) scatter = std::max(scatter.value_or(0.0), result.scatter);
+    }
+    if (scatter)
+        return fmt::format("The values that lead to the reference scatter by {}: errors below that mean nothing.",
+                           percent_text(*scatter));
+    if (uncertainty)
+        return fmt::format("The reference itself is uncertain by {}, which comes on top.", percent_text(*uncertainty));
+    return "The reference's own error is not known from this study, and comes on top.";
+}
+
+void ReportBuilder::add_recommendation() {
+    const auto judged = judged_measures();
+    if (judged.empty()) return;
+    bool any_cost = false;
+    for (const StudyCase& each : table_.cases) any_cost = any_cost || each.cpu_s.has_value();
+    if (!any_cost) return;
+    add(ReportHeading{2, "Recommendation"});
+    add(ReportParagraph{"The cheapest settings whose error is below a bound, where every case that is finer in its "
+                        "steps, tolerances or intervals is below it too. Among the cases of the reference's own model "
+                        "of the rock."});
+    for (const StudyMeasure* const measure : judged) {
+        std::vector<std::string> items;
+        for (const Advice& advice : cheapest_settings(table_, groups_, *measure, unbalanced_, options_.bounds))
+            items.push_back(sentence(advice, *measure));
+        add(ReportList{std::move(items)});
+        const std::string doubt = reference_doubt(*measure);
+        if (!doubt.empty()) add(ReportParagraph{doubt});
+    }
+}
+
+/// Pictures of an earlier report.
+void remove_pictures(const fs::path& directory) {
+    std::vector<fs::path> old;
+    std::error_code error;
+    for (fs::directory_iterator entry(directory, error), end; !error && entry != end; entry.increment(error)) {
+        const std::string name = entry->path().filename().string();
+        if (name.starts_with(picture_prefix) && (name.ends_with(".png") || name.ends_with(".svg")))
+            old.push_back(entry->path());
+    }
+    for (const fs::path& path : old) remove_file(path);
+}
+
+} // namespace
+
+void write_study_report(const StudyTable& table, const fs::path& directory, const StudyReportOptions& options) {
+    ReportBuilder builder(table, directory, options);
+    make_directory(directory);
+    remove_pictures(directory);
+    const ReportDocument document = builder.build();
+    write_file(directory / "study.md", report_markdown(document));
+    write_file(directory / "study.html", report_html(document));
+}
+
+} // namespace kluft

@@ -1,0 +1,155 @@
+#include "kluft/studies/study_report.hpp"
+
+#include <cmath>
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kluft/core/diagnostics.hpp"
+#include "kluft/output/atomic_file.hpp"
+#include "kluft/output/history_table.hpp"
+#include "kluft/output/summary.hpp"
+#include "output/temporary_directory.hpp"
+#include "studies/made_table.hpp"
+
+namespace kluft {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::done_case;
+using ::testing::HasSubstr;
+using testing::made_table;
+using ::testing::Not;
+using testing::TemporaryDirectory;
+
+/// A curve that rises to its peak at 1 % strain and falls to half of it.
+void write_case(const fs::path& directory, double peak, int unbalanced_steps) {
+    make_directory(directory);
+    std::string rows = history_header() + "\n";
+    for (int i = 0; i <= 20; ++i) {
+        StepRecord row;
+        row.step = i;
+        row.axial_strain = 0.001 * i;
+        const double rise = row.axial_strain / 0.01;
+        row.axial_stress = peak * (rise <= 1.0 ? rise * (2.0 - rise) : 1.5 - 0.5 * rise);
+        row.differential_stress = row.axial_stress;
+        row.balanced = i >= unbalanced_steps;
+        rows += table_row(row) + "\n";
+    }
+    write_file(directory / "history.csv", rows);
+    RunSummary summary;
+    summary.numbers.unbalanced_steps = unbalanced_steps;
+    summary.platen_stage = 0;
+    write_file(directory / "summary.json", summary_json(summary));
+}
+
+/// First order in the number of steps towards 1.5 MPa, with two ways to update cracks; one case failed, one has
+/// unbalanced steps.
+StudyTable refined_table(const fs::path& directory) {
+    StudyTable table = made_table({"stages.1.steps", "cracks.update"}, 0);
+    table.directory = directory;
+    for (const char* update : {"all", "event"})
+        for (const int steps : {25, 50, 100, 200, 400}) {
+            const double error = (update == std::string("all") ? -1.0 : -0.2) / steps;
+            StudyCase made =
+                done_case({fmt::format("{}", steps), update}, 1.5e6 * (1.0 + error), error, 0.01 * steps + 1);
+            made.name = fmt::format("{}-{}", update, steps);
+            write_case(directory / "cases" / made.name, *made.quantities[0], steps == 50 ? 1 : 0);
+            table.cases.push_back(made);
+        }
+    table.cases[2].status = CaseStatus::failed;
+    table.cases[2].reason = "killed by signal 9";
+    return table;
+}
+
+std::size_t n_files(const fs::path& directory, const std::string& begin) {
+    std::size_t count = 0;
+    for (const auto& entry : fs::directory_iterator(directory))
+        count += entry.path().filename().string().starts_with(begin) ? 1U : 0U;
+    return count;
+}
+
+TEST(StudyReport, SaysOrderLimitFailuresAndWhatAccuracyCosts) {
+    const TemporaryDirectory directory;
+    write_study_report(refined_table(directory.path()), directory.path());
+    const std::string text = read_file(directory / "study.md");
+    EXPECT_THAT(text, HasSubstr("order 1, limit 1.5 MPa"));
+    EXPECT_THAT(text, HasSubstr("killed by signal 9"));
+    EXPECT_THAT(text, HasSubstr("## Recommendation"));
+    // 25 steps at events have an error of 0.8 %, and so have all finer ones less
+    EXPECT_THAT(text, HasSubstr("For 1 % error on peak\\_stress: steps 25, update event (error 0.8 %) costs 1.25 s"));
+    EXPECT_THAT(text, Not(HasSubstr("## Replicas")));
+    EXPECT_THAT(text, Not(HasSubstr("## Model choices")));
+    for (const char* name : {"study-convergence-stages-1-steps", "study-work-peak_stress"})
+        for (const char* ending : {".png", ".svg"}) EXPECT_TRUE(fs::exists(directory / (std::string(name) + ending)));
+    EXPECT_EQ(n_files(directory.path(), "study-curves"), 4U); // two series, two formats
+    const std::string page = read_file(directory / "study.html");
+    EXPECT_THAT(page, HasSubstr("data:image/svg+xml;base64,"));
+    EXPECT_THAT(page, Not(HasSubstr("src=\"study-")));
+}
+
+TEST(StudyReport, DrawsTheBandOfReplicasAndCountsMembers) {
+    const TemporaryDirectory directory;
+    StudyTable table = made_table({}, std::nullopt);
+    table.reference_name.clear();
+    table.directory = directory.path();
+    const std::vector<double> peaks{1.00, 1.02, 0.99, 1.01, 0.98}; // mean 1, deviation 0.0158
+    for (std::size_t i = 0; i < peaks.size(); ++i) {
+        StudyCase made = done_case({}, 1e6 * peaks[i], 0.0, 1.0);
+        made.errors = {std::nullopt};
+        made.name = fmt::format("copy-{}", i);
+        made.replica = static_cast<int>(i);
+        write_case(directory / "cases" / made.name, *made.quantities[0], 0);
+        table.cases.push_back(made);
+    }
+    write_study_report(table, directory.path());
+    const std::string text = read_file(directory / "study.md");
+    EXPECT_THAT(text, HasSubstr("## Replicas"));
+    EXPECT_THAT(
+        text,
+        HasSubstr(
+            "| 5 | 1 MPa | 1.58 % | ± 1.96 % | 13 |")); // 2.776 * 1.58/sqrt(5); by hand 2.179 * 1.58/sqrt(13) = 0.955
+    EXPECT_THAT(text, HasSubstr("with this band only"));
+    EXPECT_EQ(n_files(directory.path(), "study-band"), 2U);
+    EXPECT_THAT(text, Not(HasSubstr("## Convergence")));
+    EXPECT_THAT(text, Not(HasSubstr("## Error against time")));
+    EXPECT_THAT(text, Not(HasSubstr("## Recommendation")));
+}
+
+TEST(StudyReport, SeparatesModelChoicesFromErrors) {
+    const TemporaryDirectory directory;
+    StudyTable table = made_table({"stages.0.steps", "analysis.kinematics"}, 0);
+    table.directory = directory.path();
+    table.cases = {done_case({"50", "affine"}, 1.01, 0.01, 1.0), done_case({"100", "affine"}, 1.0, 0.0, 2.0),
+                   done_case({"50", "rigid"}, 1.111, 0.111, 0.5)};
+    table.reference = 1;
+    write_study_report(table, directory.path());
+    const std::string text = read_file(directory / "study.md");
+    EXPECT_THAT(text, HasSubstr("## Model choices"));
+    EXPECT_THAT(text, HasSubstr("+10 %"));
+    EXPECT_THAT(text, HasSubstr("For 5 % error on peak\\_stress: steps 50 (error 1 %)"));
+}
+
+TEST(StudyReport, OfNothingYetHasTheCasesOnlyAndNoPictures) {
+    const TemporaryDirectory directory;
+    write_file(directory / "study-old.png", "of an earlier report");
+    StudyTable table = made_table({"stages.0.steps"}, 0);
+    table.cases.resize(3);
+    for (StudyCase& each : table.cases) each.settings = {"10"};
+    write_study_report(table, directory.path());
+    EXPECT_THAT(read_file(directory / "study.md"), HasSubstr("3 cases: 3 waiting"));
+    EXPECT_EQ(n_files(directory.path(), "study-"), 0U);
+    table.cases.clear();
+    EXPECT_NO_THROW(write_study_report(table, directory.path()));
+}
+
+TEST(StudyReport, RefusesAQuantityThatTheStudyDoesNotHave) {
+    const TemporaryDirectory directory;
+    StudyTable table = made_table({"stages.0.steps"}, 0);
+    EXPECT_THROW(write_study_report(table, directory.path(), {.quantity = "peak_strss"}), InputError);
+}
+
+} // namespace
+} // namespace kluft

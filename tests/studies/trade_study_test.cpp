@@ -1,0 +1,120 @@
+#include "kluft/studies/trade_study.hpp"
+
+#include <map>
+#include <set>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
+
+#include "kluft/core/diagnostics.hpp"
+#include "kluft/scene/scene_reader.hpp"
+
+namespace kluft {
+namespace {
+
+using ::testing::Contains;
+using ::testing::Not;
+
+Scene triaxial_scene(const std::string& name, const std::vector<std::string>& overrides = {}) {
+    return read_scene(std::string(KLUFT_SOURCE_DIR) + "/models/triaxial/" + name + ".yaml", overrides);
+}
+
+YAML::Node study_of(const Scene& scene, const std::vector<std::string>& quantities = {}) {
+    return YAML::Load(trade_study("scene.yaml", scene, quantities));
+}
+
+YAML::Node variant_of(const YAML::Node& study, const std::string& name) {
+    for (const auto& variant : study["variants"])
+        if (variant["name"].as<std::string>() == name) return variant["vary"];
+    return YAML::Node(YAML::NodeType::Undefined);
+}
+
+std::vector<std::string> values_of(const YAML::Node& vary, const std::string& key) {
+    return vary[key].as<std::vector<std::string>>();
+}
+
+std::set<std::string> keys_of(const YAML::Node& study) {
+    std::set<std::string> keys;
+    for (const auto& variant : study["variants"])
+        for (const auto& entry : variant["vary"]) keys.insert(entry.first.as<std::string>());
+    return keys;
+}
+
+TEST(TradeStudy, CrossesStepCountsWithCrackUpdatesAndVariesTheRestOneAtATime) {
+    const YAML::Node study = study_of(triaxial_scene("case-3-all"));
+    const YAML::Node steps = variant_of(study, "steps");
+    EXPECT_EQ(values_of(steps, "stages.1.steps"), (std::vector<std::string>{"25", "50", "100", "200", "400", "800"}));
+    EXPECT_EQ(values_of(steps, "cracks.update"),
+              (std::vector<std::string>{"all", "critical_first", "single", "event"}));
+    for (const auto& variant : study["variants"]) {
+        if (variant["name"].as<std::string>() == "steps") continue;
+        int n_varied = 0;
+        for (const auto& entry : variant["vary"]) n_varied += entry.second.size() > 1 ? 1 : 0;
+        EXPECT_LE(n_varied, 1) << variant["name"];
+    }
+    EXPECT_EQ(values_of(variant_of(study, "residual tolerance"), "solver.tolerance"),
+              (std::vector<std::string>{"1e-3", "1e-4", "1e-6", "1e-7"})); // 1e-5 is the scene's own
+    EXPECT_EQ(values_of(variant_of(study, "hexagon size"), "geometry.tessellation.hexagons.spacing"),
+              (std::vector<std::string>{"0.04", "0.0625"}));
+    EXPECT_EQ(study["reference"]["case"]["variant"].as<std::string>(), "reference");
+    EXPECT_EQ(study["along"].as<std::string>(), "stages.1.steps");
+}
+
+TEST(TradeStudy, GivesEveryVariantAllNumericalSettings) {
+    const YAML::Node study = study_of(triaxial_scene("case-3-all", {"stages.1.steps=60", "cracks.update=all"}));
+    const YAML::Node own = variant_of(study, "own settings");
+    ASSERT_TRUE(own.IsMap()); // 60 steps are none of those crossed
+    EXPECT_EQ(values_of(own, "stages.1.steps"), std::vector<std::string>{"60"});
+    for (const auto& variant : study["variants"])
+        for (const auto& entry : own) EXPECT_TRUE(variant["vary"][entry.first.as<std::string>()]) << variant["name"];
+    const YAML::Node reference = variant_of(study, "reference");
+    EXPECT_EQ(values_of(reference, "cracks.update"), std::vector<std::string>{"event"});
+    EXPECT_EQ(values_of(reference, "stages.1.steps"), std::vector<std::string>{"800"});
+}
+
+TEST(TradeStudy, HasNoTwoCasesWithTheSameSettings) {
+    std::set<std::map<std::string, std::string>> cases;
+    for (const auto& variant : study_of(triaxial_scene("case-3-all"))["variants"]) {
+        std::vector<std::map<std::string, std::string>> all{{}};
+        for (const auto& entry : variant["vary"]) {
+            std::vector<std::map<std::string, std::string>> longer;
+            for (const auto& each : all)
+                for (const auto& value : entry.second) {
+                    longer.push_back(each);
+                    longer.back()[entry.first.as<std::string>()] = value.as<std::string>();
+                }
+            all = longer;
+        }
+        for (const auto& each : all) EXPECT_TRUE(cases.insert(each).second) << variant["name"];
+    }
+    EXPECT_GT(cases.size(), 30U);
+}
+
+TEST(TradeStudy, VariesNothingThatTheSceneDoesNotHave) {
+    const auto keys = keys_of(study_of(triaxial_scene("case-1"))); // fractures only: no bond, no hexagon
+    EXPECT_THAT(keys, Not(Contains(::testing::StartsWith("cracks."))));
+    EXPECT_THAT(keys, Not(Contains(::testing::StartsWith("geometry."))));
+    EXPECT_THAT(keys, Not(Contains("analysis.kinematics")));
+    EXPECT_THAT(keys, Contains("stages.1.steps"));
+    EXPECT_THAT(keys, Contains("analysis.integrator"));
+}
+
+TEST(TradeStudy, ComparesTheQuantitiesAskedForAndRefusesASceneWithoutAny) {
+    const Scene scene = triaxial_scene("case-3-all");
+    EXPECT_EQ(study_of(scene, {"peak_strain"})["quantities"].as<std::vector<std::string>>(),
+              std::vector<std::string>{"peak_strain"});
+    Scene still = scene;
+    for (Stage& stage : still.loads.stages) stage.motion.reset();
+    EXPECT_THROW((void)trade_study("scene.yaml", still), InputError);
+}
+
+TEST(TradeStudy, IsYamlWhateverTheTitleHolds) {
+    Scene scene = triaxial_scene("case-3-all");
+    scene.title = "a \"quoted\" \\ title: # with all";
+    EXPECT_EQ(study_of(scene)["title"].as<std::string>(), "Trade of accuracy against time: " + scene.title);
+}
+
+} // namespace
+} // namespace kluft
