@@ -88,6 +88,7 @@ RunOutcome outcome_of(const RunReport& report, const Model& model) {
     outcome.status = report.status;
     outcome.message = report.diagnosis;
     outcome.factor_of_safety = report.factor_of_safety;
+    outcome.estimated_error = report.estimated_error;
     outcome.motion = report.motion;
     outcome.open_close_iterations = report.costs.open_close_iterations;
     outcome.counts = {{"factorizations", report.costs.factorizations},
@@ -96,7 +97,8 @@ RunOutcome outcome_of(const RunReport& report, const Model& model) {
                       {"rank", report.costs.largest_rank},
                       {"refinements", report.costs.refinements},
                       {"relaxations", report.costs.relaxations},
-                      {"events", report.costs.events}};
+                      {"events", report.costs.events},
+                      {"rejected_steps", report.costs.rejected_steps}};
     outcome.unknowns = unknowns_per_block(model.kinematics) * model.system.n_blocks();
     outcome.elapsed_s = report.costs.elapsed_s;
     outcome.version = std::string(version());

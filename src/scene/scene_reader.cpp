@@ -78,6 +78,8 @@ SolverOptions read_solver_options(const SceneSection& section) {
     SolverOptions options;
     options.tolerance = section.number("tolerance");
     options.balance = section.number("balance");
+    options.accuracy = section.given_number("accuracy").value_or(0.0);
+    options.detection_every = section.count("detection_every");
     options.viscosity = section.number("viscosity");
     options.max_iterations = section.count("max_iterations");
     options.max_unbalanced_steps = section.count("max_unbalanced_steps");
