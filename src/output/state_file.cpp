@@ -168,6 +168,8 @@ struct Writer {
         const std::array numbers{c.size,       c.curvature,   c.largest_stress, c.largest_mean_stress,
                                  c.path_error, c.event_error, c.estimated_error};
         write_array(file, (std::string(name) + "_numbers").c_str(), numbers.data(), numbers.size());
+        const std::array counts{c.stage_of_largest, c.missed_events};
+        write_array(file, (std::string(name) + "_counts").c_str(), counts.data(), counts.size());
         write_array(file, (std::string(name) + "_slipped").c_str(), c.slipped.data(), c.slipped.size());
     }
     void operator()(const char* name, const RunCosts& costs) {
@@ -220,8 +222,10 @@ struct Reader {
     }
     void operator()(const char* name, StepControl& c) {
         const auto n = read_array<double>(file, (std::string(name) + "_numbers").c_str());
-        if (n.size() != 7) throw Hdf5Failure{name};
-        c = {n[0], n[1], n[2], n[3], n[4], n[5], n[6], read_array<int>(file, (std::string(name) + "_slipped").c_str())};
+        const auto counts = read_array<int>(file, (std::string(name) + "_counts").c_str());
+        if (n.size() != 7 || counts.size() != 2) throw Hdf5Failure{name};
+        c = {n[0], n[1], n[2], n[3], n[4], n[5], n[6], counts[0], counts[1], {}};
+        c.slipped = read_array<int>(file, (std::string(name) + "_slipped").c_str());
     }
     void operator()(const char* name, RunCosts& costs) {
         const auto counts = read_array<int>(file, (std::string(name) + "_counts").c_str());

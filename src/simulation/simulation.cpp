@@ -47,6 +47,9 @@ constexpr double reduction_residual = 0.01;       ///< of it: largest `tolerance
 constexpr int max_moving_attempts = 25;           ///< of a relaxation with reduced strengths, whose share does not fall
 constexpr double least_relaxation_progress = 0.9; ///< of the share in as many attempts
 constexpr double largest_useful_index = 10.0;  ///< of f in the search for an event: a strength of zero gives infinity
+constexpr double accurate_balance = 0.01;    ///< of the accuracy asked for: largest `balance`
+constexpr double lag_weight = 4.0;            ///< of the mass-like term's share in the stresses (measured: 1 to 4)
+constexpr double softening_share = 0.2;       ///< of the stress lost since the peak: the accuracy there
 constexpr double least_step_size = 1e-4;       ///< load factor of a step from an accuracy that is accepted as it is
 constexpr double least_predicted_share = 0.01; ///< of a load step: the first trial of an event
 
@@ -91,7 +94,6 @@ public:
         StepObserver& observer, const std::atomic<bool>& stop)
         : model_(model), cracks_(cracks), options_(solver), course_(model, state, observer, stop),
           open_close_(linear_, open_close_options(solver)) {
-        if (options_.accuracy > 0.0) cracks_.event_tolerance = options_.accuracy;
         problem_.kinematics = model.kinematics;
         problem_.system = &model.system;
         problem_.moduli = &model.moduli;
@@ -321,6 +323,7 @@ private:
     void advance_by_accuracy() {
         const State& before = course_.accepted;
         const StepRecord record_before = course_.last_record;
+        set_accuracy();
         StepError rejected;
         for (double last_size = 0.0;;) {
             const double remaining = 1.0 - before.load_factor;
@@ -332,19 +335,30 @@ private:
                 break;
             }
             const bool branches = last_size > 0.0 && is_branch(*error, rejected, size / last_size);
-            if (branches || size <= least_step_size || is_accurate(size, *error, options_.accuracy)) {
+            if (branches || size <= least_step_size || is_accurate(size, *error, accuracy_)) {
                 keep_judged(size, *error, branches);
                 break;
             }
             ++report_.costs.rejected_steps;
             take_back(record_before);
-            work_.control.size = next_step_size(size, *error, options_.accuracy);
+            work_.control.size = next_step_size(size, *error, accuracy_);
             rejected = *error;
             last_size = size;
         }
         StepControl& control = work_.control;
         if (control.largest_stress > before.control.largest_stress || !prescribes_strain())
             control.estimated_error = control.path_error + control.event_error;
+    }
+
+    /// What has been lost since a peak in this stage, where the platen goes on the same way, makes accuracy pointless: the
+    /// path after the peak depends on every detail.
+    void set_accuracy() {
+        const StepControl& control = work_.control;
+        const bool may_soften = prescribes_strain() && control.stage_of_largest == work_.stage;
+        const double lost = 1.0 - std::abs(course_.last_record.axial_stress) / control.largest_stress;
+        accuracy_ = may_soften ? std::max(options_.accuracy, softening_share * lost) : options_.accuracy;
+        cracks_.event_tolerance = accuracy_;
+        balance_ = std::min(options_.balance, accurate_balance * accuracy_);
     }
 
     /// The error of a step that ended at an event or was relaxed: as that of the last one that was judged.
@@ -355,7 +369,7 @@ private:
 
     void keep_judged(double size, const StepError& error, bool branches) {
         StepControl& control = work_.control;
-        control.size = branches ? size : std::max(least_step_size, next_step_size(size, error, options_.accuracy));
+        control.size = branches ? size : std::max(least_step_size, next_step_size(size, error, accuracy_));
         control.curvature = error.path / (size * size);
         control.path_error += error.path;
     }
@@ -386,7 +400,9 @@ private:
             return std::nullopt;
         }
         const double reached = locate_event(from, first, trial);
-        if (reached == target && !is_event(trial.q)) return judge_by_halves(target, trial, check);
+        const bool event = reached < first || is_event(trial.q);
+        work_.control.missed_events = event || first == target ? 0 : work_.control.missed_events + 1;
+        if (reached == target && !event) return judge_by_halves(target, trial, check);
         finish_unjudged(trial, reached, check);
         return std::nullopt;
     }
@@ -417,7 +433,8 @@ private:
             return std::nullopt;
         }
         finish_step(end, target, check);
-        const double open = options_.tolerance + std::max({whole.viscous_share, half.viscous_share, end.viscous_share});
+        const double open = options_.tolerance +
+                            lag_weight * std::max({whole.viscous_share, half.viscous_share, end.viscous_share});
         return error_of(start, halfway, course_value(course_.last_record, end.q), at_once, open);
     }
 
@@ -464,7 +481,7 @@ private:
 
     // ---- events of steps from an accuracy --------------------------------------------------------------------
 
-    [[nodiscard]] bool is_event(const Eigen::VectorXd& q) { return event_index(q) >= 1.0 - options_.accuracy; }
+    [[nodiscard]] bool is_event(const Eigen::VectorXd& q) { return event_index(q) >= 1.0 - accuracy_; }
 
     /// Of the mapped fractures that have not slipped yet, and of the potential cracks if they are checked.
     double event_index(const Eigen::VectorXd& q) {
@@ -486,12 +503,12 @@ private:
         if (cracks_.update != CrackUpdate::event) return;
         const auto slips = slip_indices(model_, problem_, q);
         for (int i = 0; i < static_cast<int>(slips.size()); ++i)
-            if (slips[i] >= 1.0 - options_.accuracy && !has_slipped(i)) work_.control.slipped.push_back(i);
+            if (slips[i] >= 1.0 - accuracy_ && !has_slipped(i)) work_.control.slipped.push_back(i);
     }
 
     void note_event(const Eigen::VectorXd& q) {
         const double index = event_index(q);
-        if (index < 1.0 - options_.accuracy) return;
+        if (index < 1.0 - accuracy_) return;
         work_.control.event_error = std::max(work_.control.event_error, std::abs(index - 1.0));
         note_slips(q);
     }
@@ -504,9 +521,9 @@ private:
         double high = 1.0;
         double g_low = event_index(work_.displacement) - 1.0;
         double g_high = event_index(predicted(target)) - 1.0;
-        if (g_high <= options_.accuracy || g_low >= 0.0) return target;
+        if (g_high <= accuracy_ || g_low >= 0.0) return target;
         double at = high;
-        for (int i = 0; i < quick_event_trials && std::abs(g_high) > 0.1 * options_.accuracy; ++i) {
+        for (int i = 0; i < quick_event_trials && std::abs(g_high) > 0.1 * accuracy_; ++i) {
             at = high - g_high * (high - low) / (g_high - g_low);
             const double g = event_index(predicted(from + at * width)) - 1.0;
             if (g >= 0.0) {
@@ -519,7 +536,8 @@ private:
                 g_high *= 0.5;
             }
         }
-        return from + std::max(at, least_predicted_share) * width;
+        at = std::max(at, least_predicted_share) * std::ldexp(1.0, std::min(work_.control.missed_events, 10));
+        return at < 1.0 ? from + at * width : target;
     }
 
     // ---- recovery --------------------------------------------------------------------------------------------
@@ -835,8 +853,8 @@ private:
     [[nodiscard]] std::vector<CrackCandidate> breaking(const std::vector<CrackCandidate>& all, bool first) const {
         const bool around_one = first && is_adaptive() && cracks_.update == CrackUpdate::event;
         const double largest = largest_index(all);
-        if (!around_one || largest > 1.0 + options_.accuracy) return chosen_to_fail(cracks_, all);
-        return failing(all, 1.0 - options_.accuracy);
+        if (!around_one || largest > 1.0 + accuracy_) return chosen_to_fail(cracks_, all);
+        return failing(all, 1.0 - accuracy_);
     }
 
     // ---- measurements and messages ---------------------------------------------------------------------------
@@ -861,7 +879,10 @@ private:
         step_balanced_ = step_balanced_ && trial.balanced;
         worst_share_ = std::max(worst_share_, trial.viscous_share);
         StepControl& control = work_.control;
-        if (trial.balanced) control.largest_stress = std::max(control.largest_stress, std::abs(record.axial_stress));
+        if (trial.balanced && std::abs(record.axial_stress) > control.largest_stress) {
+            control.largest_stress = std::abs(record.axial_stress);
+            control.stage_of_largest = work_.stage;
+        }
         if (is_adaptive() && !prescribes_strain())
             control.largest_mean_stress =
                 std::max(control.largest_mean_stress, weighted_stresses(problem_, trial.q).norm());
@@ -910,6 +931,7 @@ private:
     double worst_share_ = 0.0;
     int last_worst_block_ = -1;
     double balance_ = 0.0;        ///< of the stage
+    double accuracy_ = 0.0;   ///< of the load step in progress
     double rest_share_ = 0.0;     ///< of the mass-like term: with reduced strengths a body with less rests
     int steps_with_contacts_ = 0; ///< load steps with the contacts in place since they were detected
     bool seeks_failure_ = false;  ///< of potential cracks, in the load step in progress

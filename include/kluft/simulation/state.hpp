@@ -30,6 +30,8 @@ struct StepControl {
     double path_error = 0.0;           ///< sum over the steps so far, relative
     double event_error = 0.0;          ///< largest |f - 1| at an event so far
     double estimated_error = 0.0;      ///< both, at the largest stress (so far, where loads are prescribed)
+    int stage_of_largest = -1;         ///< in which the largest stress was reached
+    int missed_events = 0;             ///< in succession: the last steps ended where an event was expected, in vain
     std::vector<int> slipped;          ///< mapped fractures that have slipped, in the order in which they did
 };
 
