@@ -618,7 +618,8 @@ std::vector<KeyRule> option_rules() {
          .range = between_zero_and_one,
          .fallback_note = "steps as the stages say",
          .doc =
-             "Of the axial stress up to its peak, relative (of the stresses of the blocks where only loads are prescribed). "
+             "Of the axial stress up to its peak, relative (of the stresses of the blocks where only loads are "
+             "prescribed). "
              "Load steps get the size that keeps their estimated error below it; the `steps` of a stage are then "
              "the size of its first one only, and history.csv has one row per step that was accepted. With "
              "`cracks.update: event` each potential crack fails where its f is 1 to within this accuracy, whatever "

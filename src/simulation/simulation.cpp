@@ -47,17 +47,11 @@ constexpr double reduction_residual = 0.01;       ///< of it: largest `tolerance
 constexpr int max_moving_attempts = 25;           ///< of a relaxation with reduced strengths, whose share does not fall
 constexpr double least_relaxation_progress = 0.9; ///< of the share in as many attempts
 constexpr double largest_useful_index = 10.0;  ///< of f in the search for an event: a strength of zero gives infinity
-constexpr double accurate_balance = 0.01;    ///< of the accuracy asked for: largest `balance`
-constexpr double lag_weight = 4.0;            ///< of the mass-like term's share in the stresses (measured: 1 to 4)
-constexpr double softening_share = 0.2;       ///< of the stress lost since the peak: the accuracy there
+constexpr double accurate_balance = 0.01;      ///< of the accuracy asked for: largest `balance`
+constexpr double lag_weight = 4.0;             ///< of the mass-like term's share in the stresses (measured: 1 to 4)
+constexpr double softening_share = 0.2;        ///< of the stress lost since the peak: the accuracy there
 constexpr double least_step_size = 1e-4;       ///< load factor of a step from an accuracy that is accepted as it is
 constexpr double least_predicted_share = 0.01; ///< of a load step: the first trial of an event
-
-/// Whether a step taken again with `ratio` times the size shows a jump or a branch of the path: an error that does not
-/// fall with the size is none of the step's size.
-bool is_branch(const StepError& error, const StepError& rejected, double ratio) {
-    return std::max(error.path, error.chord) > std::sqrt(ratio) * std::max(rejected.path, rejected.chord);
-}
 
 /// True if the constraints stop every rigid motion of every group of bonded blocks.
 bool is_held(const BlockSystem& system, const std::vector<char>& bonded, const Constraints& constraints) {
@@ -184,6 +178,7 @@ private:
         if (work_.step_in_stage == 0) {
             work_.displacement_rate.resize(0);
             work_.control.size = 1.0 / course_.stage().steps;
+            work_.control.lag = 0.0;
         }
         steps_with_contacts_ = 0;
         strengths_ = reduced_strengths(model_, work_.stage, work_.load_factor);
@@ -334,20 +329,36 @@ private:
                 charge_unjudged();
                 break;
             }
-            const bool branches = last_size > 0.0 && is_branch(*error, rejected, size / last_size);
-            if (branches || size <= least_step_size || is_accurate(size, *error, accuracy_)) {
-                keep_judged(size, *error, branches);
+            const bool branches = last_size > 0.0 && !learn_lag(size, *error, last_size, rejected);
+            const StepError own{std::max(0.0, error->path - work_.control.lag * size), error->chord};
+            if (branches || size <= least_step_size || is_accurate(size, own, accuracy_)) {
+                keep_judged(size, own, branches);
                 break;
             }
             ++report_.costs.rejected_steps;
+            const double lag = work_.control.lag;
             take_back(record_before);
-            work_.control.size = next_step_size(size, *error, accuracy_);
+            work_.control.lag = lag;
+            work_.control.size = next_step_size(size, own, accuracy_);
             rejected = *error;
             last_size = size;
         }
         StepControl& control = work_.control;
         if (control.largest_stress > before.control.largest_stress || !prescribes_strain())
             control.estimated_error = control.path_error + control.event_error;
+    }
+
+    /// From a step that was rejected and taken again with a smaller size: the part of the error in proportion to the size
+    /// is a lag (of the mass-like term, of the tolerance) that does not add up. False where the error does not fall with
+    /// the size: a jump or a branch of the path.
+    bool learn_lag(double size, const StepError& error, double rejected_size, const StepError& rejected) {
+        if (error.chord > rejected.chord && error.chord > accuracy_) return false;
+        const double rate = error.path / size;
+        const double rejected_rate = rejected.path / rejected_size;
+        if (rate >= rejected_rate) return error.path <= accuracy_ * size;
+        const double lag = rate - size * (rejected_rate - rate) / (rejected_size - size);
+        work_.control.lag = std::clamp(lag, 0.0, accuracy_);
+        return true;
     }
 
     /// What has been lost since a peak in this stage, where the platen goes on the same way, makes accuracy pointless: the
@@ -433,8 +444,8 @@ private:
             return std::nullopt;
         }
         finish_step(end, target, check);
-        const double open = options_.tolerance +
-                            lag_weight * std::max({whole.viscous_share, half.viscous_share, end.viscous_share});
+        const double open =
+            options_.tolerance + lag_weight * std::max({whole.viscous_share, half.viscous_share, end.viscous_share});
         return error_of(start, halfway, course_value(course_.last_record, end.q), at_once, open);
     }
 
@@ -475,7 +486,6 @@ private:
         if (!(scale > 0.0)) return {};
         const double path = (end - at_once).norm() / scale;
         const double chord = (middle - 0.5 * (start + end)).norm() / scale;
-        if (getenv("KDBG")) fprintf(stderr, "lf %.5g..%.5g path %.3g chord %.3g open %.3g scale %.4g\n", course_.accepted.load_factor, work_.load_factor, path, chord, open, scale);
         return {std::max(0.0, path - open), std::max(0.0, chord - open)};
     }
 
@@ -931,7 +941,7 @@ private:
     double worst_share_ = 0.0;
     int last_worst_block_ = -1;
     double balance_ = 0.0;        ///< of the stage
-    double accuracy_ = 0.0;   ///< of the load step in progress
+    double accuracy_ = 0.0;       ///< of the load step in progress
     double rest_share_ = 0.0;     ///< of the mass-like term: with reduced strengths a body with less rests
     int steps_with_contacts_ = 0; ///< load steps with the contacts in place since they were detected
     bool seeks_failure_ = false;  ///< of potential cracks, in the load step in progress
