@@ -72,9 +72,8 @@ std::vector<StepRecord> platen_equilibria(const SceneRun& run) {
 
 /// How near an equilibrium comes to the corner of the curve: the end of the elastic line at the stress of slip, relative
 /// to that stress.
-double distance_from_corner(const SceneRun& run, double slip_stress) {
+double distance_from_corner(const SceneRun& run, double slip_stress, double modulus) {
     const auto rows = platen_equilibria(run);
-    const double modulus = rows.front().differential_stress / rows.front().axial_strain; // well below slip
     double nearest = 1.0;
     for (const StepRecord& row : rows) {
         const double along = std::abs(modulus * row.axial_strain / slip_stress - 1.0);
@@ -88,13 +87,17 @@ double distance_from_corner(const SceneRun& run, double slip_stress) {
 TEST(StepControl, MappedFractureSlipsFirstAtItsOwnLoad) {
     const double tan_phi = std::tan(std::numbers::pi / 6);
     const double slip = 2 * (0.1e6 + 0.2e6 * tan_phi) / ((1 - tan_phi / std::sqrt(3.0)) * std::sqrt(0.75));
+    const auto fine = run_scene(plane_of_weakness("joint", 400, ""));
+    const StepRecord first = platen_equilibria(fine).front(); // well below slip
+    const double modulus = first.differential_stress / first.axial_strain;
     for (const int steps : {5, 37}) {
         const auto run = run_scene(plane_of_weakness("joint", steps, ", accuracy: 0.01"));
         ASSERT_EQ(run.report.status, RunStatus::done);
-        EXPECT_LT(distance_from_corner(run, slip), 0.012) << steps;
+        EXPECT_LT(distance_from_corner(run, slip, modulus), 0.012) << steps;
         EXPECT_EQ(run.state.control.slipped, std::vector{0});
     }
-    EXPECT_GT(distance_from_corner(run_scene(plane_of_weakness("joint", 5, "")), slip), 0.05); // steps pass the corner
+    // steps pass the corner
+    EXPECT_GT(distance_from_corner(run_scene(plane_of_weakness("joint", 5, "")), slip, modulus), 0.05);
 }
 
 // Mohr-Coulomb: p1 = p3 N + 2 c sqrt(N) with N = 3 at 30 degrees, p3 = 0.2 MPa.
@@ -151,13 +154,14 @@ double curve_error(const SceneRun& run, const SceneRun& curve) {
     return error / largest;
 }
 
-// Against 200 steps: the law is piecewise linear, and the chords show where it bends.
+// Against 200 steps: the law is piecewise linear, and the chords show where it bends. They are judged at their middles;
+// a bend elsewhere can be missed by twice as much.
 TEST(StepControl, CycleOfAFrictionalJointIsFollowedToTheAccuracyFromAnyFirstStep) {
     const auto reference = run_scene(load_cycle(200, ""));
     for (const int steps : {1, 3, 50}) {
         const auto run = run_scene(load_cycle(steps, ", accuracy: 0.01"));
         ASSERT_EQ(run.report.status, RunStatus::done);
-        EXPECT_LT(curve_error(run, reference), 0.01) << steps;
+        EXPECT_LT(curve_error(run, reference), 0.02) << steps;
         EXPECT_LT(run.history.size(), 100U) << steps;
     }
 }
