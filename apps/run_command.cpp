@@ -98,6 +98,7 @@ RunOutcome outcome_of(const RunReport& report, const Model& model, double earlie
     outcome.status = report.status;
     outcome.message = report.diagnosis;
     outcome.factor_of_safety = report.factor_of_safety;
+    outcome.estimated_error = report.estimated_error;
     outcome.motion = report.motion;
     outcome.open_close_iterations = report.costs.open_close_iterations;
     outcome.counts = {{"factorizations", report.costs.factorizations},
@@ -106,7 +107,8 @@ RunOutcome outcome_of(const RunReport& report, const Model& model, double earlie
                       {"rank", report.costs.largest_rank},
                       {"refinements", report.costs.refinements},
                       {"relaxations", report.costs.relaxations},
-                      {"events", report.costs.events}};
+                      {"events", report.costs.events},
+                      {"rejected_steps", report.costs.rejected_steps}};
     outcome.unknowns = unknowns_per_block(model.kinematics) * model.system.n_blocks();
     outcome.elapsed_s = report.costs.elapsed_s;
     outcome.cpu_s = earlier_cpu + processor_seconds();

@@ -18,7 +18,8 @@ constexpr double plain_seconds = 10.0;
 constexpr int parts = 20; // a plain line for each
 
 double fraction_of(const Progress& progress) {
-    return progress.n_steps > 0 ? static_cast<double>(progress.step) / progress.n_steps : 0.0;
+    if (progress.n_steps > 0) return static_cast<double>(progress.step) / progress.n_steps;
+    return progress.n_stages > 0 ? (progress.stage + progress.load_factor) / progress.n_stages : 0.0;
 }
 
 int terminal_columns() {
@@ -36,9 +37,11 @@ std::string readable_time(double seconds) {
 }
 
 std::string progress_text(const Progress& progress, std::optional<double> seconds_left) {
-    std::string text = fmt::format("stage {}/{}  step {}/{} ({:.0f} %)  strain {:.3f} %  stress {:.3f} MPa  cracks {}  "
+    const std::string step =
+        progress.n_steps > 0 ? fmt::format("{}/{}", progress.step, progress.n_steps) : fmt::format("{}", progress.step);
+    std::string text = fmt::format("stage {}/{}  step {} ({:.0f} %)  strain {:.3f} %  stress {:.3f} MPa  cracks {}  "
                                    "iterations {}",
-                                   progress.stage + 1, progress.n_stages, progress.step, progress.n_steps,
+                                   progress.stage + 1, progress.n_stages, step,
                                    std::floor(100.0 * fraction_of(progress)), 100.0 * progress.axial_strain,
                                    progress.axial_stress / 1e6, progress.cracks, progress.open_close_iterations);
     if (seconds_left) text += "  left " + readable_time(*seconds_left);

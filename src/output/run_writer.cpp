@@ -201,6 +201,7 @@ RunSummary RunWriter::summary_of(const RunOutcome& outcome) const {
     summary.seconds = outcome.seconds;
     summary.message = outcome.message;
     summary.factor_of_safety = outcome.factor_of_safety;
+    summary.estimated_error = outcome.estimated_error;
     summary.motion = outcome.motion;
     return summary;
 }

@@ -16,7 +16,7 @@ namespace kluft {
 
 namespace {
 
-constexpr int format_version = 3;
+constexpr int format_version = 4;
 constexpr std::string_view format_name = "kluft state";
 
 /// What went wrong inside HDF5; the callers add the file's name.
@@ -164,9 +164,19 @@ struct Writer {
         for (const auto& [a, b] : v) numbers.insert(numbers.end(), {a, b});
         write_array(file, name, numbers.data(), numbers.size());
     }
+    void operator()(const char* name, const StepControl& c) {
+        const std::array numbers{c.size,           c.curvature,           c.lag,
+                                 c.largest_stress, c.largest_mean_stress, c.path_error,
+                                 c.event_error,    c.estimated_error};
+        write_array(file, (std::string(name) + "_numbers").c_str(), numbers.data(), numbers.size());
+        const std::array counts{c.stage_of_largest, c.missed_events};
+        write_array(file, (std::string(name) + "_counts").c_str(), counts.data(), counts.size());
+        write_array(file, (std::string(name) + "_slipped").c_str(), c.slipped.data(), c.slipped.size());
+    }
     void operator()(const char* name, const RunCosts& costs) {
         const std::array counts{costs.open_close_iterations, costs.factorizations, costs.analyses,    costs.updates,
-                                costs.largest_rank,          costs.refinements,    costs.relaxations, costs.events};
+                                costs.largest_rank,          costs.refinements,    costs.relaxations, costs.events,
+                                costs.rejected_steps};
         const RunSeconds& s = costs.seconds;
         const std::array seconds{costs.elapsed_s, s.detection, s.set_up,   s.assembly,    s.analysis,
                                  s.factorization, s.update,    s.solution, s.crack_check, s.observers};
@@ -211,10 +221,17 @@ struct Reader {
         v.clear();
         for (std::size_t i = 0; i < numbers.size(); i += 2) v.emplace_back(numbers[i], numbers[i + 1]);
     }
+    void operator()(const char* name, StepControl& c) {
+        const auto n = read_array<double>(file, (std::string(name) + "_numbers").c_str());
+        const auto counts = read_array<int>(file, (std::string(name) + "_counts").c_str());
+        if (n.size() != 8 || counts.size() != 2) throw Hdf5Failure{name};
+        c = {n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7], counts[0], counts[1], {}};
+        c.slipped = read_array<int>(file, (std::string(name) + "_slipped").c_str());
+    }
     void operator()(const char* name, RunCosts& costs) {
         const auto counts = read_array<int>(file, (std::string(name) + "_counts").c_str());
         const auto seconds = read_array<double>(file, (std::string(name) + "_seconds").c_str());
-        if (counts.size() != 8 || seconds.size() != 10) throw Hdf5Failure{name};
+        if (counts.size() != 9 || seconds.size() != 10) throw Hdf5Failure{name};
         costs.open_close_iterations = counts[0];
         costs.factorizations = counts[1];
         costs.analyses = counts[2];
@@ -223,6 +240,7 @@ struct Reader {
         costs.refinements = counts[5];
         costs.relaxations = counts[6];
         costs.events = counts[7];
+        costs.rejected_steps = counts[8];
         costs.elapsed_s = seconds[0];
         costs.seconds = {seconds[1], seconds[2], seconds[3], seconds[4], seconds[5],
                          seconds[6], seconds[7], seconds[8], seconds[9]};
@@ -248,6 +266,7 @@ template <class Members, class Visit> void visit_members(Members& state, Visit&&
     visit("displacement_rate", state.displacement_rate);
     visit("viscosity_factor", state.viscosity_factor);
     visit("near_pairs", state.near_pairs);
+    visit("control", state.control);
     visit("costs", state.costs);
 }
 

@@ -20,7 +20,7 @@ namespace {
 
 /// Members of the file that count what was computed.
 constexpr std::array count_names{"factorizations", "analyses",    "updates", "rank",
-                                 "refinements",    "relaxations", "events"};
+                                 "refinements",    "relaxations", "events",  "rejected_steps"};
 
 using Json = nlohmann::ordered_json;
 using Rows = std::vector<StepRecord>;
@@ -182,7 +182,8 @@ RunSummary summary_in(const Json& json) {
     json.at("blocks").get_to(summary.blocks);
     json.at("interfaces").get_to(summary.interfaces);
     json.at("unknowns").get_to(summary.unknowns);
-    for (const char* name : count_names) json.at(name).get_to(summary.counts[name]);
+    for (const char* name : count_names)
+        summary.counts[name] = json.value(name, std::int64_t{0}); // an earlier version has fewer
     summary.elapsed_s = optional_number(json, "elapsed_s").value_or(0.0);
     if (json.contains("cpu_s")) summary.cpu_s = optional_number(json, "cpu_s").value_or(0.0);
     json.at("peak_memory_bytes").get_to(summary.peak_memory_bytes);
@@ -191,6 +192,7 @@ RunSummary summary_in(const Json& json) {
         summary.seconds[stage] = seconds.is_null() ? 0.0 : seconds.get<double>();
     json.at("message").get_to(summary.message);
     if (json.contains("factor_of_safety")) summary.factor_of_safety = optional_number(json, "factor_of_safety");
+    if (json.contains("estimated_error")) summary.estimated_error = optional_number(json, "estimated_error");
     if (json.value("integrator", "implicit") == "explicit") {
         summary.motion =
             MotionReport{json.at("time_steps").get<long>(), optional_number(json, "time_step").value_or(0.0),
@@ -266,6 +268,7 @@ std::string summary_json(const RunSummary& summary) {
         const auto count = summary.counts.find(name);
         json[name] = count == summary.counts.end() ? 0 : count->second;
     }
+    json["estimated_error"] = number(summary.estimated_error);
     json["integrator"] = summary.motion ? "explicit" : "implicit";
     if (summary.motion) {
         json["time_steps"] = summary.motion->time_steps;

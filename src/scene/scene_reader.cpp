@@ -65,6 +65,14 @@ void refuse_explicit_reduction(const SceneSection& root, const Scene& scene, Rea
                          "expected integrator: implicit beside it, found integrator: explicit");
 }
 
+/// Load steps of an explicit run are what its loading rate says.
+void refuse_explicit_accuracy(const SceneSection& solver, const Scene& scene, ReadingContext& context) {
+    if (scene.integrator == Integrator::implicit) return;
+    for (const auto* key : {"accuracy", "detection_every"})
+        if (solver.has(key))
+            context.fail(solver, key, "expected integrator: implicit beside it, found integrator: explicit");
+}
+
 CrackOptions read_crack_options(const SceneSection& section) {
     CrackOptions options;
     options.criterion = static_cast<CrackCriterion>(section.choice("criterion"));
@@ -80,6 +88,8 @@ SolverOptions read_solver_options(const SceneSection& section) {
     SolverOptions options;
     options.tolerance = section.number("tolerance");
     options.balance = section.number("balance");
+    options.accuracy = section.given_number("accuracy").value_or(0.0);
+    options.detection_every = section.count("detection_every");
     options.viscosity = section.number("viscosity");
     options.max_iterations = section.count("max_iterations");
     options.max_unbalanced_steps = section.count("max_unbalanced_steps");
@@ -201,6 +211,7 @@ Scene convert(const SceneSection& root, ReadingContext& context) {
                              names_of(scene.interface_types), has_gravity(scene), context);
     refuse_explicit_reduction(root, scene, context);
     scene.cracks = read_crack_options(root.section("cracks"));
+    refuse_explicit_accuracy(root.section("solver"), scene, context);
     scene.solver = read_solver_options(root.section("solver"));
     scene.output = read_output_options(root.section("output"));
     for (const auto& section : root.section("output").sections("histories"))

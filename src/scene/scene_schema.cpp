@@ -657,6 +657,26 @@ std::vector<KeyRule> option_rules() {
          .range = between_zero_and_one,
          .fallback = "1e-3",
          .doc = "Largest share of the mass-like term in the reference force of a balanced step."},
+        {.path = "solver.accuracy",
+         .type = KeyType::number,
+         .range = between_zero_and_one,
+         .fallback_note = "steps as the stages say",
+         .doc =
+             "Of the axial stress up to its peak, relative (of the stresses of the blocks where only loads are "
+             "prescribed). "
+             "Load steps get the size that keeps their estimated error below it; the `steps` of a stage are then "
+             "the size of its first one only, and history.csv has one row per step that was accepted. With "
+             "`cracks.update: event` each potential crack fails where its f is 1 to within this accuracy, whatever "
+             "`cracks.event_tolerance` says, and the first slip of each mapped fracture ends a step at its own load; "
+             "with another update cracks fail at the ends of the steps, and the accuracy holds for the friction "
+             "only. Stages of `strength_reduction` keep their steps. For `integrator: implicit` only."},
+        {.path = "solver.detection_every",
+         .type = KeyType::integer,
+         .range = positive_integer,
+         .fallback = "1",
+         .doc = "Load steps between two detections of contacts; in between their points and frames stay. Contacts are "
+                "always detected after a crack, in relaxations, where a step is taken again and at the start of a "
+                "stage or of a resumed run."},
         {.path = "solver.viscosity",
          .type = KeyType::number,
          .range = not_negative,

@@ -31,6 +31,17 @@ void report_initial_state(RunCourse& course, const LoadSteps& steps) {
     notify_step(course, steps, record, false);
 }
 
+/// Of a stage whose load steps the integrator ends where it likes.
+void run_chosen_steps(RunCourse& course, const LoadSteps& steps) {
+    State& work = course.work;
+    while (work.load_factor < 1.0) {
+        course.passes = 0;
+        const StepRecord record = steps.load_step(1.0, false);
+        commit_load_step(course, steps, record, work.load_factor, work.load_factor >= 1.0);
+        steps.look_back(record);
+    }
+}
+
 void run_to_the_end(RunCourse& course, const LoadSteps& steps) {
     State& work = course.work;
     for (; work.stage < static_cast<int>(course.model.loads.stages.size()); next_stage(course, steps)) {
@@ -39,6 +50,10 @@ void run_to_the_end(RunCourse& course, const LoadSteps& steps) {
         steps.begin_stage();
         if (work.step == 0 && work.stage == 0) report_initial_state(course, steps);
         if (course.stage().strength_reduction) steps.reduce_strengths();
+        if (steps.chooses_steps && steps.chooses_steps()) {
+            run_chosen_steps(course, steps);
+            continue;
+        }
         while (work.step_in_stage < n_steps) {
             const double load_factor = static_cast<double>(work.step_in_stage + 1) / n_steps;
             const bool last_of_stage = work.step_in_stage + 1 == n_steps;
@@ -141,7 +156,7 @@ void notify_progress(RunCourse& course, double load_factor, int n_solves) {
     progress.stage = course.work.stage;
     progress.n_stages = static_cast<int>(course.model.loads.stages.size());
     progress.step = course.work.step;
-    progress.n_steps = course.n_steps;
+    progress.n_steps = course.chooses_steps ? 0 : course.n_steps;
     progress.load_factor = load_factor;
     progress.axial_strain = last.axial_strain;
     progress.axial_stress = last.axial_stress;

@@ -21,6 +21,7 @@
 #include "kluft/simulation/measurements.hpp"
 #include "kluft/simulation/run_course.hpp"
 #include "kluft/simulation/state_points.hpp"
+#include "kluft/simulation/step_control.hpp"
 #include "kluft/simulation/strength_reduction.hpp"
 #include "kluft/simulation/weakening.hpp"
 
@@ -45,7 +46,12 @@ constexpr double reduction_balance = 0.1;         ///< of the tolerance of a fac
 constexpr double reduction_residual = 0.01;       ///< of it: largest `tolerance`, and the share of a body that rests
 constexpr int max_moving_attempts = 25;           ///< of a relaxation with reduced strengths, whose share does not fall
 constexpr double least_relaxation_progress = 0.9; ///< of the share in as many attempts
-constexpr double largest_useful_index = 10.0; ///< of f in the search for an event: a strength of zero gives infinity
+constexpr double largest_useful_index = 10.0;  ///< of f in the search for an event: a strength of zero gives infinity
+constexpr double accurate_balance = 0.01;      ///< of the accuracy asked for: largest `balance`
+constexpr double lag_weight = 4.0;             ///< of the mass-like term's share in the stresses (measured: 1 to 4)
+constexpr double softening_share = 0.2;        ///< of the stress lost since the peak: the accuracy there
+constexpr double least_step_size = 1e-4;       ///< load factor of a step from an accuracy that is accepted as it is
+constexpr double least_predicted_share = 0.01; ///< of a load step: the first trial of an event
 
 /// True if the constraints stop every rigid motion of every group of bonded blocks.
 bool is_held(const BlockSystem& system, const std::vector<char>& bonded, const Constraints& constraints) {
@@ -98,6 +104,7 @@ public:
             return measure(work_.displacement, 0.0);
         };
         steps_.load_step = [this](double target, bool last_of_stage) { return load_step(target, last_of_stage); };
+        steps_.chooses_steps = [this] { return is_adaptive(); };
         steps_.reduce_strengths = [this] { reduce_strengths(); };
         steps_.look_back = [this](const StepRecord& record) {
             if (work_.unbalanced_in_succession >= options_.max_unbalanced_steps)
@@ -113,7 +120,9 @@ public:
         };
         steps_.costs = [this] { return costs(); };
         steps_.fields = [this] { return field_record(model_, work_, problem_); };
-        return run_stages(course_, steps_);
+        RunReport report = run_stages(course_, steps_);
+        if (options_.accuracy > 0.0) report.estimated_error = course_.accepted.control.estimated_error;
+        return report;
     }
 
 private:
@@ -166,15 +175,22 @@ private:
     }
 
     void begin_stage() {
-        if (work_.step_in_stage == 0) work_.displacement_rate.resize(0);
+        if (work_.step_in_stage == 0) {
+            work_.displacement_rate.resize(0);
+            work_.control.size = 1.0 / course_.stage().steps;
+            work_.control.lag = 0.0;
+        }
+        steps_with_contacts_ = 0;
         strengths_ = reduced_strengths(model_, work_.stage, work_.load_factor);
         course_.holds_back = reduces_strengths();
+        course_.chooses_steps = options_.accuracy > 0.0;
         const double tolerance = reduces_strengths() ? course_.stage().strength_reduction->tolerance : 0.0;
         rest_share_ = reduction_residual * tolerance;
         balance_ = reduces_strengths() ? std::min(options_.balance, reduction_balance * tolerance) : options_.balance;
         open_close_.set_tolerance(reduces_strengths() ? std::min(options_.tolerance, rest_share_) : options_.tolerance);
     }
 
+    [[nodiscard]] bool is_adaptive() const { return options_.accuracy > 0.0 && !reduces_strengths(); }
     [[nodiscard]] bool reduces_strengths() const { return course_.stage().strength_reduction.has_value(); }
 
     // ---- factor of safety ------------------------------------------------------------------------------------
@@ -243,14 +259,15 @@ private:
         if (options_.repeatable) open_close_.forget_factor();
         step_balanced_ = true;
         worst_share_ = 0.0;
-        const bool check = model_.has_potential_cracks &&
-                           ((work_.step + 1) % std::max(1, cracks_.every) == 0 || last_of_stage || reduces_strengths());
-        const bool smooth = advance(target, check);
-        if (smooth && !reduces_strengths()) {
-            const State& before = course_.accepted;
-            work_.displacement_rate = (work_.displacement - before.displacement) / (target - before.load_factor);
+        if (is_adaptive()) {
+            advance_by_accuracy();
         } else {
-            work_.displacement_rate.resize(0);
+            const bool smooth = advance(target, is_checked(last_of_stage));
+            if (smooth && !reduces_strengths()) {
+                keep_rate(target);
+            } else {
+                work_.displacement_rate.resize(0);
+            }
         }
         StepRecord record = course_.last_record;
         record.open_close_iterations = report_.costs.open_close_iterations - iterations_at_start_;
@@ -259,13 +276,25 @@ private:
         return record;
     }
 
+    /// Whether potential cracks are checked in the step in progress.
+    [[nodiscard]] bool is_checked(bool last_of_stage) const {
+        return model_.has_potential_cracks &&
+               ((work_.step + 1) % std::max(1, cracks_.every) == 0 || last_of_stage || reduces_strengths());
+    }
+
+    /// That of the step in progress, from the accepted state to the work state at a load factor.
+    void keep_rate(double load_factor) {
+        const State& before = course_.accepted;
+        work_.displacement_rate = (work_.displacement - before.displacement) / (load_factor - before.load_factor);
+    }
+
     /// Brings the work state to the target load factor. True if nothing broke, was cut or relaxed on the way.
     bool advance(double target, bool check) {
         bool smooth = true;
         const bool by_events = check && cracks_.update == CrackUpdate::event;
         do {
             const double from = work_.load_factor;
-            prepare();
+            begin_step();
             Trial trial = solve(target, predicted(target));
             if (!trial.balanced) {
                 smooth = false;
@@ -282,6 +311,246 @@ private:
         } while (work_.load_factor < target);
         return smooth;
     }
+
+    // ---- load steps from an accuracy -------------------------------------------------------------------------
+
+    /// One load step: of the size that the accuracy asks for, or up to the next event.
+    void advance_by_accuracy() {
+        const State& before = course_.accepted;
+        const StepRecord record_before = course_.last_record;
+        set_accuracy();
+        StepError rejected;
+        for (double last_size = 0.0;;) {
+            const double remaining = 1.0 - before.load_factor;
+            const double size = fitted_step_size(work_.control.size, remaining);
+            const double target = size < remaining ? before.load_factor + size : 1.0;
+            const auto error = try_step(target, is_checked(target == 1.0));
+            if (!error) {
+                charge_unjudged();
+                break;
+            }
+            const bool branches = last_size > 0.0 && !learn_lag(size, *error, last_size, rejected);
+            const StepError own{std::max(0.0, error->path - work_.control.lag * size), error->chord};
+            if (branches || size <= least_step_size || is_accurate(size, own, accuracy_)) {
+                keep_judged(size, own, branches);
+                break;
+            }
+            ++report_.costs.rejected_steps;
+            const double lag = work_.control.lag;
+            take_back(record_before);
+            work_.control.lag = lag;
+            work_.control.size = next_step_size(size, own, accuracy_);
+            rejected = *error;
+            last_size = size;
+        }
+        StepControl& control = work_.control;
+        if (control.largest_stress > before.control.largest_stress || !prescribes_strain())
+            control.estimated_error = control.path_error + control.event_error;
+    }
+
+    /// From a step that was rejected and taken again with a smaller size: the part of the error in proportion to the size
+    /// is a lag (of the mass-like term, of the tolerance) that does not add up. False where the error does not fall with
+    /// the size: a jump or a branch of the path.
+    bool learn_lag(double size, const StepError& error, double rejected_size, const StepError& rejected) {
+        if (error.chord > rejected.chord && error.chord > accuracy_) return false;
+        const double rate = error.path / size;
+        const double rejected_rate = rejected.path / rejected_size;
+        if (rate >= rejected_rate) return error.path <= accuracy_ * size;
+        const double lag = rate - size * (rejected_rate - rate) / (rejected_size - size);
+        work_.control.lag = std::clamp(lag, 0.0, accuracy_);
+        return true;
+    }
+
+    /// What has been lost since a peak in this stage, where the platen goes on the same way, makes accuracy pointless: the
+    /// path after the peak depends on every detail.
+    void set_accuracy() {
+        const StepControl& control = work_.control;
+        const bool may_soften = prescribes_strain() && control.stage_of_largest == work_.stage;
+        const double lost = 1.0 - std::abs(course_.last_record.axial_stress) / control.largest_stress;
+        accuracy_ = may_soften ? std::max(options_.accuracy, softening_share * lost) : options_.accuracy;
+        cracks_.event_tolerance = accuracy_;
+        balance_ = std::min(options_.balance, accurate_balance * accuracy_);
+    }
+
+    /// The error of a step that ended at an event or was relaxed: as that of the last one that was judged.
+    void charge_unjudged() {
+        const double taken = work_.load_factor - course_.accepted.load_factor;
+        work_.control.path_error += work_.control.curvature * taken * taken;
+    }
+
+    void keep_judged(double size, const StepError& error, bool branches) {
+        StepControl& control = work_.control;
+        control.size = branches ? size : std::max(least_step_size, next_step_size(size, error, accuracy_));
+        control.curvature = error.path / (size * size);
+        control.path_error += error.path;
+    }
+
+    /// Undoes the load step in progress. The pairs that the matrix is ordered for stay.
+    void take_back(const StepRecord& record_before) {
+        auto near_pairs = std::move(work_.near_pairs);
+        work_ = course_.accepted;
+        work_.near_pairs = std::move(near_pairs);
+        course_.last_record = record_before;
+        course_.waiting_equilibria.clear();
+        steps_with_contacts_ = 0;
+    }
+
+    /// Moves the work state towards the target load factor, up to the first event. A step without one is judged.
+    std::optional<StepError> try_step(double target, bool check) {
+        const double from = work_.load_factor;
+        course_.holds_back = true;
+        begin_step();
+        seeks_failure_ = check && cracks_.update == CrackUpdate::event;
+        note_slips(work_.displacement);
+        const double first = predicted_event(from, target);
+        Trial trial = solve(first, predicted(first));
+        if (!trial.balanced) {
+            trial = recover(trial, first, from);
+            finish_unjudged(trial, first, check);
+            work_.displacement_rate.resize(0);
+            return std::nullopt;
+        }
+        const double reached = locate_event(from, first, trial);
+        const bool event = reached < first || is_event(trial.q);
+        work_.control.missed_events = event || first == target ? 0 : work_.control.missed_events + 1;
+        if (reached == target && !event) return judge_by_halves(target, trial, check);
+        finish_unjudged(trial, reached, check);
+        return std::nullopt;
+    }
+
+    /// Takes the step from the work state once more in two halves, which are what counts.
+    std::optional<StepError> judge_by_halves(double target, const Trial& whole, bool check) {
+        const CourseValue start = course_value(course_.last_record, work_.displacement);
+        const CourseValue at_once = course_value(measure(whole.q, whole.viscous_share), whole.q);
+        const double middle = std::midpoint(work_.load_factor, target);
+        const Trial half = solve(middle, 0.5 * (work_.displacement + whole.q));
+        if (!half.balanced) {
+            set_load(target);
+            finish_unjudged(whole, target, check);
+            return std::nullopt;
+        }
+        commit(half, middle);
+        record_equilibrium(half);
+        const CourseValue halfway = course_value(course_.last_record, half.q);
+        prepare();
+        Trial end = solve(target, whole.q);
+        if (!end.balanced) {
+            finish_unjudged(recover(end, target, middle), target, check);
+            return std::nullopt;
+        }
+        const double reached = locate_event(middle, target, end);
+        if (reached < target || is_event(end.q)) {
+            finish_unjudged(end, reached, check);
+            return std::nullopt;
+        }
+        finish_step(end, target, check);
+        const double open =
+            options_.tolerance + lag_weight * std::max({whole.viscous_share, half.viscous_share, end.viscous_share});
+        return error_of(start, halfway, course_value(course_.last_record, end.q), at_once, open);
+    }
+
+    /// Nothing takes the step back any more.
+    void finish_unjudged(const Trial& trial, double reached, bool check) {
+        course_.holds_back = false;
+        tell_waiting(course_);
+        finish_step(trial, reached, check);
+    }
+
+    void finish_step(const Trial& trial, double reached, bool check) {
+        if (trial.balanced) note_event(trial.q);
+        commit(trial, reached);
+        record_equilibrium(trial);
+        keep_rate(reached);
+        if (check) (void)break_bonds(reached);
+    }
+
+    /// The axial stress where a platen prescribes the strain, else the stresses of all blocks, whose norm is the root of
+    /// their mean square.
+    using CourseValue = Eigen::VectorXd;
+    [[nodiscard]] CourseValue course_value(const StepRecord& record, const Eigen::VectorXd& q) const {
+        if (prescribes_strain()) return CourseValue::Constant(1, record.axial_stress);
+        return weighted_stresses(problem_, q);
+    }
+
+    [[nodiscard]] bool prescribes_strain() const {
+        return course_.stage().motion.has_value() && !course_.is_platen_loaded_by_stress();
+    }
+
+    /// `open`: what the solves themselves leave open, relative; it does not add up and is none of the step's size. The
+    /// scale is the largest value so far, or what the stage comes to at the pace so far.
+    [[nodiscard]] StepError error_of(const CourseValue& start, const CourseValue& middle, const CourseValue& end,
+                                     const CourseValue& at_once, double open) const {
+        const StepControl& control = work_.control;
+        const double largest = prescribes_strain() ? control.largest_stress : control.largest_mean_stress;
+        const double scale = std::max(largest, end.norm() / work_.load_factor);
+        if (!(scale > 0.0)) return {};
+        const double path = (end - at_once).norm() / scale;
+        const double chord = (middle - 0.5 * (start + end)).norm() / scale;
+        return {std::max(0.0, path - open), std::max(0.0, chord - open)};
+    }
+
+    // ---- events of steps from an accuracy --------------------------------------------------------------------
+
+    [[nodiscard]] bool is_event(const Eigen::VectorXd& q) { return event_index(q) >= 1.0 - accuracy_; }
+
+    /// Of the mapped fractures that have not slipped yet, and of the potential cracks if they are checked.
+    double event_index(const Eigen::VectorXd& q) {
+        if (!is_adaptive()) return largest_index_at(q);
+        double largest = seeks_failure_ ? largest_index_at(q) : 0.0;
+        if (cracks_.update != CrackUpdate::event) return largest;
+        const auto slips = slip_indices(model_, problem_, q);
+        for (int i = 0; i < static_cast<int>(slips.size()); ++i)
+            if (!has_slipped(i)) largest = std::max(largest, std::min(largest_useful_index, slips[i]));
+        return largest;
+    }
+
+    [[nodiscard]] bool has_slipped(int fracture) const {
+        return std::ranges::find(work_.control.slipped, fracture) != work_.control.slipped.end();
+    }
+
+    /// A mapped fracture slips for the first time only once.
+    void note_slips(const Eigen::VectorXd& q) {
+        if (cracks_.update != CrackUpdate::event) return;
+        const auto slips = slip_indices(model_, problem_, q);
+        for (int i = 0; i < static_cast<int>(slips.size()); ++i)
+            if (slips[i] >= 1.0 - accuracy_ && !has_slipped(i)) work_.control.slipped.push_back(i);
+    }
+
+    void note_event(const Eigen::VectorXd& q) {
+        const double index = event_index(q);
+        if (index < 1.0 - accuracy_) return;
+        work_.control.event_error = std::max(work_.control.event_error, std::abs(index - 1.0));
+        note_slips(q);
+    }
+
+    /// Where the motion of the last step, going on, has the next event before the target; else the target.
+    double predicted_event(double from, double target) {
+        if (work_.displacement_rate.size() == 0) return target;
+        const double width = target - from;
+        double low = 0.0;
+        double high = 1.0;
+        double g_low = event_index(work_.displacement) - 1.0;
+        double g_high = event_index(predicted(target)) - 1.0;
+        if (g_high <= accuracy_ || g_low >= 0.0) return target;
+        double at = high;
+        for (int i = 0; i < quick_event_trials && std::abs(g_high) > 0.1 * accuracy_; ++i) {
+            at = high - g_high * (high - low) / (g_high - g_low);
+            const double g = event_index(predicted(from + at * width)) - 1.0;
+            if (g >= 0.0) {
+                high = at;
+                g_high = g;
+                g_low *= 0.5;
+            } else {
+                low = at;
+                g_low = g;
+                g_high *= 0.5;
+            }
+        }
+        at = std::max(at, least_predicted_share) * std::ldexp(1.0, std::min(work_.control.missed_events, 10));
+        return at < 1.0 ? from + at * width : target;
+    }
+
+    // ---- recovery --------------------------------------------------------------------------------------------
 
     /// Where a solve has failed: relaxes from the work state, which stands at the load factor `at`. With reduced
     /// strengths the result must stand without relaxation too.
@@ -312,17 +581,29 @@ private:
 
     // ---- one equilibrium -------------------------------------------------------------------------------------
 
+    /// At the start of a load step, where the contacts may be those of the step before.
+    void begin_step() {
+        const bool keeps = steps_with_contacts_ > 0 && steps_with_contacts_ < options_.detection_every;
+        prepare(keeps);
+        ++steps_with_contacts_;
+    }
+
     /// Contacts and frames of the work state; what all trials from it share.
-    void prepare() {
+    void prepare(bool keeps_contacts = false) {
         bonded_ = bonded_interfaces(work_);
         const bool separated = std::ranges::find(bonded_, 0) != bonded_.end();
         {
             const Stopwatch watch(report_.costs.seconds.set_up);
             place_bonds(model_, work_, problem_.bonds);
         }
-        problem_.contacts.clear();
         std::vector<std::pair<int, int>> near_pairs;
-        if (separated) {
+        if (keeps_contacts) {
+            renew_contacts(work_, problem_.contacts);
+        } else {
+            steps_with_contacts_ = 0;
+            problem_.contacts.clear();
+        }
+        if (separated && !keeps_contacts) {
             const Stopwatch watch(report_.costs.seconds.detection);
             auto detected = state_contacts(model_, work_);
             problem_.contacts = std::move(detected.points);
@@ -523,13 +804,14 @@ private:
     /// replaces `trial` and returns that load factor, or `to` if nothing fails before.
     double locate_event(double from, double to, Trial& trial) {
         const double tolerance = cracks_.event_tolerance;
-        double f_high = largest_index_at(trial.q);
+        const double goal = is_adaptive() ? 1.0 : 1.0 + 0.5 * tolerance;
+        const double reach = is_adaptive() ? tolerance : 0.5 * tolerance; // of f around the goal
+        double f_high = event_index(trial.q);
         if (f_high <= 1.0 + tolerance) return to;
-        const double goal = 1.0 + 0.5 * tolerance;
         double low = from;
         double high = to;
         if (reduces_strengths()) set_load(from);
-        double g_low = largest_index_at(work_.displacement) - goal;
+        double g_low = event_index(work_.displacement) - goal;
         if (reduces_strengths()) set_load(to);
         double g_high = f_high - goal;
         if (g_low >= 0.0) return to;
@@ -544,11 +826,11 @@ private:
                 problem_.start = work_.displacement;
                 break;
             }
-            const double g = largest_index_at(next.q) - goal;
-            if (g >= -0.5 * tolerance) {
+            const double g = event_index(next.q) - goal;
+            if (g >= -reach) {
                 trial = std::move(next);
                 high = at;
-                if (g <= 0.5 * tolerance) break;
+                if (g <= reach) break;
                 g_high = g;
                 g_low *= 0.5;
             } else {
@@ -565,7 +847,7 @@ private:
     bool break_bonds(double load_factor) {
         bool any = false;
         for (;;) {
-            const auto broken = chosen_to_fail(cracks_, candidates(work_.displacement));
+            const auto broken = breaking(candidates(work_.displacement), !any);
             if (broken.empty()) return any;
             any = true;
             weaken_together(course_, broken, course_.last_record.axial_strain);
@@ -575,6 +857,14 @@ private:
             commit(trial, load_factor);
             record_equilibrium(trial);
         }
+    }
+
+    /// Those that fail together. At an event that was located around f = 1, the first time, all within its tolerance.
+    [[nodiscard]] std::vector<CrackCandidate> breaking(const std::vector<CrackCandidate>& all, bool first) const {
+        const bool around_one = first && is_adaptive() && cracks_.update == CrackUpdate::event;
+        const double largest = largest_index(all);
+        if (!around_one || largest > 1.0 + accuracy_) return chosen_to_fail(cracks_, all);
+        return failing(all, 1.0 - accuracy_);
     }
 
     // ---- measurements and messages ---------------------------------------------------------------------------
@@ -598,6 +888,14 @@ private:
         record.balanced = trial.balanced;
         step_balanced_ = step_balanced_ && trial.balanced;
         worst_share_ = std::max(worst_share_, trial.viscous_share);
+        StepControl& control = work_.control;
+        if (trial.balanced && std::abs(record.axial_stress) > control.largest_stress) {
+            control.largest_stress = std::abs(record.axial_stress);
+            control.stage_of_largest = work_.stage;
+        }
+        if (is_adaptive() && !prescribes_strain())
+            control.largest_mean_stress =
+                std::max(control.largest_mean_stress, weighted_stresses(problem_, trial.q).norm());
         notify_equilibrium(course_, record);
     }
 
@@ -624,7 +922,7 @@ private:
     }
 
     const Model& model_;
-    const CrackOptions& cracks_;
+    CrackOptions cracks_;
     const SolverOptions& options_;
     RunCourse course_;
     State& work_ = course_.work;         ///< at the last equilibrium
@@ -642,8 +940,11 @@ private:
     bool step_balanced_ = true;
     double worst_share_ = 0.0;
     int last_worst_block_ = -1;
-    double balance_ = 0.0;    ///< of the stage
-    double rest_share_ = 0.0; ///< of the mass-like term: with reduced strengths a body with less rests
+    double balance_ = 0.0;        ///< of the stage
+    double accuracy_ = 0.0;       ///< of the load step in progress
+    double rest_share_ = 0.0;     ///< of the mass-like term: with reduced strengths a body with less rests
+    int steps_with_contacts_ = 0; ///< load steps with the contacts in place since they were detected
+    bool seeks_failure_ = false;  ///< of potential cracks, in the load step in progress
     LostEquilibrium last_failure_;
     LoadSteps steps_;
 };

@@ -49,6 +49,15 @@ StateContacts state_contacts(const Model& model, const State& state) {
     return {std::move(detected.points), std::move(detected.near_pairs)};
 }
 
+void renew_contacts(const State& state, std::vector<ContactPoint>& points) {
+    for (ContactPoint& point : points) {
+        const auto memory = std::ranges::lower_bound(state.contacts, point.key, {}, &ContactMemory::key);
+        const bool known = memory != state.contacts.end() && memory->key == point.key;
+        point.history = known ? memory->history : PointHistory{};
+        point.slip_start = point.tangent.dot(relative_position(point, state.displacement));
+    }
+}
+
 void keep_histories(const LoadedBody& body, const Eigen::VectorXd& q, State& state) {
     for (const Bond& bond : body.bonds) {
         const InterfaceLaw& law = (*body.laws)[bond.law];

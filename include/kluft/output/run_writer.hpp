@@ -46,7 +46,8 @@ struct RunOutcome {
     std::map<std::string, double> seconds; ///< by stage of the computation
     std::string version;
     std::optional<double> factor_of_safety;
-    std::optional<MotionReport> motion; ///< of an explicit run
+    std::optional<double> estimated_error; ///< where an accuracy was asked for
+    std::optional<MotionReport> motion;    ///< of an explicit run
 };
 
 /// Writes history.csv, equilibria.csv, cracks.csv and histories.csv row by row, field files, state.h5 at checkpoints, and at the end

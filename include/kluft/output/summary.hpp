@@ -61,7 +61,8 @@ struct RunSummary {
     int interfaces = 0;
     int unknowns = 0;
     std::map<std::string, std::int64_t> counts; ///< of what was computed: factorizations, analyses, updates,
-                                                ///< rank, refinements, relaxations, events
+                                                ///< rank, refinements, relaxations, events,
+                                                ///< rejected_steps
     double elapsed_s = 0.0;
     double cpu_s = 0.0; ///< processor time of all threads, in the system included
     std::int64_t peak_memory_bytes = 0;
@@ -69,6 +70,7 @@ struct RunSummary {
     std::map<std::string, double> seconds;  ///< by stage of the computation
     std::string message;                    ///< why the run ended, if not done
     std::optional<double> factor_of_safety; ///< of a strength reduction that went past it
+    std::optional<double> estimated_error;  ///< of the history up to its peak, where an accuracy was asked for
     std::optional<MotionReport> motion;     ///< of an explicit run
 };
 

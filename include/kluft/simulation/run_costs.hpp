@@ -27,6 +27,7 @@ struct RunCosts {
     int refinements = 0;  ///< Krylov vectors in all linear solves
     int relaxations = 0;
     int events = 0;         ///< equilibria at which potential cracks failed
+    int rejected_steps = 0; ///< load steps taken again with a smaller size, for the accuracy's sake
     double elapsed_s = 0.0; ///< wall-clock time
     RunSeconds seconds;
 };

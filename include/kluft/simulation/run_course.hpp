@@ -40,9 +40,10 @@ struct RunCourse {
     std::optional<StageLoads> loads; ///< of the stage in progress
     StepRecord last_record;
     RunReport report;
-    int n_steps = 0;         ///< of all stages
-    int passes = 0;          ///< of crack checks in the load step that failed something
-    bool holds_back = false; ///< what happens in a load step is told when it is committed: it may be taken back
+    int n_steps = 0;            ///< of all stages
+    int passes = 0;             ///< of crack checks in the load step that failed something
+    bool chooses_steps = false; ///< their number is not known beforehand
+    bool holds_back = false;    ///< what happens in a load step is told when it is committed: it may be taken back
     std::vector<StepRecord> waiting_equilibria;
     std::vector<CrackRecord> waiting_cracks;
     std::chrono::steady_clock::time_point started = std::chrono::steady_clock::now();
@@ -61,6 +62,7 @@ struct LoadSteps {
     std::function<StepRecord()> initial_record; ///< of the body before any load
     /// Finds the equilibrium at a load factor and returns its record, which lacks step and load factor.
     std::function<StepRecord(double load_factor, bool last_of_stage)> load_step;
+    std::function<bool()> chooses_steps;    ///< in this stage: a load step may then end before its load factor
     std::function<void()> reduce_strengths; ///< all load steps of such a stage; throws with the factor of safety
     std::function<void(const StepRecord&)> look_back; ///< after a commit; throws where the run must not go on
     std::function<void()> end_stage;                  ///< calls leave_stage

@@ -23,6 +23,7 @@ struct RunReport {
     int detections = 0;
     int crack_checks = 0;
     std::optional<double> factor_of_safety; ///< by a stage that reduces the strengths, if that found the limit
+    std::optional<double> estimated_error;  ///< of the history up to its peak, where an accuracy was asked for
     std::vector<std::string> warnings;
     std::optional<MotionReport> motion; ///< of explicit runs
 };

@@ -31,10 +31,12 @@ enum class Tangent {
 };
 
 struct SolverOptions {
-    double tolerance = 1e-5;       ///< of |R|/F_ref
-    double balance = 1e-3;         ///< largest share of the mass-like term in F_ref of a balanced step
-    double viscosity = 0.05;       ///< eta H^2/E of the mass-like term
-    int max_iterations = 12;       ///< open-close iterations per attempt
+    double tolerance = 1e-5; ///< of |R|/F_ref
+    double balance = 1e-3;   ///< largest share of the mass-like term in F_ref of a balanced step
+    double accuracy = 0.0;   ///< of the history, relative; the load steps follow from it. 0: as many as the stages say
+    int detection_every = 1; ///< load steps between two detections of contacts; always after a crack
+    double viscosity = 0.05; ///< eta H^2/E of the mass-like term
+    int max_iterations = 12; ///< open-close iterations per attempt
     int max_unbalanced_steps = 10; ///< successive unbalanced steps that end a run
     Tangent tangent = Tangent::unsymmetric;
     bool reuse = true;       ///< of the factor; false: a factorization in each linear solve

@@ -21,6 +21,23 @@ enum class InterfaceStatus : std::uint8_t {
     shear_crack      ///< a potential crack broken in shear, now a fracture
 };
 
+/// Of runs whose load steps follow from an accuracy.
+struct StepControl {
+    double size = 0.0;           ///< of the next step, load factor
+    double curvature = 0.0;      ///< path error of the last step that was judged, over the square of its size
+    double lag = 0.0;            ///< part of the error in proportion to the size, over the size: it does not add up
+    double largest_stress = 0.0; ///< axial, of all equilibria so far (Pa)
+    double largest_mean_stress = 0.0; ///< root of the mean square over the body, where loads are prescribed (Pa)
+    double path_error = 0.0;          ///< sum over the steps so far, relative
+    double event_error = 0.0;         ///< largest |f - 1| at an event so far
+    double estimated_error = 0.0;     ///< both, at the largest stress (so far, where loads are prescribed)
+    int stage_of_largest = -1;        ///< in which the largest stress was reached
+    int missed_events = 0;            ///< in succession: the last steps ended where an event was expected, in vain
+    std::vector<int> slipped;         ///< mapped fractures that have slipped, in the order in which they did
+
+    bool operator==(const StepControl&) const = default;
+};
+
 struct State {
     int stage = 0;                            ///< stage in progress, from 0
     int step_in_stage = 0;                    ///< load steps accepted in it
@@ -42,6 +59,7 @@ struct State {
         viscosity_factor; ///< factor of the mass-like term per block since the last relaxation; empty: 1 everywhere
     std::vector<std::pair<int, int>>
         near_pairs; ///< blocks that the matrix was ordered for, besides those at interfaces
+    StepControl control;
     RunCosts costs; ///< so far
 };
 

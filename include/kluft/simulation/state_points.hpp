@@ -27,6 +27,10 @@ struct StateContacts {
 /// Contacts of the unbonded surfaces, with the histories of the state.
 [[nodiscard]] StateContacts state_contacts(const Model& model, const State& state);
 
+/// The same contact points and frames once more, with the histories of the state and slip counted from its
+/// displacements.
+void renew_contacts(const State& state, std::vector<ContactPoint>& points);
+
 /// Puts the shear tractions of the body's bonds and the histories of its touching contacts at displacements q into the
 /// state. Contacts that are open and have not dilated are forgotten.
 void keep_histories(const LoadedBody& body, const Eigen::VectorXd& q, State& state);

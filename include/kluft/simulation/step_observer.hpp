@@ -13,7 +13,7 @@ struct Progress {
     int stage = 0;
     int n_stages = 0;
     int step = 0;    ///< load steps accepted in all
-    int n_steps = 0; ///< load steps of all stages
+    int n_steps = 0; ///< load steps of all stages; 0 where they follow from an accuracy
     double load_factor = 0.0;
     double axial_strain = 0.0;
     double axial_stress = 0.0; ///< Pa
