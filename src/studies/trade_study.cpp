@@ -185,7 +185,7 @@ private:
 
     void add_methods() {
         const bool can_be_explicit = scene_.kinematics == Kinematics::affine && !reduces_strengths(scene_);
-        if (scene_.integrator == Integrator::explicit_)
+        if (scene_.integrator == Integrator::explicit_motion)
             add("implicit", {{steps_key_, own_and_twice()}, {"analysis.integrator", {"implicit"}}});
         else if (can_be_explicit)
             add("explicit", {{steps_key_, own_and_twice()}, {"analysis.integrator", {"explicit"}}});
