@@ -17,8 +17,6 @@ namespace {
 const double facing_cosine = -std::sqrt(0.5);
 /// An overlap shorter than this part of the shorter edge is no contact.
 constexpr double shortest_overlap = 1e-6;
-/// Deeper than this part of the smaller block, two edges are not in contact but on opposite sides of a block.
-constexpr double deepest_penetration = 0.25;
 /// Deeper than this part of it, they are in contact only if what overlaps is inside one of the blocks.
 constexpr double doubtful_penetration = 0.01;
 /// Two points of a fracture that were nearer than this part of its edge were one point; what is between is round-off.
@@ -42,7 +40,8 @@ struct CurrentEdge {
 /// The edges of a block that can touch others: edges[first] .. edges[last - 1] of all of them.
 struct Surface {
     int block = 0;
-    bool separated = false; ///< has an edge that is not bonded inside the body
+    bool separated =
+        false; ///< has an edge that is not bonded inside the body, or one of an outline that may meet others
     std::size_t first = 0;
     std::size_t last = 0;
 };
@@ -73,7 +72,7 @@ void append_surface(const BlockSystem& system, const ContactSurfaces& contact_su
     const Block& block = system.blocks[b];
     const auto touches = [&](const Edge& edge) { return !is_bonded(contact_surfaces, edge); };
     if (std::ranges::none_of(block.edges, touches)) return;
-    Surface surface{b, false, surfaces.edges.size(), 0};
+    Surface surface{b, contact_surfaces.outlines_meet, surfaces.edges.size(), 0};
     std::vector<Vec2>& corners = surfaces.corners;
     corners.clear();
     for (const Edge& edge : block.edges) corners.push_back(current_position(system, q, b, edge.start));

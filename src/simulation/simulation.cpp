@@ -20,6 +20,7 @@
 #include "kluft/kinematics/rigid.hpp"
 #include "kluft/simulation/measurements.hpp"
 #include "kluft/simulation/run_course.hpp"
+#include "kluft/simulation/state_check.hpp"
 #include "kluft/simulation/state_points.hpp"
 #include "kluft/simulation/strength_reduction.hpp"
 #include "kluft/simulation/weakening.hpp"
@@ -322,7 +323,7 @@ private:
         }
         problem_.contacts.clear();
         std::vector<std::pair<int, int>> near_pairs;
-        if (separated) {
+        if (separated || may_outlines_meet(model_)) {
             const Stopwatch watch(report_.costs.seconds.detection);
             auto detected = state_contacts(model_, work_);
             problem_.contacts = std::move(detected.points);
@@ -503,6 +504,8 @@ private:
 
     /// The place where the work state changes.
     void commit(const Trial& trial, double load_factor) {
+        if (auto flaw = flaw_of_displacements(problem_, trial.q); !flaw.empty())
+            throw LostEquilibrium{std::move(flaw), false};
         keep_histories(problem_, trial.q, work_);
         work_.displacement = trial.q;
         work_.load_factor = load_factor;

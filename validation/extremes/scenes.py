@@ -96,26 +96,29 @@ def radians(angle):
     return math.radians(angle)
 
 
-def weak_plane(friction=30.0, cohesion=1e5, lateral=2e5, modulus=1e13, normal=1e13, shear=None, slope=None, steps=40,
-               beyond=2.0, length=1.0, tiny=None, **more):
-    """One plane across a specimen under lateral pressure (Jaeger 1960), pressed to `beyond` times the strain at slip."""
-    slope = 45 + friction / 2 if slope is None else slope
-    shear = normal if shear is None else shear
-    rise = math.tan(radians(slope)) * length
-    height = rise + length
-    differential = weak_plane_strength(friction, cohesion, lateral, slope)
-    along = 1 / math.cos(radians(slope))  # per width
-    # Closure of the specimen at slip: blocks, and the plane's elastic compliance along the load.
-    normal_share, shear_share = math.cos(radians(slope)) ** 2, math.sin(radians(slope)) ** 2
-    closure = differential * (height / modulus + normal_share * math.cos(radians(slope)) ** 0 / normal + shear_share / shear)
-    del along
-    value = beyond * (closure + (lateral / normal if tiny is None else tiny))
-    trace = [[-0.05 * length, 0.5 * length - 0.05 * rise], [1.05 * length, 0.5 * length + 1.05 * rise]]
+def weak_plane(friction=30.0, cohesion=1e5, lateral=2e5, stiffness=1.0, ratio=1.0, modulus=None, steps=40, **more):
+    """One plane across a specimen under lateral pressure (Jaeger 1960), pressed to twice the strain at slip. Its normal
+    stiffness is `stiffness` E over the width. E is so large that the slip does not change the loaded width."""
+    slope = radians(45 + friction / 2)
+    strength = weak_plane_strength(friction, cohesion, lateral)
+    if modulus is None:
+        modulus = weak_plane_modulus(strength, stiffness * min(1.0, ratio))
+    normal, shear = stiffness * modulus, stiffness * ratio * modulus
+    rise = math.tan(slope)
+    height = rise + 1.0
+    closure = strength * (height / modulus + math.cos(slope) ** 2 / normal + math.sin(slope) ** 2 / shear)
+    trace = [[-0.05, 0.5 - 0.05 * rise], [1.05, 0.5 + 1.05 * rise]]
     return body({"plane": fracture(normal, shear, friction_angle=friction, cohesion=cohesion)}, rock(modulus),
-                {"domain": {"rectangle": {"width": length, "height": height}}, "fractures": [{"trace": trace}]},
+                {"domain": {"rectangle": {"width": 1, "height": height}}, "fractures": [{"trace": trace}]},
                 [{"name": "pressure", "pressure": {side: lateral for side in ("left", "right", "top")}},
-                 {"name": "platen", "displacement": {"boundary": "top", "value": value}, "steps": steps}],
-                boundaries={"bottom": {"support": "smooth"}}, plane="strain", **({"solver": {"tolerance": 1e-10, "balance": 1e-7}} | more))
+                 {"name": "platen", "displacement": {"boundary": "top", "value": 2 * (closure + lateral / normal)}, "steps": steps}],
+                boundaries={"bottom": {"support": "smooth"}}, plane="strain",
+                **({"solver": {"tolerance": 1e-10, "balance": 1e-7}} | more))
+
+
+def weak_plane_modulus(strength, softest=1.0):
+    """So that strains and the slip are about 1e-7, as far as the largest modulus of a scene allows."""
+    return min(1e15, 1e7 * max(strength, 1e-3) / min(1.0, softest))
 
 
 def weak_plane_strength(friction, cohesion, lateral, slope=None):

@@ -54,6 +54,10 @@ class Outcome:
         return read_columns(self.directory / "equilibria.csv")
 
     @property
+    def cracks(self):
+        return read_columns(self.directory / "cracks.csv", ("mode",))
+
+    @property
     def histories(self):
         return read_columns(self.directory / "histories.csv")
 
@@ -102,11 +106,11 @@ def run(kluft, scene, directory, limit):
     return outcome
 
 
-def read_columns(path):
-    """A table of numbers by columns."""
+def read_columns(path, texts=()):
+    """A table by columns, as numbers but for those named in `texts`."""
     with open(path, newline="", encoding="utf-8") as file:
         rows = list(csv.reader(file))
-    return {name: np.array([float(row[i]) for row in rows[1:]]) for i, name in enumerate(rows[0])}
+    return {name: np.array([float(row[i]) for row in rows[1:]]) for i, name in enumerate(rows[0]) if name not in texts}
 
 
 def read_tables(outcome):
@@ -171,6 +175,8 @@ def kind_of(point, outcomes):
     for outcome, may_fall in zip(outcomes, point.may_fall or [False] * len(outcomes)):
         if not may_fall and not outcome.done:
             return "stopped", outcome.message() or outcome.summary.get("message", ""), None
+    if point.no_equilibrium:
+        return ("unbalanced", "said so in each row", None) if not outcomes[0].balanced else ("WRONG", "an equilibrium that does not exist", None)
     checks = point.judge(outcomes)
     worst = max(checks, key=lambda check: check.error / check.tolerance)
     if worst.met:

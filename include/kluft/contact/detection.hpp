@@ -10,12 +10,16 @@
 
 namespace kluft {
 
+/// Deeper than this part of the smaller block's size, two edges are not in contact but on opposite sides of a block.
+inline constexpr double deepest_penetration = 0.25;
+
 /// What detection needs to know of the interfaces.
 struct ContactSurfaces {
     std::vector<char> bonded;     ///< per interface: 1 while it is a bond
     std::vector<int> law;         ///< per interface: its law as a fracture (index into the interface laws)
     std::vector<double> friction; ///< per law: tan(phi), to choose between the laws of two surfaces
     int default_law = 0;          ///< of two surfaces of the domain's outline that meet
+    bool outlines_meet = false;   ///< also those of two blocks that have no fracture inside the body
 };
 
 struct DetectedContacts {

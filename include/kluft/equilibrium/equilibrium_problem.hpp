@@ -56,7 +56,8 @@ private:
     BodyForces body_forces_;
 };
 
-/// M of a block: the integral of N' N over its area (m2), or over `least_area` if that is more.
+/// M of a block: the integral of N' N over its area (m2), or over `least_area` if that is more, but not
+/// more than 20 times its own.
 [[nodiscard]] Mat6 mass_matrix(const Block& block, double least_area);
 
 /// The norm of eta M (q - q_start) (N/m).

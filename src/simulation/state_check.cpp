@@ -1,0 +1,49 @@
+#include "kluft/simulation/state_check.hpp"
+
+#include <algorithm>
+
+#include <Eigen/LU>
+#include <fmt/format.h>
+
+#include "kluft/blocks/block_search.hpp"
+#include "kluft/contact/detection.hpp"
+#include "kluft/kinematics/affine.hpp"
+
+namespace kluft {
+
+namespace {
+
+std::string block_text(const BlockSystem& system, int b) {
+    const Vec2 at = system.origin + system.blocks[b].centroid;
+    return fmt::format("block {} at ({:.6g}, {:.6g})", block_label(system, b), at.x(), at.y());
+}
+
+std::string flaw_of_contact(const LoadedBody& body, const ContactPoint& point, const Eigen::VectorXd& q) {
+    const BlockSystem& system = *body.system;
+    const double smaller = std::min(system.blocks[point.block_a].size, system.blocks[point.block_b].size);
+    const double depth = -gap_and_slip(point, q).gap;
+    if (!(depth > deepest_penetration * smaller)) return {};
+    return fmt::format(
+        "{} and {} overlap by {:.3g} m, {:.0f} % of the size of the smaller one: the loads are too large "
+        "for the normal stiffness of the interface between them",
+        block_text(system, point.block_a), block_text(system, point.block_b), depth, 100.0 * depth / smaller);
+}
+
+} // namespace
+
+std::string flaw_of_displacements(const LoadedBody& body, const Eigen::VectorXd& q) {
+    if (!q.allFinite()) return "displacements are no finite numbers any more";
+    const BlockSystem& system = *body.system;
+    for (int b = 0; b < system.n_blocks(); ++b) {
+        const double ratio = deformation_gradient(q, b, system.blocks[b].size).determinant();
+        if (ratio <= 0.0)
+            return fmt::format("{} is turned inside out: {:.3g} of its area is left", block_text(system, b), ratio);
+    }
+    for (const ContactPoint& point : body.contacts) {
+        auto flaw = flaw_of_contact(body, point, q);
+        if (!flaw.empty()) return flaw;
+    }
+    return {};
+}
+
+} // namespace kluft
