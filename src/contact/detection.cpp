@@ -21,6 +21,10 @@ constexpr double shortest_overlap = 1e-6;
 constexpr double doubtful_penetration = 0.01;
 /// Two points of a fracture that were nearer than this part of its edge were one point; what is between is round-off.
 constexpr double same_point = 1e-12;
+/// Deeper than this part of the smaller block, edges that were no neighbours are not in contact ...
+constexpr double deepest_penetration = 0.25;
+/// ... and deeper than this part of the thickness of the thinner block.
+constexpr double deepest_of_thickness = 0.5;
 /// Length that a vertex stands for, as a part of min(edge, h): decides convergence, not strength (measured).
 constexpr double vertex_weight = 0.2;
 
@@ -128,7 +132,8 @@ public:
     void run(int a, std::span<const CurrentEdge> edges_a, int b, std::span<const CurrentEdge> edges_b) {
         bonded_pair_ = bonded(a, b);
         const double smaller = std::min(system_.blocks[a].size, system_.blocks[b].size);
-        deepest_ = -deepest_penetration * smaller;
+        deepest_ = -deepest_contact(system_.blocks[a], system_.blocks[b], false);
+        deepest_own_ = -deepest_contact(system_.blocks[a], system_.blocks[b], true);
         doubtful_ = -doubtful_penetration * smaller;
         overlapping_.clear();
         for (const auto& edge_a : edges_a) {
@@ -229,7 +234,10 @@ private:
         };
         const double gap_low = gap_at(low);
         const double gap_high = gap_at(high);
-        if (std::min(gap_low, gap_high) > reach_ || std::min(gap_low, gap_high) < deepest_) return;
+        const Edge& side_a = reference(a, edge_a.edge);
+        const bool own = side_a.interface >= 0 && side_a.interface == reference(b, edge_b.edge).interface;
+        if (std::min(gap_low, gap_high) > reach_) return;
+        if (std::min(gap_low, gap_high) < (own ? deepest_own_ : deepest_)) return;
 
         const double at = low + (gap_low < gap_high ? 0.25 : 0.75) * overlap; // nearer to the deeper end
         if (gap_at(at) < doubtful_) {
@@ -304,9 +312,17 @@ private:
     std::vector<ContactPoint> points_of_higher_; ///< vertices of the higher block
     bool bonded_pair_ = false;
     double deepest_ = 0.0;
+    double deepest_own_ = 0.0; ///< of the two faces of an interface
     double doubtful_ = 0.0;
     std::vector<std::pair<int, int>> overlapping_; ///< (edge of a, edge of b) of the present pair
 };
+
+/// Of the rectangle with the block's area and largest second moment (m).
+double thickness(const Block& block) {
+    const Mat2& m = block.second_moment;
+    const double largest = 0.5 * m.trace() + std::hypot(0.5 * (m(0, 0) - m(1, 1)), m(0, 1));
+    return block.area / std::sqrt(12.0 * largest / block.area);
+}
 
 void transfer_histories(const std::vector<ContactMemory>& memory, std::vector<ContactPoint>& points) {
     auto next = memory.begin();
@@ -317,6 +333,12 @@ void transfer_histories(const std::vector<ContactMemory>& memory, std::vector<Co
 }
 
 } // namespace
+
+double deepest_contact(const Block& a, const Block& b, bool own) {
+    const double smaller = std::min(a.size, b.size);
+    if (own) return smaller;
+    return std::min(deepest_penetration * smaller, deepest_of_thickness * std::min(thickness(a), thickness(b)));
+}
 
 DetectedContacts detect_contacts(const BlockSystem& system, const ContactSurfaces& surfaces, const Eigen::VectorXd& q,
                                  double reach, const std::vector<ContactMemory>& memory) {

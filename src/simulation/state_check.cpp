@@ -18,15 +18,24 @@ std::string block_text(const BlockSystem& system, int b) {
     return fmt::format("block {} at ({:.6g}, {:.6g})", block_label(system, b), at.x(), at.y());
 }
 
-std::string flaw_of_contact(const LoadedBody& body, const ContactPoint& point, const Eigen::VectorXd& q) {
+bool is_own(const ContactPoint& point) { return point.interface >= 0; }
+
+/// The first contact of two faces of an interface, or of others, that is too deep; "" if there is none.
+std::string deep_contact(const LoadedBody& body, const Eigen::VectorXd& q, bool own) {
     const BlockSystem& system = *body.system;
-    const double smaller = std::min(system.blocks[point.block_a].size, system.blocks[point.block_b].size);
-    const double depth = -gap_and_slip(point, q).gap;
-    if (!(depth > deepest_penetration * smaller)) return {};
-    return fmt::format(
-        "{} and {} overlap by {:.3g} m, {:.0f} % of the size of the smaller one: the loads are too large "
-        "for the normal stiffness of the interface between them",
-        block_text(system, point.block_a), block_text(system, point.block_b), depth, 100.0 * depth / smaller);
+    for (const ContactPoint& point : body.contacts) {
+        if (is_own(point) != own) continue;
+        const Block& a = system.blocks[point.block_a];
+        const Block& b = system.blocks[point.block_b];
+        const double depth = -gap_and_slip(point, q).gap;
+        if (!(depth > deepest_contact(a, b, own))) continue;
+        return fmt::format(
+            "{} and {} overlap by {:.3g} m, {:.0f} % of the size of the smaller one: the loads are too large "
+            "for the normal stiffness of the interface between them",
+            block_text(system, point.block_a), block_text(system, point.block_b), depth,
+            100.0 * depth / std::min(a.size, b.size));
+    }
+    return {};
 }
 
 } // namespace
@@ -39,11 +48,11 @@ std::string flaw_of_displacements(const LoadedBody& body, const Eigen::VectorXd&
         if (ratio <= 0.0)
             return fmt::format("{} is turned inside out: {:.3g} of its area is left", block_text(system, b), ratio);
     }
-    for (const ContactPoint& point : body.contacts) {
-        auto flaw = flaw_of_contact(body, point, q);
-        if (!flaw.empty()) return flaw;
-    }
-    return {};
+    const bool given = system.outline_type >= 0; // has few blocks, and where they meet later counts as much
+    auto flaw = deep_contact(body, q, true);
+    return flaw.empty() && given ? deep_contact(body, q, false) : flaw;
 }
+
+std::string lost_contact(const LoadedBody& body, const Eigen::VectorXd& q) { return deep_contact(body, q, false); }
 
 } // namespace kluft

@@ -10,8 +10,10 @@
 
 namespace kluft {
 
-/// Deeper than this part of the smaller block's size, two edges are not in contact but on opposite sides of a block.
-inline constexpr double deepest_penetration = 0.25;
+/// Largest overlap of two blocks in contact (m). The two faces of an interface (`own`) face each other down to the size of
+/// the smaller block. Other edges do so down to a quarter of it, and to half the thickness of the thinner one: what is
+/// deeper are opposite sides of a block.
+[[nodiscard]] double deepest_contact(const Block& a, const Block& b, bool own);
 
 /// What detection needs to know of the interfaces.
 struct ContactSurfaces {

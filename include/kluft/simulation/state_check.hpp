@@ -10,8 +10,12 @@
 namespace kluft {
 
 /// What is wrong with displacements q of the body, "" if nothing: one that is no finite number, a block that is turned
-/// inside out (det F <= 0), or a closed contact that is deeper than detection can tell from two opposite sides of a block
-/// (`deepest_penetration` of the smaller block), so that the blocks would pass through each other.
+/// inside out (det F <= 0), or a closed contact that is deeper than `deepest_contact`, so that detection would lose it and
+/// the blocks would pass through each other: one of the two faces of an interface, of given blocks any.
 [[nodiscard]] std::string flaw_of_displacements(const LoadedBody& body, const Eigen::VectorXd& q);
+
+/// The same of a contact of faces that were no neighbours: fragments of a net that has failed get so deep, and the next
+/// detection loses their contact. "" if there is none.
+[[nodiscard]] std::string lost_contact(const LoadedBody& body, const Eigen::VectorXd& q);
 
 } // namespace kluft
