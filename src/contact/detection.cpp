@@ -317,13 +317,6 @@ private:
     std::vector<std::pair<int, int>> overlapping_; ///< (edge of a, edge of b) of the present pair
 };
 
-/// Of the rectangle with the block's area and largest second moment (m).
-double thickness(const Block& block) {
-    const Mat2& m = block.second_moment;
-    const double largest = 0.5 * m.trace() + std::hypot(0.5 * (m(0, 0) - m(1, 1)), m(0, 1));
-    return block.area / std::sqrt(12.0 * largest / block.area);
-}
-
 void transfer_histories(const std::vector<ContactMemory>& memory, std::vector<ContactPoint>& points) {
     auto next = memory.begin();
     for (ContactPoint& point : points) {
@@ -333,6 +326,12 @@ void transfer_histories(const std::vector<ContactMemory>& memory, std::vector<Co
 }
 
 } // namespace
+
+double thickness(const Block& block) {
+    const Mat2& m = block.second_moment;
+    const double largest = 0.5 * m.trace() + std::hypot(0.5 * (m(0, 0) - m(1, 1)), m(0, 1));
+    return block.area / std::sqrt(12.0 * largest / block.area);
+}
 
 double deepest_contact(const Block& a, const Block& b, bool own) {
     const double smaller = std::min(a.size, b.size);

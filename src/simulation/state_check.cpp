@@ -18,6 +18,8 @@ std::string block_text(const BlockSystem& system, int b) {
     return fmt::format("block {} at ({:.6g}, {:.6g})", block_label(system, b), at.x(), at.y());
 }
 
+constexpr double half = 0.5; ///< of the thickness of a block: the face of its neighbour has come to its middle
+
 bool is_own(const ContactPoint& point) { return point.interface >= 0; }
 
 /// The first contact of two faces of an interface, or of others, that is too deep; "" if there is none.
@@ -28,7 +30,8 @@ std::string deep_contact(const LoadedBody& body, const Eigen::VectorXd& q, bool 
         const Block& a = system.blocks[point.block_a];
         const Block& b = system.blocks[point.block_b];
         const double depth = -gap_and_slip(point, q).gap;
-        if (!(depth > deepest_contact(a, b, own))) continue;
+        const double deepest = own ? half * std::min(thickness(a), thickness(b)) : deepest_contact(a, b, false);
+        if (!(depth > deepest)) continue;
         return fmt::format(
             "{} and {} overlap by {:.3g} m, {:.0f} % of the size of the smaller one: the loads are too large "
             "for the normal stiffness of the interface between them",

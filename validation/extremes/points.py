@@ -153,7 +153,7 @@ def stiffness_contrast():
     modulus, spacing = 1e8, 0.03
     for ratio in powers(-3, 8):
         target, quick = ratio <= 1e4, ratio in (1e-3, 1.0, 1e4, 1e8)
-        rounded = max(1e-6, 1e-13 * ratio)  # a gap has the round-off of the displacements, its traction k_n times that
+        rounded = max(1e-6, 1e-12 * ratio)  # a gap has the round-off of the displacements, its traction k_n times that
         normal = ratio * modulus / spacing
         yield Point("k_n d/E", f"{ratio:g}", "strip of bonded hexagons", [scenes.strip(modulus, normal=normal, shear=normal)],
                     strip_moduli(modulus, 0.25, normal, normal, spacing, rounded), target, quick=quick)
@@ -261,7 +261,7 @@ def slivers():
                     axial_stiffness(scenes.column_modulus(1e10, 1e10, 1 + thickness, 2)), quick=thickness == 1e-12)
     for exponent in range(1, 11):
         angle = 10.0**-exponent
-        yield Point("slivers", f"angle {angle:g}", "two joints crossing, pressed", [scenes.wedge(angle)], hydrostatic(1e4),
+        yield Point("slivers", f"angle {angle:g}", "two joints crossing, pressed", [scenes.wedge(angle, 1e4 * angle)], hydrostatic(1e4 * angle),
                     quick=exponent in (1, 3, 10))
     for shift in (0.2, 0.3):
         yield Point("slivers", f"{shift:g} d beside edges", "joint through hexagons, pressed", [scenes.sliver_net(shift)],

@@ -186,8 +186,8 @@ def slab(thickness, aspect=1.0, modulus=1e10, normal=1e10):
                 [{"name": "platen", "displacement": {"boundary": "top", "value": 1e-6 * levels[-1]}}])
 
 
-def wedge(angle, pressure=1e4, modulus=1e10, normal=1e10):
-    """Two joints that cross at a small angle leave two needles; hydrostatic pressure is hydrostatic stress in all blocks."""
+def wedge(angle, pressure, modulus=1e10, normal=1e10):
+    """Two joints that cross at a small angle leave two needles, which are thick beside their closure. Hydrostatic pressure is hydrostatic stress in all blocks."""
     rise = 0.5 * math.tan(angle)
     fractures = [{"trace": across(1.0, 1.0)}, {"trace": [[-0.1, 1.0 - 1.2 * rise], [1.1, 1.0 + 1.2 * rise]]}]
     return body({"joint": fracture(normal, 0.5 * normal, friction_angle=30)}, rock(modulus, 0.25),

@@ -10,6 +10,9 @@
 
 namespace kluft {
 
+/// Of the rectangle with the block's area and largest second moment (m).
+[[nodiscard]] double thickness(const Block& block);
+
 /// Largest overlap of two blocks in contact (m). The two faces of an interface (`own`) face each other down to the size of
 /// the smaller block. Other edges do so down to a quarter of it, and to half the thickness of the thinner one: what is
 /// deeper are opposite sides of a block.

@@ -10,8 +10,8 @@
 namespace kluft {
 
 /// What is wrong with displacements q of the body, "" if nothing: one that is no finite number, a block that is turned
-/// inside out (det F <= 0), or a closed contact that is deeper than `deepest_contact`, so that detection would lose it and
-/// the blocks would pass through each other: one of the two faces of an interface, of given blocks any.
+/// inside out (det F <= 0), or a closed contact so deep that blocks pass through each other: of the two faces of an
+/// interface, half the thickness of a block; of others, where the blocks are given ones, what detection would lose.
 [[nodiscard]] std::string flaw_of_displacements(const LoadedBody& body, const Eigen::VectorXd& q);
 
 /// The same of a contact of faces that were no neighbours: fragments of a net that has failed get so deep, and the next
