@@ -1,6 +1,7 @@
 #include "kluft/simulation/state_check.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <Eigen/LU>
 #include <fmt/format.h>
@@ -18,7 +19,14 @@ std::string block_text(const BlockSystem& system, int b) {
     return fmt::format("block {} at ({:.6g}, {:.6g})", block_label(system, b), at.x(), at.y());
 }
 
-constexpr double half = 0.5; ///< of the thickness of a block: the face of its neighbour has come to its middle
+constexpr double half = 0.5; ///< of the extent of a block: the face of its neighbour has come to its middle
+
+/// Of a block in its place, in a direction (m): that of the rectangle with its area and second moment.
+double extent_along(const LoadedBody& body, const Eigen::VectorXd& q, int b, const Vec2& direction) {
+    const Block& block = body.system->blocks[b];
+    const Vec2 before = deformation_gradient(q, b, block.size).transpose() * direction;
+    return std::sqrt(12.0 * before.dot(block.second_moment * before) / block.area);
+}
 
 bool is_own(const ContactPoint& point) { return point.interface >= 0; }
 
@@ -30,7 +38,9 @@ std::string deep_contact(const LoadedBody& body, const Eigen::VectorXd& q, bool 
         const Block& a = system.blocks[point.block_a];
         const Block& b = system.blocks[point.block_b];
         const double depth = -gap_and_slip(point, q).gap;
-        const double deepest = own ? half * std::min(thickness(a), thickness(b)) : deepest_contact(a, b, false);
+        const double deepest = own ? half * std::min(extent_along(body, q, point.block_a, point.normal),
+                                                     extent_along(body, q, point.block_b, point.normal))
+                                   : deepest_contact(a, b, false);
         if (!(depth > deepest)) continue;
         return fmt::format(
             "{} and {} overlap by {:.3g} m, {:.0f} % of the size of the smaller one: the loads are too large "

@@ -355,7 +355,7 @@ def unheld_points():
     yield Point("support", "block that nothing touches, no load on it", "given blocks",
                 [given([square("base", 0, -1), square("free", 3, 3)], [{"name": "rest", "forces": push}], output=watched,
                        boundaries={"bottom": {"facing": "bottom", "block": "base", "support": "fixed"}})], still, quick=True)
-    for gap in (1e-9, 1e-6, 1e-3, 0.1):
+    for gap in (1e-6, 1e-3, 0.1):
         yield Point("support", f"block above a gap of {gap:g}, gravity", "given blocks",
                     [given([fixed, square("free", 0, gap)], [{"name": "fall"}], gravity=10, output=watched)], lands(gap), quick=True)
     yield Point("support", "block above a gap of 0.5, gravity", "given blocks",
