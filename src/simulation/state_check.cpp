@@ -19,7 +19,8 @@ std::string block_text(const BlockSystem& system, int b) {
     return fmt::format("block {} at ({:.6g}, {:.6g})", block_label(system, b), at.x(), at.y());
 }
 
-constexpr double half = 0.5; ///< of the extent of a block: the face of its neighbour has come to its middle
+/// Of the extent of a block across an interface: the face of its neighbour is about to leave on the other side.
+constexpr double largest_overlap = 0.75;
 
 /// Of a block in its place, in a direction (m): that of the rectangle with its area and second moment.
 double extent_along(const LoadedBody& body, const Eigen::VectorXd& q, int b, const Vec2& direction) {
@@ -38,8 +39,8 @@ std::string deep_contact(const LoadedBody& body, const Eigen::VectorXd& q, bool 
         const Block& a = system.blocks[point.block_a];
         const Block& b = system.blocks[point.block_b];
         const double depth = -gap_and_slip(point, q).gap;
-        const double deepest = own ? half * std::min(extent_along(body, q, point.block_a, point.normal),
-                                                     extent_along(body, q, point.block_b, point.normal))
+        const double deepest = own ? largest_overlap * std::min(extent_along(body, q, point.block_a, point.normal),
+                                                                extent_along(body, q, point.block_b, point.normal))
                                    : deepest_contact(a, b, false);
         if (!(depth > deepest)) continue;
         return fmt::format(

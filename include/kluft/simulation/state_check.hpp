@@ -11,7 +11,7 @@ namespace kluft {
 
 /// What is wrong with displacements q of the body, "" if nothing: one that is no finite number, a block that is turned
 /// inside out (det F <= 0), or a closed contact so deep that blocks pass through each other: of the two faces of an
-/// interface, half the extent of a block across them; of others, where the blocks are given ones, what detection would lose.
+/// interface, three quarters of the extent of a block across them; of others, where the blocks are given ones, what detection would lose.
 [[nodiscard]] std::string flaw_of_displacements(const LoadedBody& body, const Eigen::VectorXd& q);
 
 /// The same of a contact of faces that were no neighbours: fragments of a net that has failed get so deep, and the next
