@@ -56,6 +56,12 @@ Mat2 cauchy_stress(const Mat2& f, const ElasticModuli& moduli) {
     return 0.5 * (stress + stress.transpose());
 }
 
+Mat2 cauchy_stress_of_gradient(const Mat2& h, const ElasticModuli& moduli) {
+    const Mat2 f = Mat2::Identity() + h;
+    const Mat2 stress = stress_of_gradient(h, moduli) * f.transpose() / f.determinant();
+    return 0.5 * (stress + stress.transpose());
+}
+
 Mat4 elastic_tangent(const Mat2& f, const ElasticModuli& moduli, bool positive) {
     const auto [rotation, trace] = polar(f);
     const Eigen::Vector4d r(rotation(0, 0), rotation(1, 0), rotation(0, 1), rotation(1, 1));

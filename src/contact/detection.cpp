@@ -17,12 +17,14 @@ namespace {
 const double facing_cosine = -std::sqrt(0.5);
 /// An overlap shorter than this part of the shorter edge is no contact.
 constexpr double shortest_overlap = 1e-6;
-/// Deeper than this part of the smaller block, two edges are not in contact but on opposite sides of a block.
-constexpr double deepest_penetration = 0.25;
 /// Deeper than this part of it, they are in contact only if what overlaps is inside one of the blocks.
 constexpr double doubtful_penetration = 0.01;
 /// Two points of a fracture that were nearer than this part of its edge were one point; what is between is round-off.
 constexpr double same_point = 1e-12;
+/// Deeper than this part of the smaller block, edges that were no neighbours are not in contact ...
+constexpr double deepest_penetration = 0.25;
+/// ... and deeper than this part of the thickness of the thinner block.
+constexpr double deepest_of_thickness = 0.5;
 /// Length that a vertex stands for, as a part of min(edge, h): decides convergence, not strength (measured).
 constexpr double vertex_weight = 0.2;
 
@@ -42,7 +44,8 @@ struct CurrentEdge {
 /// The edges of a block that can touch others: edges[first] .. edges[last - 1] of all of them.
 struct Surface {
     int block = 0;
-    bool separated = false; ///< has an edge that is not bonded inside the body
+    bool separated =
+        false; ///< has an edge that is not bonded inside the body, or one of an outline that may meet others
     std::size_t first = 0;
     std::size_t last = 0;
 };
@@ -73,7 +76,7 @@ void append_surface(const BlockSystem& system, const ContactSurfaces& contact_su
     const Block& block = system.blocks[b];
     const auto touches = [&](const Edge& edge) { return !is_bonded(contact_surfaces, edge); };
     if (std::ranges::none_of(block.edges, touches)) return;
-    Surface surface{b, false, surfaces.edges.size(), 0};
+    Surface surface{b, contact_surfaces.outlines_meet, surfaces.edges.size(), 0};
     std::vector<Vec2>& corners = surfaces.corners;
     corners.clear();
     for (const Edge& edge : block.edges) corners.push_back(current_position(system, q, b, edge.start));
@@ -129,7 +132,8 @@ public:
     void run(int a, std::span<const CurrentEdge> edges_a, int b, std::span<const CurrentEdge> edges_b) {
         bonded_pair_ = bonded(a, b);
         const double smaller = std::min(system_.blocks[a].size, system_.blocks[b].size);
-        deepest_ = -deepest_penetration * smaller;
+        deepest_ = -deepest_contact(system_.blocks[a], system_.blocks[b], false);
+        deepest_own_ = -deepest_contact(system_.blocks[a], system_.blocks[b], true);
         doubtful_ = -doubtful_penetration * smaller;
         overlapping_.clear();
         for (const auto& edge_a : edges_a) {
@@ -230,7 +234,10 @@ private:
         };
         const double gap_low = gap_at(low);
         const double gap_high = gap_at(high);
-        if (std::min(gap_low, gap_high) > reach_ || std::min(gap_low, gap_high) < deepest_) return;
+        const Edge& side_a = reference(a, edge_a.edge);
+        const bool own = side_a.interface >= 0 && side_a.interface == reference(b, edge_b.edge).interface;
+        if (std::min(gap_low, gap_high) > reach_) return;
+        if (std::min(gap_low, gap_high) < (own ? deepest_own_ : deepest_)) return;
 
         const double at = low + (gap_low < gap_high ? 0.25 : 0.75) * overlap; // nearer to the deeper end
         if (gap_at(at) < doubtful_) {
@@ -305,6 +312,7 @@ private:
     std::vector<ContactPoint> points_of_higher_; ///< vertices of the higher block
     bool bonded_pair_ = false;
     double deepest_ = 0.0;
+    double deepest_own_ = 0.0; ///< of the two faces of an interface
     double doubtful_ = 0.0;
     std::vector<std::pair<int, int>> overlapping_; ///< (edge of a, edge of b) of the present pair
 };
@@ -318,6 +326,18 @@ void transfer_histories(const std::vector<ContactMemory>& memory, std::vector<Co
 }
 
 } // namespace
+
+double thickness(const Block& block) {
+    const Mat2& m = block.second_moment;
+    const double largest = 0.5 * m.trace() + std::hypot(0.5 * (m(0, 0) - m(1, 1)), m(0, 1));
+    return block.area / std::sqrt(12.0 * largest / block.area);
+}
+
+double deepest_contact(const Block& a, const Block& b, bool own) {
+    const double smaller = std::min(a.size, b.size);
+    if (own) return smaller;
+    return std::min(deepest_penetration * smaller, deepest_of_thickness * std::min(thickness(a), thickness(b)));
+}
 
 DetectedContacts detect_contacts(const BlockSystem& system, const ContactSurfaces& surfaces, const Eigen::VectorXd& q,
                                  double reach, const std::vector<ContactMemory>& memory) {

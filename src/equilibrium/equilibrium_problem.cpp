@@ -12,6 +12,9 @@ namespace kluft {
 namespace {
 
 constexpr double touching_gap = 1e-6; ///< of the lattice spacing
+/// Smallest pieces of a net have 1/20 of a hexagon. What is smaller was given so, and with the mass of a hexagon it would
+/// not settle on its contacts.
+constexpr double largest_mass_growth = 20.0;
 
 /// (1, xi): the weights of u, D's first and D's second column in the displacement of a point.
 using Shape = std::array<double, 3>;
@@ -121,7 +124,7 @@ Mat2 point_tangent(const EquilibriumProblem& problem, const ContactPoint& point,
 } // namespace
 
 Mat6 mass_matrix(const Block& block, double least_area) {
-    return area_matrix(block, std::max(1.0, least_area / block.area));
+    return area_matrix(block, std::clamp(least_area / block.area, 1.0, largest_mass_growth));
 }
 
 Mat2 symmetric_tangent(const PointTraction& traction) {

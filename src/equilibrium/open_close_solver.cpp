@@ -60,6 +60,12 @@ std::vector<int> restless_blocks(const Eigen::VectorXd& forces, int nu, const st
     return restless;
 }
 
+/// Of prescribed displacements. The gradient of a rigid block, h (R - I), has the round-off of its size.
+double prescribed_roundoff(const EquilibriumProblem& problem, const Eigen::VectorXd& q) {
+    const double of_size = problem.kinematics == Kinematics::rigid ? 1e-13 * problem.system->spacing : 0.0;
+    return of_size + 1e-13 * q.lpNorm<Eigen::Infinity>();
+}
+
 template <class Lists> std::vector<int> union_of(const Lists& lists) {
     std::vector<int> all;
     for (const auto& list : lists) all.insert(all.end(), list.begin(), list.end());
@@ -321,7 +327,7 @@ OpenCloseSummary OpenCloseSolver::solve(const EquilibriumProblem& problem, const
         summary.force_scale = residual_.force_scale;
         summary.residual_ratio = residual_.force_scale > 0.0 ? norm / residual_.force_scale : 0.0;
         const double missing = prescribed_.lpNorm<Eigen::Infinity>();
-        const bool held = missing <= 1e-13 * (problem.system->spacing + q.lpNorm<Eigen::Infinity>());
+        const bool held = missing <= prescribed_roundoff(problem, q);
         if (held && norm <= options_.tolerance * residual_.force_scale + residual_.roundoff) {
             summary.termination = Termination::converged;
             return summary;

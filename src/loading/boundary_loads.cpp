@@ -1,6 +1,7 @@
 #include "kluft/loading/boundary_loads.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include <Eigen/SVD>
@@ -13,6 +14,8 @@ namespace {
 
 /// Rows of a block whose singular values are below this part of the largest are taken as dependent.
 constexpr double rank_tolerance = 1e-8;
+/// Prescribed rates of a block that no motion meets to this part of the largest contradict each other.
+constexpr double contradiction = 1e-6;
 
 /// Projector onto the null space of the rows of `matrix`, and its pseudo-inverse.
 template <int n>
@@ -102,6 +105,22 @@ void Constraints::correction(const Eigen::VectorXd& q, Eigen::VectorXd& dq) cons
             dq.segment<n_block_unknowns>(n_block_unknowns * c.block) = c.inverse * missing;
         }
     }
+}
+
+int Constraints::contradicting_row(const std::vector<double>& rates) const {
+    for (const ConstrainedBlock& c : blocks_) {
+        Eigen::VectorXd wanted(c.rows.size());
+        for (std::size_t i = 0; i < c.rows.size(); ++i) wanted[i] = rates[c.rows[i]];
+        const double largest = wanted.lpNorm<Eigen::Infinity>();
+        const Vec6 motion =
+            kinematics_ == Kinematics::rigid ? Vec6(c.motion * (c.rigid_inverse * wanted)) : Vec6(c.inverse * wanted);
+        for (std::size_t i = 0; i < c.rows.size(); ++i) {
+            const auto& row = rows_[c.rows[i]];
+            const double found = displacement_row(row.direction, row.xi).dot(motion);
+            if (std::abs(found - wanted[i]) > contradiction * largest) return c.rows[i];
+        }
+    }
+    return -1;
 }
 
 Eigen::VectorXd Constraints::travel_motion(Eigen::Index n) const {

@@ -144,7 +144,7 @@ std::vector<Mat2> block_stresses(const BlockSystem& system, const std::vector<El
     stresses.reserve(system.blocks.size());
     for (int b = 0; b < system.n_blocks(); ++b) {
         const Block& block = system.blocks[b];
-        stresses.push_back(cauchy_stress(deformation_gradient(q, b, block.size), moduli[block.material]));
+        stresses.push_back(cauchy_stress_of_gradient(displacement_gradient(q, b, block.size), moduli[block.material]));
     }
     return stresses;
 }

@@ -13,6 +13,7 @@
 #include "kluft/reference/explicit_motion.hpp"
 #include "kluft/simulation/measurements.hpp"
 #include "kluft/simulation/run_course.hpp"
+#include "kluft/simulation/state_check.hpp"
 #include "kluft/simulation/state_points.hpp"
 #include "kluft/simulation/weakening.hpp"
 
@@ -232,6 +233,8 @@ private:
     /// The place where the work state gets displacements and histories.
     void keep_state() {
         (void)motion_.evaluate();
+        if (auto flaw = flaw_of_displacements(motion_.body(), motion_.displacement()); !flaw.empty())
+            throw LostEquilibrium{std::move(flaw), false};
         work_.displacement = motion_.displacement();
         keep_histories(motion_.body(), work_.displacement, work_);
     }

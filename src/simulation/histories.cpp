@@ -115,10 +115,10 @@ void append_block(const MaterialPoint& point, const Model& model, const std::vec
                   const Eigen::VectorXd& q, std::vector<double>& values) {
     const Block& block = model.system.blocks[point.block];
     const Vec2 u = displacement_at(q, point.block, point.xi);
-    const Mat2 f = deformation_gradient(q, point.block, block.size);
-    const Mat2 stress =
-        rigid_stresses.empty() ? cauchy_stress(f, model.moduli[block.material]) : rigid_stresses[point.block];
-    values.insert(values.end(), {u.x(), u.y(), std::atan2(f(1, 0) - f(0, 1), f(0, 0) + f(1, 1)), 0.0 - stress(0, 0),
+    const Mat2 h = displacement_gradient(q, point.block, block.size);
+    const Mat2 stress = rigid_stresses.empty() ? cauchy_stress_of_gradient(h, model.moduli[block.material])
+                                               : rigid_stresses[point.block];
+    values.insert(values.end(), {u.x(), u.y(), std::atan2(h(1, 0) - h(0, 1), 2.0 + h.trace()), 0.0 - stress(0, 0),
                                  0.0 - stress(1, 1), 0.0 - stress(0, 1)});
 }
 

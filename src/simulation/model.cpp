@@ -12,6 +12,7 @@
 #include "kluft/constitutive/strength_envelope.hpp"
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/kinematics/material_point.hpp"
+#include "kluft/simulation/stage_loads.hpp"
 
 namespace kluft {
 
@@ -242,6 +243,7 @@ Model build_model(BlockSystem system, const ModelInput& input) {
         model.has_potential_cracks = true;
     }
     model.system = std::move(system);
+    refuse_contradicting_supports(model);
     return model;
 }
 

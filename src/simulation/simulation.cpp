@@ -20,6 +20,7 @@
 #include "kluft/kinematics/rigid.hpp"
 #include "kluft/simulation/measurements.hpp"
 #include "kluft/simulation/run_course.hpp"
+#include "kluft/simulation/state_check.hpp"
 #include "kluft/simulation/state_points.hpp"
 #include "kluft/simulation/step_control.hpp"
 #include "kluft/simulation/strength_reduction.hpp"
@@ -603,7 +604,7 @@ private:
             steps_with_contacts_ = 0;
             problem_.contacts.clear();
         }
-        if (separated && !keeps_contacts) {
+        if ((separated || may_outlines_meet(model_)) && !keeps_contacts) {
             const Stopwatch watch(report_.costs.seconds.detection);
             auto detected = state_contacts(model_, work_);
             problem_.contacts = std::move(detected.points);
@@ -784,10 +785,22 @@ private:
 
     /// The place where the work state changes.
     void commit(const Trial& trial, double load_factor) {
+        if (auto flaw = flaw_of_displacements(problem_, trial.q); !flaw.empty())
+            throw LostEquilibrium{std::move(flaw), false};
+        warn_of_lost_contact(trial.q);
         keep_histories(problem_, trial.q, work_);
         work_.displacement = trial.q;
         work_.load_factor = load_factor;
         work_.unbalanced_ratio = trial.viscous_share;
+    }
+
+    /// Once.
+    void warn_of_lost_contact(const Eigen::VectorXd& q) {
+        if (warned_of_lost_contact_) return;
+        const std::string lost = lost_contact(problem_, q);
+        if (lost.empty()) return;
+        warned_of_lost_contact_ = true;
+        report_.warnings.push_back(fmt::format("load step {}: a contact was lost, because {}", work_.step + 1, lost));
     }
 
     // ---- cracks ----------------------------------------------------------------------------------------------
@@ -937,6 +950,7 @@ private:
     Residual last_residual_;
     int iterations_at_start_ = 0;
     double tried_load_factor_ = 0.0;
+    bool warned_of_lost_contact_ = false;
     bool step_balanced_ = true;
     double worst_share_ = 0.0;
     int last_worst_block_ = -1;

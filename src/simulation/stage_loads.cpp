@@ -4,6 +4,10 @@
 #include <set>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "kluft/blocks/block_search.hpp"
+#include "kluft/core/diagnostics.hpp"
 #include "kluft/kinematics/affine.hpp"
 
 namespace kluft {
@@ -248,6 +252,39 @@ std::optional<PlatenForce> StageLoads::platen_force(double load_factor) const {
 void StageLoads::set_targets(Constraints& constraints, double load_factor) const {
     for (std::size_t i = 0; i < start_targets_.size(); ++i) {
         constraints.set_target(static_cast<int>(i), start_targets_[i] + load_factor * target_rates_[i]);
+    }
+}
+
+const PrescribedDisplacement* StageLoads::contradicting_row() const {
+    std::vector<double> rates = target_rates_;
+    const auto& rows = constraints_.rows();
+    for (std::size_t i = 0; i < rates.size(); ++i) rates[i] += rows[i].rate;
+    const int row = constraints_.contradicting_row(rates);
+    return row < 0 ? nullptr : &rows[row];
+}
+
+void refuse_contradicting_supports(const Model& model) {
+    const BlockSystem& system = model.system;
+    State rest;
+    rest.displacement = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n_block_unknowns) * system.n_blocks());
+    rest.boundary_pressure.assign(system.boundaries.size(), 0.0);
+    for (const Stage& stage : model.loads.stages) {
+        if (!stage.motion) continue;
+        const StageLoads loads(model, rest, stage);
+        const PrescribedDisplacement* row = loads.contradicting_row();
+        if (row == nullptr) continue;
+        const int moved = stage.motion->boundary;
+        std::string holding;
+        for (const auto& other : loads.constraints().rows()) {
+            if (other.block == row->block && other.boundary != moved && other.boundary != no_boundary)
+                holding = system.boundaries[other.boundary].name;
+        }
+        const Vec2 at = system.origin + system.blocks[row->block].centroid;
+        throw InputError(fmt::format(
+            "boundaries.{}.support: expected one that leaves the block {} at ({:.6g}, {:.6g}) "
+            "free to follow the platen on '{}' in {}, as smooth sides do; found one that holds "
+            "it",
+            holding, block_label(system, row->block), at.x(), at.y(), system.boundaries[moved].name, stage.name));
     }
 }
 

@@ -34,6 +34,8 @@ void place_bonds(const Model& model, const State& state, std::vector<Bond>& bond
     }
 }
 
+bool may_outlines_meet(const Model& model) { return model.system.outline_type >= 0; }
+
 StateContacts state_contacts(const Model& model, const State& state) {
     ContactSurfaces surfaces;
     surfaces.bonded = bonded_interfaces(state);
@@ -44,6 +46,7 @@ StateContacts state_contacts(const Model& model, const State& state) {
     const auto fracture = std::ranges::find(model.bonds, 0);
     surfaces.default_law = fracture != model.bonds.end() ? static_cast<int>(fracture - model.bonds.begin()) : 0;
     if (model.system.outline_type >= 0) surfaces.default_law = model.fracture_law[model.system.outline_type];
+    surfaces.outlines_meet = may_outlines_meet(model);
     auto detected = detect_contacts(model.system, surfaces, state.displacement, contact_reach * model.system.spacing,
                                     state.contacts);
     return {std::move(detected.points), std::move(detected.near_pairs)};

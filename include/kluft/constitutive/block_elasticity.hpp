@@ -22,6 +22,8 @@ using Mat4 = Eigen::Matrix4d;
 
 /// Cauchy stress P F^T/det F (Pa, positive in tension).
 [[nodiscard]] Mat2 cauchy_stress(const Mat2& deformation_gradient, const ElasticModuli& moduli);
+/// The same from H = F - I, with all digits also where the strain is a tiny part of 1.
+[[nodiscard]] Mat2 cauchy_stress_of_gradient(const Mat2& displacement_gradient, const ElasticModuli& moduli);
 
 /// dP/dF for F and P read column by column (F11, F21, F12, F22). Its eigenvalue along the rotation,
 /// (tr S - 2)(2 mu + 2 lambda)/tr S, is negative under compression; `positive` sets it to zero then.

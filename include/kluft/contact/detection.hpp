@@ -10,12 +10,21 @@
 
 namespace kluft {
 
+/// Of the rectangle with the block's area and largest second moment (m).
+[[nodiscard]] double thickness(const Block& block);
+
+/// Largest overlap of two blocks in contact (m). The two faces of an interface (`own`) face each other down to the size of
+/// the smaller block. Other edges do so down to a quarter of it, and to half the thickness of the thinner one: what is
+/// deeper are opposite sides of a block.
+[[nodiscard]] double deepest_contact(const Block& a, const Block& b, bool own);
+
 /// What detection needs to know of the interfaces.
 struct ContactSurfaces {
     std::vector<char> bonded;     ///< per interface: 1 while it is a bond
     std::vector<int> law;         ///< per interface: its law as a fracture (index into the interface laws)
     std::vector<double> friction; ///< per law: tan(phi), to choose between the laws of two surfaces
     int default_law = 0;          ///< of two surfaces of the domain's outline that meet
+    bool outlines_meet = false;   ///< also those of two blocks that have no fracture inside the body
 };
 
 struct DetectedContacts {

@@ -65,7 +65,8 @@ private:
     std::vector<double> curvatures_; ///< stiffness against w from the forces at that q, per block
 };
 
-/// M of a block: the integral of N' N over its area (m2), or over `least_area` if that is more.
+/// M of a block: the integral of N' N over its area (m2), or over `least_area` if that is more, but not
+/// more than 20 times its own.
 [[nodiscard]] Mat6 mass_matrix(const Block& block, double least_area);
 
 /// The norm of eta M (q - q_start) (N/m).

@@ -75,6 +75,8 @@ public:
     /// Least-norm change of q that fulfils the rows (zero where they hold), with the travel that is nearest to q. Where
     /// rows of a block contradict each other it is the least-squares compromise.
     void correction(const Eigen::VectorXd& q, Eigen::VectorXd& dq) const;
+    /// The first row of a block whose rows cannot all change at these rates, one per row; -1 if there is none.
+    [[nodiscard]] int contradicting_row(const std::vector<double>& rates) const;
     /// Least-norm motion of the n unknowns for unit travel; zero without a travelling platen.
     [[nodiscard]] Eigen::VectorXd travel_motion(Eigen::Index n) const;
     /// Removes the constrained part of a vector of unknowns or forces.

@@ -47,6 +47,8 @@ public:
     /// The force on a platen that is loaded by stress.
     [[nodiscard]] std::optional<PlatenForce> platen_force(double load_factor) const;
     [[nodiscard]] bool is_held(int boundary) const { return held_[boundary] != 0; }
+    /// The first prescribed displacement that contradicts others of its block over the stage; null if there is none.
+    [[nodiscard]] const PrescribedDisplacement* contradicting_row() const;
     /// Boundaries under pressure at any time of the stage.
     [[nodiscard]] const std::vector<PressureEdge>& edges() const { return edges_; }
 
@@ -60,6 +62,10 @@ private:
     double start_platen_stress_ = 0.0;
     double end_platen_stress_ = 0.0;
 };
+
+/// Throws InputError if a stage moves a platen against a support: where both have vertices of one block that no motion of
+/// it can follow. Supports that only hold cannot contradict each other.
+void refuse_contradicting_supports(const Model& model);
 
 /// The loads of the state's stage. At its start the state remembers the displacements that it started from.
 [[nodiscard]] StageLoads enter_stage(const Model& model, State& state);

@@ -24,6 +24,9 @@ struct StateContacts {
     std::vector<std::pair<int, int>> near_pairs; ///< blocks near enough to touch soon
 };
 
+/// Whether blocks touch with their outlines alone: given blocks do, with gaps between them too.
+[[nodiscard]] bool may_outlines_meet(const Model& model);
+
 /// Contacts of the unbonded surfaces, with the histories of the state.
 [[nodiscard]] StateContacts state_contacts(const Model& model, const State& state);
 
