@@ -197,12 +197,15 @@ void add_envelope_command(CLI::App& app, Command& command) {
 void add_study_command(CLI::App& app, Command& command) {
     auto arguments = std::make_shared<kluft::StudyArguments>();
     CLI::App* sub = app.add_subcommand("study", "Run a scene with many settings and set the results side by side");
-    sub->add_option("study", arguments->words,
-                    "Study file (YAML), or 'step-size SCENE': 25-800 load steps of the last stage that moves a platen")
+    sub->add_option(
+           "study", arguments->words,
+           "Study file (YAML), or 'step-size SCENE': 25-800 load steps of the last stage that moves a platen, or "
+           "'trade SCENE': every numerical setting and the choices of the model, with a recommendation")
         ->required()
         ->expected(1, 2);
-    sub->add_option("-o,--output", arguments->directory,
-                    "Directory of the results (default: results/<study name>, results/<scene>-step-size)");
+    sub->add_option(
+        "-o,--output", arguments->directory,
+        "Directory of the results (default: results/<study name>, results/<scene>-step-size, results/<scene>-trade)");
     sub->add_option("--jobs", arguments->jobs, "Cases that run at once (default: the number of processors)")
         ->check(CLI::Range(1, most_threads));
     sub->add_option("--set", arguments->overrides, "Replace a value of the scene in all cases")
@@ -219,6 +222,7 @@ void add_study_command(CLI::App& app, Command& command) {
                 "Examples:\n"
                 "  kluft study models/studies/steps.yaml --jobs 4\n"
                 "  kluft study step-size models/quickstart.yaml -o results/steps\n"
+                "  kluft study trade models/triaxial/case-3-all.yaml\n"
                 "  kluft study models/studies/steps.yaml -o results/steps --emit slurm\n"
                 "  kluft study models/studies/steps.yaml -o results/steps --collect");
     sub->callback([arguments, &command] { command = [arguments] { return kluft::study(*arguments); }; });

@@ -21,6 +21,7 @@
 #include "kluft/studies/ready_made_studies.hpp"
 #include "kluft/studies/study.hpp"
 #include "kluft/studies/study_emit.hpp"
+#include "kluft/studies/study_report.hpp"
 #include "kluft/studies/study_results.hpp"
 #include "kluft/studies/study_run.hpp"
 
@@ -103,8 +104,11 @@ StudyPlace place_of(const StudyArguments& arguments) {
     return {file, arguments.directory.empty() ? fs::path("results") / file.stem() : fs::path(arguments.directory)};
 }
 
-/// The table, and everything that is made of it.
-void write_results(const StudyTable& table) { write_study_table(table); }
+/// The table and the report.
+void write_results(const StudyTable& table) {
+    write_study_table(table);
+    write_study_report(table, table.directory);
+}
 
 std::size_t n_with(const StudyTable& table, CaseStatus status) {
     return std::ranges::count(table.cases, status, &StudyCase::status);
@@ -120,7 +124,8 @@ void print_closing(const StudyTable& table) {
     add(CaseStatus::refused, "refused");
     add(CaseStatus::failed, "failed");
     add(CaseStatus::waiting, "not run to the end");
-    fmt::print("{}; table in {}\n", text, (table.directory / "study.csv").string());
+    fmt::print("{}; table in {}, report in {}\n", text, (table.directory / "study.csv").string(),
+               (table.directory / "study.html").string());
     constexpr int most_reasons = 10;
     int n_reasons = 0;
     for (const auto& one : table.cases) {

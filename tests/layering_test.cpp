@@ -37,7 +37,7 @@ const std::map<std::string, std::set<std::string>> layers_of_library{
     {"yaml-cpp/", {"scene"}},
     {"CGAL/", {"blocks"}},
     {"boost/polygon/", {"blocks"}},
-    {"boost/math/", {"constitutive"}},
+    {"boost/math/", {"constitutive", "studies"}},
     {"hdf5", {"output"}},
     {"H5", {"output"}},
     {"cairo", {"output"}},

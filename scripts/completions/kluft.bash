@@ -49,7 +49,7 @@ _kluft() {
     run | check | draw) _kluft_scenes "$word" ;;
     study)
         _kluft_scenes "$word"
-        mapfile -t -O "${#COMPREPLY[@]}" COMPREPLY < <(compgen -W "step-size" -- "$word")
+        mapfile -t -O "${#COMPREPLY[@]}" COMPREPLY < <(compgen -W "step-size trade" -- "$word")
         ;;
     compare | envelope) mapfile -t COMPREPLY < <(compgen -d -- "$word") ;;
     esac

@@ -48,7 +48,7 @@ constexpr double reduction_residual = 0.01;       ///< of it: largest `tolerance
 constexpr int max_moving_attempts = 25;           ///< of a relaxation with reduced strengths, whose share does not fall
 constexpr double least_relaxation_progress = 0.9; ///< of the share in as many attempts
 constexpr double largest_useful_index = 10.0;  ///< of f in the search for an event: a strength of zero gives infinity
-constexpr double accurate_balance = 0.01;      ///< of the accuracy asked for: largest `balance`
+constexpr double accurate_balance = 0.03;      ///< of the accuracy asked for: largest `balance`
 constexpr double lag_weight = 4.0;             ///< of the mass-like term's share in the stresses (measured: 1 to 4)
 constexpr double softening_share = 0.2;        ///< of the stress lost since the peak: the accuracy there
 constexpr double least_step_size = 1e-4;       ///< load factor of a step from an accuracy that is accepted as it is
@@ -82,6 +82,10 @@ bool is_held(const BlockSystem& system, const std::vector<char>& bonded, const C
     }
     return true;
 }
+
+/// Of a load step that is taken again with a smaller size, whatever the accuracy.
+constexpr StepError without_equilibrium{std::numeric_limits<double>::infinity(),
+                                        std::numeric_limits<double>::infinity()};
 
 class Run {
 public:
@@ -330,9 +334,11 @@ private:
                 charge_unjudged();
                 break;
             }
-            const bool branches = last_size > 0.0 && !learn_lag(size, *error, last_size, rejected);
-            const StepError own{std::max(0.0, error->path - work_.control.lag * size), error->chord};
-            if (branches || size <= least_step_size || is_accurate(size, own, accuracy_)) {
+            const bool stands = std::isfinite(error->path);
+            const bool branches = stands && last_size > 0.0 && !learn_lag(size, *error, last_size, rejected);
+            const StepError own{stands && is_past_peak() ? 0.0 : std::max(0.0, error->path - work_.control.lag * size),
+                                error->chord};
+            if (branches || (stands && size <= least_step_size) || is_accurate(size, own, accuracy_)) {
                 keep_judged(size, own, branches);
                 break;
             }
@@ -342,7 +348,7 @@ private:
             work_.control.lag = lag;
             work_.control.size = next_step_size(size, own, accuracy_);
             rejected = *error;
-            last_size = size;
+            last_size = stands ? size : 0.0;
         }
         StepControl& control = work_.control;
         if (control.largest_stress > before.control.largest_stress || !prescribes_strain())
@@ -363,7 +369,7 @@ private:
     }
 
     /// What has been lost since a peak in this stage, where the platen goes on the same way, makes accuracy pointless: the
-    /// path after the peak depends on every detail.
+    /// path after the peak depends on every detail, and only the straight lines between the rows are judged there.
     void set_accuracy() {
         const StepControl& control = work_.control;
         const bool may_soften = prescribes_strain() && control.stage_of_largest == work_.stage;
@@ -372,6 +378,8 @@ private:
         cracks_.event_tolerance = accuracy_;
         balance_ = std::min(options_.balance, accurate_balance * accuracy_);
     }
+
+    [[nodiscard]] bool is_past_peak() const { return accuracy_ > options_.accuracy; }
 
     /// The error of a step that ended at an event or was relaxed: as that of the last one that was judged.
     void charge_unjudged() {
@@ -396,7 +404,8 @@ private:
         steps_with_contacts_ = 0;
     }
 
-    /// Moves the work state towards the target load factor, up to the first event. A step without one is judged.
+    /// Moves the work state towards the target load factor, up to the first event. A step without one is judged. Where no
+    /// equilibrium is found at once, the step is relaxed only if it is small.
     std::optional<StepError> try_step(double target, bool check) {
         const double from = work_.load_factor;
         course_.holds_back = true;
@@ -406,6 +415,7 @@ private:
         const double first = predicted_event(from, target);
         Trial trial = solve(first, predicted(first));
         if (!trial.balanced) {
+            if (first - from > std::max(accuracy_, least_step_size)) return without_equilibrium;
             trial = recover(trial, first, from);
             finish_unjudged(trial, first, check);
             work_.displacement_rate.resize(0);

@@ -7,6 +7,7 @@
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/core/nearest_name.hpp"
 #include "kluft/scene/scene_reader.hpp"
+#include "kluft/studies/trade_study.hpp"
 
 namespace kluft {
 
@@ -40,11 +41,12 @@ const char* quantities_of(const Stage& stage) {
 
 } // namespace
 
-std::vector<std::string> ready_made_names() { return {"step-size"}; }
+std::vector<std::string> ready_made_names() { return {"step-size", "trade"}; }
 
 std::string ready_made_study(const std::string& name, const fs::path& scene,
                              const std::vector<std::string>& overrides) {
     if (name == "step-size") return step_size_study(scene, overrides);
+    if (name == "trade") return trade_study(fs::absolute(scene).lexically_normal(), read_scene(scene, overrides));
     throw InputError("kluft study: expected one of " + listed(ready_made_names()) + ", found '" + name + "'");
 }
 

@@ -108,8 +108,10 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"title=[a]", "title: expected text, found a list of 1"},
         Refusal{"title=", "title: expected text, found nothing"},
         Refusal{"title=\"a\\tb\"", "title: expected text, found 'a b', which has control characters"},
-        Refusal{"solver=3", "solver: expected a mapping of tolerance, balance, viscosity, max_iterations, "
-                            "max_unbalanced_steps, tangent, reuse, repeatable, found '3'"},
+        Refusal{
+            "solver=3",
+            "solver: expected a mapping of tolerance, balance, accuracy, detection_every, viscosity, max_iterations, "
+            "max_unbalanced_steps, tangent, reuse, repeatable, found '3'"},
         Refusal{"materials.rock.density={a: 1}",
                 "materials.rock.density: expected a number >= 0 in kg/m3, found a mapping"},
         Refusal{"solver.repeatable=yes", "solver.repeatable: expected true or false, found 'yes'"},
