@@ -25,6 +25,7 @@ constexpr double same_point = 1e-12;
 constexpr double deepest_penetration = 0.25;
 /// ... and deeper than this part of the thickness of the thinner block.
 constexpr double deepest_of_thickness = 0.5;
+constexpr double largest_fragment = 0.25; ///< of a cell of the net
 /// Length that a vertex stands for, as a part of min(edge, h): decides convergence, not strength (measured).
 constexpr double vertex_weight = 0.2;
 
@@ -132,8 +133,8 @@ public:
     void run(int a, std::span<const CurrentEdge> edges_a, int b, std::span<const CurrentEdge> edges_b) {
         bonded_pair_ = bonded(a, b);
         const double smaller = std::min(system_.blocks[a].size, system_.blocks[b].size);
-        deepest_ = -deepest_contact(system_.blocks[a], system_.blocks[b], false);
-        deepest_own_ = -deepest_contact(system_.blocks[a], system_.blocks[b], true);
+        deepest_ = -deepest_contact(system_, a, b, false);
+        deepest_own_ = -deepest_contact(system_, a, b, true);
         doubtful_ = -doubtful_penetration * smaller;
         overlapping_.clear();
         for (const auto& edge_a : edges_a) {
@@ -333,10 +334,19 @@ double thickness(const Block& block) {
     return block.area / std::sqrt(12.0 * largest / block.area);
 }
 
-double deepest_contact(const Block& a, const Block& b, bool own) {
-    const double smaller = std::min(a.size, b.size);
-    if (own) return smaller;
-    return std::min(deepest_penetration * smaller, deepest_of_thickness * std::min(thickness(a), thickness(b)));
+bool is_fragment(const BlockSystem& system, int block) {
+    const bool given = system.outline_type >= 0;
+    const double cell = std::sqrt(0.75) * system.spacing * system.spacing;
+    return !given && system.blocks[block].area < largest_fragment * cell;
+}
+
+double deepest_contact(const BlockSystem& system, int a, int b, bool own) {
+    const Block& block_a = system.blocks[a];
+    const Block& block_b = system.blocks[b];
+    const double smaller = std::min(block_a.size, block_b.size);
+    if (own && !is_fragment(system, a) && !is_fragment(system, b)) return smaller;
+    const double deepest = deepest_penetration * smaller;
+    return own ? deepest : std::min(deepest, deepest_of_thickness * std::min(thickness(block_a), thickness(block_b)));
 }
 
 DetectedContacts detect_contacts(const BlockSystem& system, const ContactSurfaces& surfaces, const Eigen::VectorXd& q,

@@ -31,17 +31,27 @@ double extent_along(const LoadedBody& body, const Eigen::VectorXd& q, int b, con
 
 bool is_own(const ContactPoint& point) { return point.interface >= 0; }
 
-/// The first contact of two faces of an interface, or of others, that is too deep; "" if there is none.
-std::string deep_contact(const LoadedBody& body, const Eigen::VectorXd& q, bool own) {
+/// Whether a contact that is too deep tells of a body that is none any more: that of two faces of an interface, unless
+/// one of them is a fragment's; of blocks that are given, which are few, wherever they meet.
+bool ends_a_run(const BlockSystem& system, const ContactPoint& point) {
+    const bool given = system.outline_type >= 0;
+    return given || (is_own(point) && !is_fragment(system, point.block_a) && !is_fragment(system, point.block_b));
+}
+
+/// The first contact that is too deep, of those that end a run or of the others; "" if there is none.
+std::string deep_contact(const LoadedBody& body, const Eigen::VectorXd& q, bool ending) {
     const BlockSystem& system = *body.system;
     for (const ContactPoint& point : body.contacts) {
-        if (is_own(point) != own) continue;
+        if (ends_a_run(system, point) != ending) continue;
+        const bool own = is_own(point);
         const Block& a = system.blocks[point.block_a];
         const Block& b = system.blocks[point.block_b];
         const double depth = -gap_and_slip(point, q).gap;
-        const double deepest = own ? largest_overlap * std::min(extent_along(body, q, point.block_a, point.normal),
+        const bool ends_by_extent = ending && own;
+        const double deepest = ends_by_extent
+                                   ? largest_overlap * std::min(extent_along(body, q, point.block_a, point.normal),
                                                                 extent_along(body, q, point.block_b, point.normal))
-                                   : deepest_contact(a, b, false);
+                                   : deepest_contact(system, point.block_a, point.block_b, own);
         if (!(depth > deepest)) continue;
         return fmt::format(
             "{} and {} overlap by {:.3g} m, {:.0f} % of the size of the smaller one: the loads are too large "
@@ -62,9 +72,7 @@ std::string flaw_of_displacements(const LoadedBody& body, const Eigen::VectorXd&
         if (ratio <= 0.0)
             return fmt::format("{} is turned inside out: {:.3g} of its area is left", block_text(system, b), ratio);
     }
-    const bool given = system.outline_type >= 0; // has few blocks, and where they meet later counts as much
-    auto flaw = deep_contact(body, q, true);
-    return flaw.empty() && given ? deep_contact(body, q, false) : flaw;
+    return deep_contact(body, q, true);
 }
 
 std::string lost_contact(const LoadedBody& body, const Eigen::VectorXd& q) { return deep_contact(body, q, false); }

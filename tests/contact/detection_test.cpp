@@ -378,7 +378,9 @@ std::map<EdgePair, double> overlaps_of_all_pairs(const BlockSystem& system, cons
                         std::min(across(low, s, v) - across(low, p, u), across(high, s, v) - across(high, p, u));
                     const bool own = edge_a.interface >= 0 && edge_a.interface == edge_b.interface;
                     const double smaller = std::min(system.blocks[a].size, system.blocks[b].size);
-                    if (gap > largest_gap || gap < -(own ? 1.0 : 0.25) * smaller) continue;
+                    const double smaller_area = std::min(system.blocks[a].area, system.blocks[b].area);
+                    const bool fragment = smaller_area < 0.25 * std::sqrt(0.75) * system.spacing * system.spacing;
+                    if (gap > largest_gap || gap < -(own && !fragment ? 1.0 : 0.25) * smaller) continue;
                     const bool deeper_at_low =
                         across(low, s, v) - across(low, p, u) < across(high, s, v) - across(high, p, u);
                     const double at = low + (deeper_at_low ? 0.25 : 0.75) * (high - low);

@@ -13,10 +13,14 @@ namespace kluft {
 /// Of the rectangle with the block's area and largest second moment (m).
 [[nodiscard]] double thickness(const Block& block);
 
+/// Whether a block of a body that is cut is smaller than a quarter of a cell of its net: what fractures leave of cells is
+/// crushed where the net has failed.
+[[nodiscard]] bool is_fragment(const BlockSystem& system, int block);
+
 /// Largest overlap of two blocks in contact (m). The two faces of an interface (`own`) face each other down to the size of
-/// the smaller block. Other edges do so down to a quarter of it, and to half the thickness of the thinner one: what is
-/// deeper are opposite sides of a block.
-[[nodiscard]] double deepest_contact(const Block& a, const Block& b, bool own);
+/// the smaller block, of a fragment down to a quarter of it. Other edges do so down to a quarter of it, and to half the
+/// thickness of the thinner one: what is deeper are opposite sides of a block.
+[[nodiscard]] double deepest_contact(const BlockSystem& system, int a, int b, bool own);
 
 /// What detection needs to know of the interfaces.
 struct ContactSurfaces {
