@@ -166,6 +166,15 @@ TEST(StepControl, CycleOfAFrictionalJointIsFollowedToTheAccuracyFromAnyFirstStep
     }
 }
 
+// Shear over friction does not depend on the load: f > 1 as soon as there is any, and no load is that of the first slip.
+TEST(StepControl, SlipUnderAnyLoadIsNoErrorAndNoLongSearch) {
+    const auto run = run_scene(load_cycle(20, ", accuracy: 0.01"));
+    EXPECT_EQ(run.state.control.slipped, std::vector{0});
+    EXPECT_LT(*run.report.estimated_error, 0.01);
+    EXPECT_GT(run.history[1].load_factor, 1e-9);
+    EXPECT_LT(run.history[1].open_close_iterations, 60);
+}
+
 TEST(StepControl, LessAccuracyCostsLess) {
     const auto solves = [](const char* accuracy) {
         return run_scene(load_cycle(20, fmt::format(", accuracy: {}", accuracy))).report.costs.open_close_iterations;
