@@ -144,7 +144,6 @@ std::string emit_study(const std::string& format, const ReadStudy& read, const f
     if (std::ranges::find(formats, format) == formats.end())
         throw InputError(fmt::format("--emit: expected one of {}, found '{}'{}", listed(formats), format,
                                      suggestion(format, formats)));
-    if (n_lines(read) == 0) throw InputError("--emit: expected a case that can be run, found none: all are refused");
     write_file(directory / "run-case", case_script());
     if (format == "make") {
         write_file(directory / "Makefile", study_makefile(read, collect));

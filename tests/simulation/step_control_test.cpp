@@ -198,6 +198,16 @@ TEST(StepControl, ContactsAreDetectedInEveryFifthStepOnly) {
                 1e-6 * std::abs(each.history[20].axial_stress));
 }
 
+// `all` breaks at the ends of steps; those that are too long are taken back with what broke in them.
+TEST(StepControl, CracksOfARejectedStepAreNotToldOf) {
+    const auto run = run_scene(read_scene(KLUFT_SOURCE_DIR "/models/quickstart.yaml",
+                                          {"cracks.update=all", "solver.accuracy=0.02", "stages.1.strain.value=0.01"}));
+    EXPECT_GT(run.report.costs.rejected_steps, 0);
+    const StepRecord& last = run.history.back();
+    EXPECT_GT(run.cracks.size(), 0U);
+    EXPECT_EQ(run.cracks.size(), static_cast<std::size_t>(last.cracks_tension + last.cracks_shear));
+}
+
 // ---- whole sample --------------------------------------------------------------------------------------------------
 
 std::string sample(int steps, const std::string& options) {

@@ -267,9 +267,6 @@ TEST_F(StudyRuns, JobArrayHasOneJobForEachLineOfCommands) {
                               HasSubstr("#SBATCH --signal=B:USR1@120\n"), Not(HasSubstr("--time"))));
     EXPECT_EQ(exit_code_of("bash -n '" + (results_ / "run-case").string() + "'"), 0);
     EXPECT_THROW((void)emit_study("pbs", study, results_, 3, {}), InputError);
-    const ReadStudy refused = read("vary: {interfaces.bond.kind: [fracture]}\n");
-    ASSERT_EQ(refused.cases[0].refusal.empty(), false);
-    EXPECT_THROW((void)emit_study("slurm", refused, results_, 3, {}), InputError);
 }
 
 // ---- ready-made studies and the command ----------------------------------------------------------------------------
