@@ -5,6 +5,7 @@
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <thread>
@@ -78,19 +79,26 @@ private:
 struct StudyPlace {
     fs::path file;
     fs::path directory;
+    std::string ready_made; ///< text of the file; empty for a study file of the user's
 };
 
-/// Writes the text of a ready-made study into the directory.
 StudyPlace ready_made(const StudyArguments& arguments) {
     const std::string& kind = arguments.words[0];
     if (arguments.words.size() < 2) throw InputError("kluft study " + kind + ": expected a scene after it, found none");
     const fs::path scene = arguments.words[1];
     const fs::path directory = arguments.directory.empty() ? fs::path("results") / (scene.stem().string() + "-" + kind)
                                                            : fs::path(arguments.directory);
-    const std::string text = ready_made_study(kind, scene, arguments.overrides);
-    make_directory(directory);
-    write_file(directory / "study.yaml", text);
-    return {directory / "study.yaml", directory};
+    return {directory / "study.yaml", directory, ready_made_study(kind, scene, arguments.overrides)};
+}
+
+/// Writes the text of a ready-made study into the directory, where it may replace its like only.
+void write_ready_made(const StudyPlace& place) {
+    std::error_code error;
+    if (fs::exists(place.file, error) && !is_ready_made(place.file))
+        throw InputError(place.file.string() + ": expected a ready-made study or no file, found another study, which "
+                                               "would be lost; choose another directory with -o");
+    make_directory(place.directory);
+    write_file(place.file, place.ready_made);
 }
 
 StudyPlace place_of(const StudyArguments& arguments) {
@@ -101,7 +109,7 @@ StudyPlace place_of(const StudyArguments& arguments) {
                                      listed(kinds), arguments.words[0], arguments.words[1],
                                      suggestion(arguments.words[0], kinds)));
     const fs::path file = arguments.words[0];
-    return {file, arguments.directory.empty() ? fs::path("results") / file.stem() : fs::path(arguments.directory)};
+    return {file, arguments.directory.empty() ? fs::path("results") / file.stem() : fs::path(arguments.directory), {}};
 }
 
 /// The table and the report.
@@ -159,8 +167,13 @@ std::vector<std::string> collect_command(const StudyArguments& arguments, const 
 
 ExitCode study(const StudyArguments& arguments) {
     const StudyPlace place = place_of(arguments);
-    const ReadStudy read = read_study(place.file, arguments.overrides);
     const fs::path directory = fs::absolute(place.directory).lexically_normal();
+    std::optional<StudyLock> lock;
+    if (!place.ready_made.empty()) {
+        if (!arguments.collect) lock.emplace(directory);
+        write_ready_made(place);
+    }
+    const ReadStudy read = read_study(place.file, arguments.overrides);
     if (arguments.collect) {
         const StudyTable table = collect_study(read, directory);
         make_directory(directory);
@@ -168,7 +181,7 @@ ExitCode study(const StudyArguments& arguments) {
         print_closing(table);
         return exit_code(table);
     }
-    const StudyLock lock(directory);
+    if (!lock) lock.emplace(directory);
     const int jobs = arguments.jobs > 0 ? arguments.jobs : default_jobs();
     prepare_study(read, this_program(), directory);
     if (!arguments.emit.empty()) {

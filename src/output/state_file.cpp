@@ -16,7 +16,7 @@ namespace kluft {
 
 namespace {
 
-constexpr int format_version = 4;
+constexpr int format_version = 5;
 constexpr std::string_view format_name = "kluft state";
 
 /// What went wrong inside HDF5; the callers add the file's name.
@@ -165,9 +165,9 @@ struct Writer {
         write_array(file, name, numbers.data(), numbers.size());
     }
     void operator()(const char* name, const StepControl& c) {
-        const std::array numbers{c.size,           c.curvature,           c.lag,
-                                 c.largest_stress, c.largest_mean_stress, c.path_error,
-                                 c.event_error,    c.estimated_error};
+        const std::array numbers{c.size,         c.curvature,      c.lag,
+                                 c.axial_stress, c.largest_stress, c.largest_mean_stress,
+                                 c.path_error,   c.event_error,    c.estimated_error};
         write_array(file, (std::string(name) + "_numbers").c_str(), numbers.data(), numbers.size());
         const std::array counts{c.stage_of_largest, c.missed_events};
         write_array(file, (std::string(name) + "_counts").c_str(), counts.data(), counts.size());
@@ -224,8 +224,8 @@ struct Reader {
     void operator()(const char* name, StepControl& c) {
         const auto n = read_array<double>(file, (std::string(name) + "_numbers").c_str());
         const auto counts = read_array<int>(file, (std::string(name) + "_counts").c_str());
-        if (n.size() != 8 || counts.size() != 2) throw Hdf5Failure{name};
-        c = {n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7], counts[0], counts[1], {}};
+        if (n.size() != 9 || counts.size() != 2) throw Hdf5Failure{name};
+        c = {n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8], counts[0], counts[1], {}};
         c.slipped = read_array<int>(file, (std::string(name) + "_slipped").c_str());
     }
     void operator()(const char* name, RunCosts& costs) {

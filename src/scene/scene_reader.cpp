@@ -65,12 +65,16 @@ void refuse_explicit_reduction(const SceneSection& root, const Scene& scene, Rea
                          "expected integrator: implicit beside it, found integrator: explicit");
 }
 
-/// Load steps of an explicit run are what its loading rate says.
-void refuse_explicit_accuracy(const SceneSection& solver, const Scene& scene, ReadingContext& context) {
-    if (scene.integrator == Integrator::implicit) return;
-    for (const auto* key : {"accuracy", "detection_every"})
-        if (solver.has(key))
-            context.fail(solver, key, "expected integrator: implicit beside it, found integrator: explicit");
+/// Load steps of an explicit run are what its loading rate says; those from an accuracy have no number to count by.
+void check_accuracy(const SceneSection& solver, const Scene& scene, ReadingContext& context) {
+    if (scene.integrator != Integrator::implicit) {
+        constexpr auto message = "expected integrator: implicit beside it, found integrator: explicit";
+        if (solver.has("accuracy")) context.fail(solver, "accuracy", message);
+        if (solver.count("detection_every") > 1) context.fail(solver, "detection_every", message);
+    } else if (solver.has("accuracy") && scene.cracks.every > 1) {
+        context.fail(solver, "accuracy",
+                     fmt::format("expected cracks.every: 1 beside it, found cracks.every: {}", scene.cracks.every));
+    }
 }
 
 CrackOptions read_crack_options(const SceneSection& section) {
@@ -211,7 +215,7 @@ Scene convert(const SceneSection& root, ReadingContext& context) {
                              names_of(scene.interface_types), has_gravity(scene), context);
     refuse_explicit_reduction(root, scene, context);
     scene.cracks = read_crack_options(root.section("cracks"));
-    refuse_explicit_accuracy(root.section("solver"), scene, context);
+    check_accuracy(root.section("solver"), scene, context);
     scene.solver = read_solver_options(root.section("solver"));
     scene.output = read_output_options(root.section("output"));
     for (const auto& section : root.section("output").sections("histories"))

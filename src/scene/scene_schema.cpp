@@ -669,7 +669,8 @@ std::vector<KeyRule> option_rules() {
              "`cracks.update: event` each potential crack fails where its f is 1 to within this accuracy, whatever "
              "`cracks.event_tolerance` says, and the first slip of each mapped fracture ends a step at its own load; "
              "with another update cracks fail at the ends of the steps, and the accuracy holds for the friction "
-             "only. Stages of `strength_reduction` keep their steps. For `integrator: implicit` only."},
+             "only. Stages of `strength_reduction` keep their steps. For `integrator: implicit` and `cracks.every: 1` "
+             "only."},
         {.path = "solver.detection_every",
          .type = KeyType::integer,
          .range = positive_integer,

@@ -53,6 +53,7 @@ constexpr double lag_weight = 4.0;             ///< of the mass-like term's shar
 constexpr double softening_share = 0.2;        ///< of the stress lost since the peak: the accuracy there
 constexpr double least_step_size = 1e-4;       ///< load factor of a step from an accuracy that is accepted as it is
 constexpr double least_predicted_share = 0.01; ///< of a load step: the first trial of an event
+constexpr double least_event_width = 1e-4;     ///< of the accuracy: load factors between which an event is not searched
 
 /// True if the constraints stop every rigid motion of every group of bonded blocks.
 bool is_held(const BlockSystem& system, const std::vector<char>& bonded, const Constraints& constraints) {
@@ -323,6 +324,7 @@ private:
     void advance_by_accuracy() {
         const State& before = course_.accepted;
         const StepRecord record_before = course_.last_record;
+        const int events_before = report_.costs.events;
         set_accuracy();
         StepError rejected;
         for (double last_size = 0.0;;) {
@@ -344,7 +346,7 @@ private:
             }
             ++report_.costs.rejected_steps;
             const double lag = work_.control.lag;
-            take_back(record_before);
+            take_back(record_before, events_before);
             work_.control.lag = lag;
             work_.control.size = next_step_size(size, own, accuracy_);
             rejected = *error;
@@ -373,7 +375,7 @@ private:
     void set_accuracy() {
         const StepControl& control = work_.control;
         const bool may_soften = prescribes_strain() && control.stage_of_largest == work_.stage;
-        const double lost = 1.0 - std::abs(course_.last_record.axial_stress) / control.largest_stress;
+        const double lost = 1.0 - std::abs(control.axial_stress) / control.largest_stress;
         accuracy_ = may_soften ? std::max(options_.accuracy, softening_share * lost) : options_.accuracy;
         cracks_.event_tolerance = accuracy_;
         balance_ = std::min(options_.balance, accurate_balance * accuracy_);
@@ -395,12 +397,15 @@ private:
     }
 
     /// Undoes the load step in progress. The pairs that the matrix is ordered for stay.
-    void take_back(const StepRecord& record_before) {
+    void take_back(const StepRecord& record_before, int events_before) {
         auto near_pairs = std::move(work_.near_pairs);
         work_ = course_.accepted;
         work_.near_pairs = std::move(near_pairs);
         course_.last_record = record_before;
+        course_.passes = 0;
         course_.waiting_equilibria.clear();
+        course_.waiting_cracks.clear();
+        report_.costs.events = events_before;
         steps_with_contacts_ = 0;
     }
 
@@ -431,8 +436,8 @@ private:
 
     /// Takes the step from the work state once more in two halves, which are what counts.
     std::optional<StepError> judge_by_halves(double target, const Trial& whole, bool check) {
-        const CourseValue start = course_value(course_.last_record, work_.displacement);
-        const CourseValue at_once = course_value(measure(whole.q, whole.viscous_share), whole.q);
+        const CourseValue start = course_value(work_.control.axial_stress, work_.displacement);
+        const CourseValue at_once = course_value(measure(whole.q, whole.viscous_share).axial_stress, whole.q);
         const double middle = std::midpoint(work_.load_factor, target);
         const Trial half = solve(middle, 0.5 * (work_.displacement + whole.q));
         if (!half.balanced) {
@@ -442,7 +447,7 @@ private:
         }
         commit(half, middle);
         record_equilibrium(half);
-        const CourseValue halfway = course_value(course_.last_record, half.q);
+        const CourseValue halfway = course_value(work_.control.axial_stress, half.q);
         prepare();
         Trial end = solve(target, whole.q);
         if (!end.balanced) {
@@ -457,7 +462,7 @@ private:
         finish_step(end, target, check);
         const double open =
             options_.tolerance + lag_weight * std::max({whole.viscous_share, half.viscous_share, end.viscous_share});
-        return error_of(start, halfway, course_value(course_.last_record, end.q), at_once, open);
+        return error_of(start, halfway, course_value(work_.control.axial_stress, end.q), at_once, open);
     }
 
     /// Nothing takes the step back any more.
@@ -478,8 +483,8 @@ private:
     /// The axial stress where a platen prescribes the strain, else the stresses of all blocks, whose norm is the root of
     /// their mean square.
     using CourseValue = Eigen::VectorXd;
-    [[nodiscard]] CourseValue course_value(const StepRecord& record, const Eigen::VectorXd& q) const {
-        if (prescribes_strain()) return CourseValue::Constant(1, record.axial_stress);
+    [[nodiscard]] CourseValue course_value(double axial_stress, const Eigen::VectorXd& q) const {
+        if (prescribes_strain()) return CourseValue::Constant(1, axial_stress);
         return weighted_stresses(problem_, q);
     }
 
@@ -530,7 +535,7 @@ private:
     void note_event(const Eigen::VectorXd& q) {
         const double index = event_index(q);
         if (index < 1.0 - accuracy_) return;
-        work_.control.event_error = std::max(work_.control.event_error, std::abs(index - 1.0));
+        work_.control.event_error = std::max(work_.control.event_error, std::min(std::abs(index - 1.0), event_width_));
         note_slips(q);
     }
 
@@ -829,6 +834,8 @@ private:
         const double tolerance = cracks_.event_tolerance;
         const double goal = is_adaptive() ? 1.0 : 1.0 + 0.5 * tolerance;
         const double reach = is_adaptive() ? tolerance : 0.5 * tolerance; // of f around the goal
+        const double least_width = is_adaptive() ? least_event_width * accuracy_ : 0.0;
+        event_width_ = std::numeric_limits<double>::infinity();
         double f_high = event_index(trial.q);
         if (f_high <= 1.0 + tolerance) return to;
         double low = from;
@@ -838,7 +845,7 @@ private:
         if (reduces_strengths()) set_load(to);
         double g_high = f_high - goal;
         if (g_low >= 0.0) return to;
-        for (int i = 0; i < max_event_trials; ++i) {
+        for (int i = 0; i < max_event_trials && high - low > least_width; ++i) {
             const double width = high - low;
             const double quick =
                 std::clamp(high - g_high * width / (g_high - g_low), low + 0.01 * width, high - 0.01 * width);
@@ -863,6 +870,7 @@ private:
             }
         }
         set_load(high);
+        if (high - low <= least_width) event_width_ = high - low;
         return high;
     }
 
@@ -912,6 +920,7 @@ private:
         step_balanced_ = step_balanced_ && trial.balanced;
         worst_share_ = std::max(worst_share_, trial.viscous_share);
         StepControl& control = work_.control;
+        control.axial_stress = record.axial_stress;
         if (trial.balanced && std::abs(record.axial_stress) > control.largest_stress) {
             control.largest_stress = std::abs(record.axial_stress);
             control.stage_of_largest = work_.stage;
@@ -966,6 +975,7 @@ private:
     int last_worst_block_ = -1;
     double balance_ = 0.0;        ///< of the stage
     double accuracy_ = 0.0;       ///< of the load step in progress
+    double event_width_ = 0.0;    ///< load factors that enclose the last event where f jumps there; infinite elsewhere
     double rest_share_ = 0.0;     ///< of the mass-like term: with reduced strengths a body with less rests
     int steps_with_contacts_ = 0; ///< load steps with the contacts in place since they were detected
     bool seeks_failure_ = false;  ///< of potential cracks, in the load step in progress

@@ -1,6 +1,8 @@
 #include "kluft/studies/ready_made_studies.hpp"
 
 #include <algorithm>
+#include <fstream>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -14,6 +16,8 @@ namespace kluft {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::string_view first_line = "# Ready-made by kluft study; written anew each time.";
 
 /// A text in YAML's double quotes.
 std::string quoted(const std::string& text) {
@@ -45,9 +49,17 @@ std::vector<std::string> ready_made_names() { return {"step-size", "trade"}; }
 
 std::string ready_made_study(const std::string& name, const fs::path& scene,
                              const std::vector<std::string>& overrides) {
-    if (name == "step-size") return step_size_study(scene, overrides);
-    if (name == "trade") return trade_study(fs::absolute(scene).lexically_normal(), read_scene(scene, overrides));
+    const std::string begin = std::string(first_line) + '\n';
+    if (name == "step-size") return begin + step_size_study(scene, overrides);
+    if (name == "trade")
+        return begin + trade_study(fs::absolute(scene).lexically_normal(), read_scene(scene, overrides));
     throw InputError("kluft study: expected one of " + listed(ready_made_names()) + ", found '" + name + "'");
+}
+
+bool is_ready_made(const fs::path& file) {
+    std::ifstream stream(file);
+    std::string line;
+    return std::getline(stream, line) && line == first_line;
 }
 
 std::string step_size_study(const fs::path& scene, const std::vector<std::string>& overrides) {
@@ -55,7 +67,7 @@ std::string step_size_study(const fs::path& scene, const std::vector<std::string
     const std::size_t stage = studied_stage(read);
     const std::string title = read.title.empty() ? read.name : read.title;
     return fmt::format(
-        R"(# How the results depend on the number of load steps. Made by kluft study step-size; made anew each time.
+        R"(# How the results depend on the number of load steps.
 title: {}
 scene: {}
 vary:

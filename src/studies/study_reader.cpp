@@ -27,6 +27,7 @@ const std::vector<std::string> study_keys{"title",    "scene",      "set",   "va
                                           "replicas", "quantities", "curve", "reference", "along",   "time_limit"};
 
 std::string expected_one_of(const std::string& found, const std::vector<std::string>& names) {
+    if (names.empty()) return "expected nothing, since there is none to choose from, found " + in_quotes(found);
     return fmt::format("expected one of {}, found {}{}", listed(names), in_quotes(found), suggestion(found, names));
 }
 

@@ -332,6 +332,18 @@ TEST(SceneErrors, GravityNeedsDensities) {
                 testing::SizeIs(1)); // inertia needs densities too
 }
 
+TEST(SceneErrors, AccuracyIsForCracksInEveryStepOfImplicitRuns) {
+    EXPECT_THAT(errors_with({"cracks.every=5", "solver.accuracy=0.01"}),
+                ElementsAre("--set solver.accuracy=0.01: solver.accuracy: expected cracks.every: 1 beside it, found "
+                            "cracks.every: 5"));
+    EXPECT_THAT(errors_in(test::short_scene, {"analysis.integrator=explicit", "solver.accuracy=0.01"}),
+                ElementsAre(HasSubstr("expected integrator: implicit beside it, found integrator: explicit")));
+    EXPECT_THAT(errors_in(test::short_scene, {"analysis.integrator=explicit", "solver.detection_every=2"}),
+                ElementsAre(HasSubstr("expected integrator: implicit beside it, found integrator: explicit")));
+    EXPECT_THAT(errors_in(test::short_scene, {"analysis.integrator=explicit", "solver.detection_every=1"}),
+                testing::IsEmpty());
+}
+
 TEST(SceneErrors, AStageNeedsALoadOrGravity) {
     EXPECT_THAT(errors_in(test::short_scene, {"stages=[{name: idle}]"}),
                 ElementsAre("--set stages=[{name: idle}]: stages.0: expected a load (pressure, displacement, strain, "

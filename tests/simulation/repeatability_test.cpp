@@ -1,4 +1,6 @@
+#include <atomic>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <string>
 #include <tuple>
@@ -53,6 +55,43 @@ TEST(Repeatability, SameSceneTwiceGivesTheSameBitsOfEveryRecord) {
     const auto first = quick_start(to_first_cracks);
     EXPECT_GT(first.cracks.size(), 0U);
     expect_same_runs(first, quick_start(to_first_cracks));
+}
+
+/// Also keeps the state after a load step.
+class KeepingObserver : public RecordingObserver {
+public:
+    KeepingObserver(SceneRun& run, int step, State& kept) : RecordingObserver(run), step_(step), kept_(kept) {}
+    void step(const StepRecord& record, const State& state, const std::function<FieldRecord()>& fields,
+              bool last) override {
+        RecordingObserver::step(record, state, fields, last);
+        if (record.step == step_) kept_ = state;
+    }
+
+private:
+    int step_;
+    State& kept_;
+};
+
+// The sizes of the load steps go on from the state alone.
+TEST(Repeatability, RunWithAnAccuracyGoesOnFromASavedStateAsIfItHadNotStopped) {
+    SceneRun whole;
+    whole.scene = read_scene(KLUFT_SOURCE_DIR "/models/quickstart.yaml",
+                             {"solver.accuracy=0.01", "solver.repeatable=true", "stages.1.strain.value=0.01"});
+    const Model model = build_scene_model(whole.scene).model;
+    const std::atomic<bool> stop{false};
+    State kept;
+    KeepingObserver observer(whole, 8, kept);
+    whole.state = initial_state(model);
+    (void)run_simulation(model, whole.scene.cracks, whole.scene.solver, whole.state, observer, stop);
+    ASSERT_GT(whole.history.size(), 12U);
+    SceneRun resumed;
+    RecordingObserver rest(resumed);
+    resumed.state = kept;
+    (void)run_simulation(model, whole.scene.cracks, whole.scene.solver, resumed.state, rest, stop);
+    ASSERT_EQ(resumed.history.size() + 9, whole.history.size());
+    EXPECT_EQ(resumed.history.front().load_factor, whole.history[9].load_factor);
+    EXPECT_EQ(resumed.state.displacement, whole.state.displacement);
+    EXPECT_EQ(resumed.state.control, whole.state.control);
 }
 
 // Noise is a number of each interface, however the crack comes to be checked.

@@ -166,6 +166,15 @@ TEST(StepControl, CycleOfAFrictionalJointIsFollowedToTheAccuracyFromAnyFirstStep
     }
 }
 
+// Shear over friction does not depend on the load: f > 1 as soon as there is any, and no load is that of the first slip.
+TEST(StepControl, SlipUnderAnyLoadIsNoErrorAndNoLongSearch) {
+    const auto run = run_scene(load_cycle(20, ", accuracy: 0.01"));
+    EXPECT_EQ(run.state.control.slipped, std::vector{0});
+    EXPECT_LT(*run.report.estimated_error, 0.01);
+    EXPECT_GT(run.history[1].load_factor, 1e-9);
+    EXPECT_LT(run.history[1].open_close_iterations, 60);
+}
+
 TEST(StepControl, LessAccuracyCostsLess) {
     const auto solves = [](const char* accuracy) {
         return run_scene(load_cycle(20, fmt::format(", accuracy: {}", accuracy))).report.costs.open_close_iterations;
@@ -187,6 +196,16 @@ TEST(StepControl, ContactsAreDetectedInEveryFifthStepOnly) {
     EXPECT_EQ(each.report.detections, 5 * fifth.report.detections - 4); // one for the initial state
     EXPECT_NEAR(fifth.history.back().axial_stress, each.history.back().axial_stress,
                 1e-6 * std::abs(each.history[20].axial_stress));
+}
+
+// `all` breaks at the ends of steps; those that are too long are taken back with what broke in them.
+TEST(StepControl, CracksOfARejectedStepAreNotToldOf) {
+    const auto run = run_scene(read_scene(KLUFT_SOURCE_DIR "/models/quickstart.yaml",
+                                          {"cracks.update=all", "solver.accuracy=0.02", "stages.1.strain.value=0.01"}));
+    EXPECT_GT(run.report.costs.rejected_steps, 0);
+    const StepRecord& last = run.history.back();
+    EXPECT_GT(run.cracks.size(), 0U);
+    EXPECT_EQ(run.cracks.size(), static_cast<std::size_t>(last.cracks_tension + last.cracks_shear));
 }
 
 // ---- whole sample --------------------------------------------------------------------------------------------------

@@ -280,6 +280,28 @@ TEST_F(StudyRuns, StepSizeStudyTakesTheLastStageThatMovesAPlaten) {
     EXPECT_THROW((void)ready_made_study("step", directory_ / "scene.yaml"), InputError);
 }
 
+TEST_F(StudyRuns, ReadyMadeStudyReplacesItsLikeOnly) {
+    const std::string mine = "scene: scene.yaml\n" + steps("4, 8");
+    std::ofstream(directory_ / "study.yaml") << mine;
+    const std::string in = "cd '" + (directory_ / ".").string() + "' && " + KLUFT_PROGRAM + " study ";
+    EXPECT_EQ(exit_code_of(in + "step-size scene.yaml -o . --emit make >said 2>&1"), 2);
+    EXPECT_THAT(content_of(directory_ / "said"), HasSubstr("found another study, which would be lost"));
+    EXPECT_EQ(content_of(directory_ / "study.yaml"), mine);
+    EXPECT_EQ(exit_code_of(in + "step-size scene.yaml -o made --emit make >said 2>&1"), 0);
+    EXPECT_EQ(exit_code_of(in + "step-size scene.yaml -o made --emit make >said 2>&1"), 0);
+    const std::string made = content_of(directory_ / "made" / "study.yaml");
+    const StudyLock lock(directory_ / "made");
+    EXPECT_EQ(exit_code_of(in + "step-size scene.yaml -o made --set title=Other --emit make >said 2>&1"), 2);
+    EXPECT_EQ(content_of(directory_ / "made" / "study.yaml"), made);
+}
+
+TEST_F(StudyRuns, TradeStudyRefusesNoCaseOfTheOtherIntegrator) {
+    std::ofstream(directory_ / "made.yaml") << ready_made_study("trade", directory_ / "scene.yaml");
+    const ReadStudy study = read_study(directory_ / "made.yaml");
+    EXPECT_TRUE(std::ranges::any_of(study.cases, [](const auto& one) { return one.variant == "explicit"; }));
+    for (const auto& one : study.cases) EXPECT_EQ(one.refusal, "") << one.name;
+}
+
 TEST_F(StudyRuns, CommandWritesTheTableAndAnswersMistakesWithTheirPlace) {
     std::ofstream(directory_ / "study.yaml") << "scene: scene.yaml\n" << steps("4, 8");
     const std::string in = "cd '" + (directory_ / ".").string() + "' && " + KLUFT_PROGRAM + " study ";

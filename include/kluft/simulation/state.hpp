@@ -26,6 +26,7 @@ struct StepControl {
     double size = 0.0;           ///< of the next step, load factor
     double curvature = 0.0;      ///< path error of the last step that was judged, over the square of its size
     double lag = 0.0;            ///< part of the error in proportion to the size, over the size: it does not add up
+    double axial_stress = 0.0;   ///< of the last equilibrium (Pa)
     double largest_stress = 0.0; ///< axial, of all equilibria so far (Pa)
     double largest_mean_stress = 0.0; ///< root of the mean square over the body, where loads are prescribed (Pa)
     double path_error = 0.0;          ///< sum over the steps so far, relative

@@ -15,6 +15,9 @@ namespace kluft {
 [[nodiscard]] std::string ready_made_study(const std::string& name, const std::filesystem::path& scene,
                                            const std::vector<std::string>& overrides = {});
 
+/// Whether a file has the text of a ready-made study; false where there is none.
+[[nodiscard]] bool is_ready_made(const std::filesystem::path& file);
+
 /// 25, 50, ..., 800 load steps of the last stage that moves a platen or reduces strengths, or else of the last stage.
 [[nodiscard]] std::string step_size_study(const std::filesystem::path& scene,
                                           const std::vector<std::string>& overrides = {});
