@@ -148,6 +148,7 @@ std::string closing_line(const RunReport& report, const RunSummary& summary, con
                             summary.numbers.peak_reached ? "" : " (still rising)");
     }
     if (report.factor_of_safety) text += fmt::format(", factor of safety {:.6g}", *report.factor_of_safety);
+    if (summary.estimated_error) text += fmt::format(", estimated error {:.2g} %", 100.0 * *summary.estimated_error);
     const std::string work = report.motion ? fmt::format("{} time steps", report.motion->time_steps)
                                            : fmt::format("{} solves", summary.numbers.open_close_iterations);
     text += fmt::format(", {} tension and {} shear cracks, {}, {:.1f} s; results in {}", summary.numbers.cracks_tension,

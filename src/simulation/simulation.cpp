@@ -331,7 +331,7 @@ private:
             const double remaining = 1.0 - before.load_factor;
             const double size = fitted_step_size(work_.control.size, remaining);
             const double target = size < remaining ? before.load_factor + size : 1.0;
-            const auto error = try_step(target, is_checked(target == 1.0));
+            const auto error = try_or_stand_back(size, target);
             if (!error) {
                 charge_unjudged();
                 break;
@@ -356,6 +356,20 @@ private:
         if (control.largest_stress > before.control.largest_stress || !prescribes_strain())
             control.estimated_error = control.path_error + control.event_error;
     }
+
+    /// A load step that ends without equilibrium is too large, unless it is small.
+    std::optional<StepError> try_or_stand_back(double size, double target) {
+        try {
+            return try_step(target, is_checked(target == 1.0));
+        } catch (const LostEquilibrium&) {
+            if (size > small_step()) return without_equilibrium;
+            tell_waiting(course_);
+            throw;
+        }
+    }
+
+    /// Up to this size a load step may be relaxed, and a run may end in it: the history misses no more than the accuracy.
+    [[nodiscard]] double small_step() const { return std::max(accuracy_, least_step_size); }
 
     /// From a step that was rejected and taken again with a smaller size: the part of the error in proportion to the size
     /// is a lag (of the mass-like term, of the tolerance) that does not add up. False where the error does not fall with
@@ -420,8 +434,9 @@ private:
         const double first = predicted_event(from, target);
         Trial trial = solve(first, predicted(first));
         if (!trial.balanced) {
-            if (first - from > std::max(accuracy_, least_step_size)) return without_equilibrium;
+            if (first - from > small_step()) return without_equilibrium;
             trial = recover(trial, first, from);
+            work_.control.size = std::max(work_.control.size, std::min(small_step(), 2.0 * (first - from)));
             finish_unjudged(trial, first, check);
             work_.displacement_rate.resize(0);
             return std::nullopt;
@@ -467,9 +482,9 @@ private:
 
     /// Nothing takes the step back any more.
     void finish_unjudged(const Trial& trial, double reached, bool check) {
+        finish_step(trial, reached, check);
         course_.holds_back = false;
         tell_waiting(course_);
-        finish_step(trial, reached, check);
     }
 
     void finish_step(const Trial& trial, double reached, bool check) {
@@ -498,7 +513,8 @@ private:
                                      const CourseValue& at_once, double open) const {
         const StepControl& control = work_.control;
         const double largest = prescribes_strain() ? control.largest_stress : control.largest_mean_stress;
-        const double scale = std::max(largest, end.norm() / work_.load_factor);
+        const double size = work_.load_factor - course_.accepted.load_factor;
+        const double scale = std::max(largest, (end + (1.0 - work_.load_factor) / size * (end - start)).norm());
         if (!(scale > 0.0)) return {};
         const double path = (end - at_once).norm() / scale;
         const double chord = (middle - 0.5 * (start + end)).norm() / scale;
