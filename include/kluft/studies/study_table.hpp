@@ -36,6 +36,7 @@ struct StudyTable {
     std::string title;
     std::filesystem::path directory;      ///< of the study; results of a case stand in directory/cases/<name>
     std::vector<std::string> parameters;  ///< key paths that vary
+    std::vector<std::string> own_settings; ///< per parameter what the scene itself says; empty where that is not known
     std::vector<std::string> quantities;  ///< names of numbers in summary.json
     std::optional<std::size_t> along;     ///< parameter that plots and extrapolation run along, with numeric values
     std::optional<std::size_t> reference; ///< case that the others are compared with, if it is one of them
