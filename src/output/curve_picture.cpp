@@ -228,8 +228,12 @@ Obstacles obstacles_of(const CurvePlot& plot, const PlotFrame& frame) {
         if (curve.joined) {
             obstacles.lines.push_back(places(frame, values));
         } else {
-            const Vec2 arm(2.0, 0.0);
-            for (const Vec2& at : places(frame, values)) obstacles.lines.push_back({at - arm, at + arm});
+            const Vec2 beside(3.0, 0.0);
+            const Vec2 above(0.0, 3.0);
+            for (const Vec2& at : places(frame, values)) {
+                obstacles.lines.push_back({at - beside, at + beside});
+                obstacles.lines.push_back({at - above, at + above});
+            }
         }
         if (!has_shown_peak(frame, curve)) continue;
         const Vec2 at = frame.place(*curve.peak);
@@ -275,8 +279,9 @@ void draw_point_texts(Canvas& canvas, const PlotFrame& frame, const PlottedCurve
                                         at + Vec2(-2.0 - width, -11.0 - height)};
         for (const Vec2& low : corners) {
             const PageBox box{low - Vec2(1.0, 1.0), low + Vec2(width + 1.0, height + 1.0)};
-            if ((box.low.array() < frame.corner.array()).any() ||
-                (box.high.array() > (frame.corner + frame.size).array()).any())
+            const Vec2 room(1.5, 1.5); // for the halo
+            if (((box.low - room).array() < frame.corner.array()).any() ||
+                ((box.high + room).array() > (frame.corner + frame.size).array()).any())
                 continue;
             const std::size_t n_met = obstacles.met_by(box);
             if (n_met >= fewest) continue;

@@ -628,15 +628,19 @@ std::string group_label(const StudyTable& table, const std::vector<StudyGroup>& 
 
 std::string series_label(const StudyTable& table, const std::vector<StudyGroup>& groups,
                          const std::vector<StudySeries>& all, const StudySeries& series) {
-    const StudyGroup& own = groups[series.levels.front().group];
+    const std::size_t first = series.levels.front().group;
     std::set<std::size_t> named;
-    for (const StudySeries& other : all)
-        for (std::size_t p = 0; p < table.parameters.size() && other.parameter == series.parameter; ++p)
-            if (p != series.parameter && groups[other.levels.front().group].settings[p] != own.settings[p])
-                named.insert(p);
-    const bool any = std::ranges::any_of(named, [&](std::size_t p) { return !own.settings[p].empty(); });
-    if (!any) return group_label(table, groups, series.levels.front().group, series.parameter);
-    return words_for(table, groups, series.levels.front().group, [&](std::size_t p) { return named.contains(p); });
+    for (const StudySeries& other : all) {
+        if (other.parameter != series.parameter) continue;
+        for (std::size_t p = 0; p < table.parameters.size(); ++p) {
+            const std::string& here = groups[first].settings[p];
+            const std::string& there = groups[other.levels.front().group].settings[p];
+            const bool same = here == there || (there.empty() && is_own_setting(table, p, here));
+            if (p != series.parameter && !here.empty() && !same) named.insert(p);
+        }
+    }
+    if (named.empty()) return group_label(table, groups, first, series.parameter);
+    return words_for(table, groups, first, [&](std::size_t p) { return named.contains(p); });
 }
 
 std::string setting_words(const std::string& key, const std::string& setting) {

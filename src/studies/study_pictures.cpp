@@ -178,11 +178,7 @@ CurvePlot work_precision_plot(const StudyTable& table, const std::vector<StudyGr
         const std::size_t group = group_of(groups, point.study_case);
         const auto curve = curve_of_group.find(group);
         (curve == curve_of_group.end() ? rest : plot.curves[curve->second]).points.push_back({place, point.balanced});
-        if (own_settings == group && !point.on_front) {
-            own.points.push_back({place, point.balanced});
-            own.point_texts.push_back(own.points.size() == 1 ? "as the scene: " + group_label(table, groups, group)
-                                                             : "");
-        }
+        if (own_settings == group && !point.on_front) own.points.push_back({place, point.balanced});
         if (!point.on_front) continue;
         const bool much_better = point.error < worth_a_text * last_named || own_settings == group;
         if (much_better) last_named = point.error;

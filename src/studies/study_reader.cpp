@@ -506,22 +506,25 @@ const SceneNode* child_of(const SceneNode& node, std::string_view key) {
     return &node.items[static_cast<std::size_t>(*index)];
 }
 
-/// What a scene says at a path such as stages.1.steps, or its default.
+/// What a scene says at a path such as stages.1.steps, or its default; no default below a mapping that is not there.
 std::string setting_at(const SceneNode& tree, std::string_view path) {
     const SceneNode* node = &tree;
+    const SceneNode* parent = nullptr;
     std::string pattern;
     for (std::size_t begin = 0; begin <= path.size();) {
         const std::size_t end = std::min(path.find('.', begin), path.size());
         const std::string_view key = path.substr(begin, end - begin);
         const bool is_index = !key.empty() && key.find_first_not_of("0123456789") == std::string_view::npos;
         pattern = child_pattern(pattern, is_index ? "#" : key);
+        parent = node;
         if (node != nullptr) node = child_of(*node, key);
         begin = end + 1;
     }
     if (node != nullptr && node->is_scalar()) return node->text;
     if (node != nullptr && node->is_list()) return "[...]";
     if (node != nullptr && node->is_mapping()) return "{...}";
-    const KeyRule* const rule = find_rule(pattern);
+    const bool in_section = std::ranges::count(path, '.') <= 1;
+    const KeyRule* const rule = parent != nullptr || in_section ? find_rule(pattern) : nullptr;
     return rule != nullptr ? std::string(rule->fallback) : std::string{};
 }
 

@@ -142,6 +142,7 @@ private:
     [[nodiscard]] std::optional<double> solves_of(std::size_t group) const;
     [[nodiscard]] std::string cost_text(std::size_t group, double cpu_s) const;
     [[nodiscard]] std::string own_sentence(const StudyMeasure& measure) const;
+    [[nodiscard]] std::vector<std::string> accuracy_items(const StudyMeasure& measure) const;
     [[nodiscard]] const std::string& label_of(std::size_t group) const { return labels_[group]; }
     /// The quantity that is recommended for, and the curve.
     [[nodiscard]] std::vector<const StudyMeasure*> judged_measures() const;
@@ -320,7 +321,9 @@ ReportTable ReportBuilder::other_convergence() const {
             row.push_back(
                 short_verdict(*measure, convergence(found.sizes, found.values, noise_of_values), found.values.size()));
         }
-        rows.rows.push_back(std::move(row));
+        const bool any =
+            std::any_of(row.begin() + 2, row.end(), [](const std::string& cell) { return cell != unknown; });
+        if (any) rows.rows.push_back(std::move(row));
     }
     return rows;
 }
@@ -633,15 +636,34 @@ std::string ReportBuilder::own_sentence(const StudyMeasure& measure) const {
     const auto error = group_error(table_, groups_[*own], measure);
     const auto cost = group_cost(table_, groups_[*own]);
     if (!error || !cost) return "";
-    return fmt::format(
-        "The scene's own settings, or the nearest to them here ({}), have an error of {:.2g} % {} and cost "
-        "{}.",
-        advised_settings(table_, groups_, *own), percent * *error, on_words(measure), cost_text(*own, *cost));
+    bool exact = true;
+    for (std::size_t p = 0; p < table_.parameters.size(); ++p)
+        exact = exact && is_own_setting(table_, p, groups_[*own].settings[p]);
+    return fmt::format("The {}, {}, have an error of {:.2g} % {} and cost {}.",
+                       exact ? "scene's own settings" : "settings nearest to the scene's own",
+                       advised_settings(table_, groups_, *own), percent * *error, on_words(measure),
+                       cost_text(*own, *cost));
+}
+
+/// What cases that ask for an accuracy come to.
+std::vector<std::string> ReportBuilder::accuracy_items(const StudyMeasure& measure) const {
+    std::vector<std::string> items;
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+        const auto error = group_error(table_, groups_[g], measure);
+        const auto cost = group_cost(table_, groups_[g]);
+        if (!takes_own_steps(table_, groups_[g]) || other_models_[g] || !error || !cost) continue;
+        items.push_back(fmt::format("{}: error {:.2g} % {}, {}.", advised_settings(table_, groups_, g),
+                                    percent * *error, on_words(measure), cost_text(g, *cost)));
+    }
+    return items;
 }
 
 std::string ReportBuilder::sentence(const Advice& advice, const StudyMeasure& measure) const {
     std::string text = fmt::format("For {:.3g} % error {}: ", percent * advice.bound, on_words(measure));
     if (advice.group) {
+        const auto references = reference_marks(table_);
+        if (std::ranges::any_of(groups_[*advice.group].cases, [&](std::size_t i) { return references[i]; }))
+            text += "only the reference itself: ";
         text += fmt::format("{} (error {:.2g} %) costs {}", advised_settings(table_, groups_, *advice.group),
                             percent * advice.error, cost_text(*advice.group, advice.cpu_s));
         if (advice.reference_share) text += fmt::format(", {:.2g} of the reference", *advice.reference_share);
@@ -717,10 +739,13 @@ void ReportBuilder::add_recommendation() {
     add(ReportParagraph{
         "CPU times of single short runs vary by some per cent from one to the next; numbers of solves do "
         "not."});
-    if (std::ranges::any_of(groups_, [&](const StudyGroup& group) { return takes_own_steps(table_, group); }))
-        add(ReportParagraph{"Cases with solver.accuracy take their own steps, such that the estimated error of each is "
-                            "below it: the number of steps of a stage says the size of the first one only. They are "
-                            "confirmed by cases of a smaller accuracy, not by cases of more steps."});
+    auto accurate = accuracy_items(*judged.front());
+    if (accurate.empty()) return;
+    add(ReportParagraph{
+        "Cases with solver.accuracy take their own steps, such that the estimated error of the stress up to "
+        "its peak stays below it: the number of steps of a stage says the size of the first one only. "
+        "They are confirmed by cases of a smaller accuracy, not by cases of more steps:"});
+    add(ReportList{std::move(accurate)});
 }
 
 /// Pictures of an earlier report.
