@@ -265,6 +265,7 @@ void draw_point_texts(Canvas& canvas, const PlotFrame& frame, const PlottedCurve
         const double width = canvas.text_width(text, style);
         PageBox best;
         std::size_t fewest = std::numeric_limits<std::size_t>::max();
+        const double first_place = frame.corner.x() + 4.0;
         const double last_place = frame.corner.x() + frame.size.x() - 4.0 - width;
         const std::vector<Vec2> corners{at + Vec2(6.0, -0.5 * height),
                                         at + Vec2(4.0, -4.0 - height),
@@ -278,7 +279,8 @@ void draw_point_texts(Canvas& canvas, const PlotFrame& frame, const PlottedCurve
                                         at + Vec2(2.0, 11.0),
                                         at + Vec2(-2.0 - width, 11.0),
                                         at + Vec2(-2.0 - width, -11.0 - height),
-                                        {std::min(at.x() + 2.0, last_place), at.y() - 11.0 - height}};
+                                        {std::min(at.x() + 2.0, last_place), at.y() - 11.0 - height},
+                                        {std::max(at.x() - 2.0 - width, first_place), at.y() + 11.0}};
         for (const Vec2& low : corners) {
             const PageBox box{low - Vec2(1.0, 1.0), low + Vec2(width + 1.0, height + 1.0)};
             const Vec2 room(1.5, 1.5); // for the halo
