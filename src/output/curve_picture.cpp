@@ -280,7 +280,7 @@ void draw_point_texts(Canvas& canvas, const PlotFrame& frame, const PlottedCurve
                                         at + Vec2(-2.0 - width, 11.0),
                                         at + Vec2(-2.0 - width, -11.0 - height),
                                         {std::min(at.x() + 2.0, last_place), at.y() - 11.0 - height},
-                                        {std::max(at.x() - 2.0 - width, first_place), at.y() + 11.0}};
+                                        {std::max(at.x() - 2.0 - width, first_place), at.y() - 11.0 - height}};
         for (const Vec2& low : corners) {
             const PageBox box{low - Vec2(1.0, 1.0), low + Vec2(width + 1.0, height + 1.0)};
             const Vec2 room(1.5, 1.5); // for the halo
