@@ -183,8 +183,7 @@ private:
     void add_steps() {
         std::vector<Variation> crossed{{steps_key_, {}}};
         for (const int steps : step_counts) crossed.front().values.push_back(fmt::format("{}", steps));
-        if (cracks_ && implicit_)
-            crossed.push_back({"cracks.update", {"all", "critical_first", "single", "event"}});
+        if (cracks_ && implicit_) crossed.push_back({"cracks.update", {"all", "critical_first", "single", "event"}});
         add("steps", crossed);
         const int own_steps = static_cast<int>(*read_number(*own(steps_key_)));
         if (std::ranges::find(step_counts, own_steps) == step_counts.end()) add("own settings", {});
