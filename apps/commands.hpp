@@ -75,6 +75,7 @@ struct StudyArguments {
     std::vector<std::string> overrides;
     int jobs = 0; ///< 0: as many as there are processors
     std::string emit;
+    std::string quantity; ///< that is recommended for; empty: the first of the study
     bool collect = false;
     bool quiet = false;
 };

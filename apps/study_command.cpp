@@ -113,9 +113,18 @@ StudyPlace place_of(const StudyArguments& arguments) {
 }
 
 /// The table and the report.
-void write_results(const StudyTable& table) {
+void write_results(const StudyTable& table, const std::string& quantity) {
     write_study_table(table);
-    write_study_report(table, table.directory);
+    StudyReportOptions options;
+    options.quantity = quantity;
+    write_study_report(table, table.directory, options);
+}
+
+/// Before anything is run.
+void refuse_unknown_quantity(const Study& study, const std::string& quantity) {
+    if (quantity.empty() || std::ranges::find(study.quantities, quantity) != study.quantities.end()) return;
+    throw InputError("kluft study: --quantity: expected one of " + listed(study.quantities) + ", found '" + quantity +
+                     "'" + suggestion(quantity, study.quantities));
 }
 
 std::size_t n_with(const StudyTable& table, CaseStatus status) {
@@ -159,6 +168,7 @@ std::vector<std::string> collect_command(const StudyArguments& arguments, const 
         words.push_back(fs::is_regular_file(word, error) ? fs::absolute(word).lexically_normal().string() : word);
     }
     words.insert(words.end(), {"-o", fs::absolute(place.directory).lexically_normal(), "--collect"});
+    if (!arguments.quantity.empty()) words.insert(words.end(), {"--quantity", arguments.quantity});
     for (const auto& override_text : arguments.overrides) words.insert(words.end(), {"--set", override_text});
     return words;
 }
@@ -174,10 +184,13 @@ ExitCode study(const StudyArguments& arguments) {
         write_ready_made(place);
     }
     const ReadStudy read = read_study(place.file, arguments.overrides);
+    refuse_unknown_quantity(read.study, arguments.quantity);
     if (arguments.collect) {
+        if (!fs::is_directory(directory))
+            throw InputError("kluft study --collect: expected the directory of a study, found no " + directory.string());
         const StudyTable table = collect_study(read, directory);
         make_directory(directory);
-        write_results(table);
+        write_results(table, arguments.quantity);
         print_closing(table);
         return exit_code(table);
     }
@@ -196,7 +209,7 @@ ExitCode study(const StudyArguments& arguments) {
     if (!arguments.quiet) options.show = [&](const StudyProgress& progress) { line.show(progress); };
     const StudyTable table = run_study(read, directory, options, stop_requested);
     line.clear();
-    write_results(table);
+    write_results(table, arguments.quantity);
     print_closing(table);
     return exit_code(table);
 }

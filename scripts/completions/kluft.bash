@@ -37,7 +37,7 @@ _kluft() {
     draw) options+=" -o --output --curve --blocks --mark --limit --title --set" ;;
     compare) options+=" -o --output --tolerance" ;;
     envelope) options+=" -o --output --compare --title" ;;
-    study) options+=" -o --output --jobs --set --emit --collect --quiet" ;;
+    study) options+=" -o --output --jobs --set --emit --collect --quantity --quiet" ;;
     validate) options+=" -o --output --jobs --list" ;;
     esac
     if [[ $word == -* ]]; then

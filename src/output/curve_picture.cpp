@@ -228,7 +228,12 @@ Obstacles obstacles_of(const CurvePlot& plot, const PlotFrame& frame) {
         if (curve.joined) {
             obstacles.lines.push_back(places(frame, values));
         } else {
-            for (const Vec2& at : places(frame, values)) obstacles.lines.push_back({at, at + Vec2(0.1, 0.1)});
+            const Vec2 beside(3.0, 0.0);
+            const Vec2 above(0.0, 3.0);
+            for (const Vec2& at : places(frame, values)) {
+                obstacles.lines.push_back({at - beside, at + beside});
+                obstacles.lines.push_back({at - above, at + above});
+            }
         }
         if (!has_shown_peak(frame, curve)) continue;
         const Vec2 at = frame.place(*curve.peak);
@@ -260,13 +265,28 @@ void draw_point_texts(Canvas& canvas, const PlotFrame& frame, const PlottedCurve
         const double width = canvas.text_width(text, style);
         PageBox best;
         std::size_t fewest = std::numeric_limits<std::size_t>::max();
-        const std::vector<Vec2> corners{at + Vec2(6.0, -0.5 * height), at + Vec2(4.0, -4.0 - height),
-                                        at + Vec2(4.0, 4.0),           at + Vec2(-6.0 - width, -0.5 * height),
-                                        at + Vec2(-4.0 - width, 4.0),  at + Vec2(-4.0 - width, -4.0 - height),
-                                        at + Vec2(-0.5 * width, 7.0),  at + Vec2(-0.5 * width, -7.0 - height)};
+        const double first_place = frame.corner.x() + 4.0;
+        const double last_place = frame.corner.x() + frame.size.x() - 4.0 - width;
+        const std::vector<Vec2> corners{at + Vec2(6.0, -0.5 * height),
+                                        at + Vec2(4.0, -4.0 - height),
+                                        at + Vec2(4.0, 4.0),
+                                        at + Vec2(-6.0 - width, -0.5 * height),
+                                        at + Vec2(-4.0 - width, 4.0),
+                                        at + Vec2(-4.0 - width, -4.0 - height),
+                                        at + Vec2(-0.5 * width, 7.0),
+                                        at + Vec2(-0.5 * width, -7.0 - height),
+                                        at + Vec2(2.0, -11.0 - height),
+                                        at + Vec2(2.0, 11.0),
+                                        at + Vec2(-2.0 - width, 11.0),
+                                        at + Vec2(-2.0 - width, -11.0 - height),
+                                        {std::min(at.x() + 2.0, last_place), at.y() - 11.0 - height},
+                                        {std::max(at.x() - 2.0 - width, first_place), at.y() - 11.0 - height}};
         for (const Vec2& low : corners) {
             const PageBox box{low - Vec2(1.0, 1.0), low + Vec2(width + 1.0, height + 1.0)};
-            if (box.low.x() < frame.corner.x() || box.high.x() > frame.corner.x() + frame.size.x()) continue;
+            const Vec2 room(1.5, 1.5); // for the halo
+            if (((box.low - room).array() < frame.corner.array()).any() ||
+                ((box.high + room).array() > (frame.corner + frame.size).array()).any())
+                continue;
             const std::size_t n_met = obstacles.met_by(box);
             if (n_met >= fewest) continue;
             fewest = n_met;

@@ -91,7 +91,7 @@ std::optional<double> observed_order(double ratio, double q1, double q2, double 
 }
 
 bool is_believable(double order) {
-    constexpr double least = 0.3;
+    constexpr double least = 0.5;
     constexpr double most = 4.5;
     return order >= least && order <= most;
 }
@@ -305,13 +305,17 @@ std::optional<double> reference_cost(const StudyTable& table) {
     return group_cost(table, references);
 }
 
-/// The last key of the parameter's path, or all of it where another one ends alike.
+/// The end of the parameter's path, as long as it takes to tell it from the others.
 std::string short_name(const StudyTable& table, std::size_t parameter) {
-    const auto last_key = [](std::string_view path) { return path.substr(path.rfind('.') + 1); };
     const std::string& path = table.parameters[parameter];
-    const auto n_alike = std::ranges::count_if(
-        table.parameters, [&](const std::string& other) { return last_key(other) == last_key(path); });
-    return n_alike > 1 ? path : std::string(last_key(path));
+    for (std::size_t begin = path.rfind('.'); begin != std::string::npos && begin > 0;
+         begin = path.rfind('.', begin - 1)) {
+        const std::string end = path.substr(begin);
+        const auto n_alike = std::ranges::count_if(
+            table.parameters, [&](const std::string& other) { return other.ends_with(end) || "." + other == end; });
+        if (n_alike == 1) return end.substr(1);
+    }
+    return path;
 }
 
 /// The setting that most groups have of a parameter, if that is more than half of them.
@@ -330,9 +334,20 @@ std::string words_for(const StudyTable& table, const std::vector<StudyGroup>& gr
     if (variants_matter(table) && !groups[group].variant.empty()) words.push_back(groups[group].variant);
     for (std::size_t p = 0; p < table.parameters.size(); ++p) {
         const std::string& setting = groups[group].settings[p];
-        if (!setting.empty() && is_named(p)) words.push_back(fmt::format("{} {}", short_name(table, p), setting));
+        if (setting.empty() || !is_named(p)) continue;
+        words.push_back(setting == "null" ? "without " + short_name(table, p)
+                                          : fmt::format("{} {}", short_name(table, p), setting));
     }
-    return words.empty() ? "usual settings" : listed(words);
+    if (!words.empty()) return listed(words);
+    return groups.size() == 1 ? "all cases" : "usual settings";
+}
+
+/// Whether the groups of the references' model have different settings of a parameter.
+bool differs_in_model(const std::vector<StudyGroup>& groups, const std::vector<bool>& others, std::size_t group,
+                      std::size_t parameter) {
+    for (std::size_t i = 0; i < groups.size(); ++i)
+        if (!others[i] && groups[i].settings[parameter] != groups[group].settings[parameter]) return true;
+    return false;
 }
 
 } // namespace
@@ -485,15 +500,14 @@ SeriesValues series_values(const StudyTable& table, const std::vector<StudyGroup
     return found;
 }
 
-Convergence convergence(const Values& sizes, const Values& values) {
+Convergence convergence(const Values& sizes, const Values& values, double noise) {
     Convergence result;
     const std::size_t n = std::min<std::size_t>(values.size(), 4);
     const Values h(sizes.end() - static_cast<std::ptrdiff_t>(n), sizes.end());
     const Values q(values.end() - static_cast<std::ptrdiff_t>(n), values.end());
     if (n > 1) result.scatter = scatter_of(q);
     if (n < 3) return result;
-    constexpr double round_off = 1e-10;
-    if (result.scatter <= round_off) {
+    if (result.scatter <= noise) {
         result.kind = ConvergenceKind::constant;
         result.limit = q.back();
         result.uncertainty = result.scatter;
@@ -612,13 +626,83 @@ std::string group_label(const StudyTable& table, const std::vector<StudyGroup>& 
     });
 }
 
-std::string full_group_label(const StudyTable& table, const std::vector<StudyGroup>& groups, std::size_t group) {
+std::string series_label(const StudyTable& table, const std::vector<StudyGroup>& groups,
+                         const std::vector<StudySeries>& all, const StudySeries& series) {
+    const std::size_t first = series.levels.front().group;
+    std::set<std::size_t> named;
+    for (const StudySeries& other : all) {
+        if (other.parameter != series.parameter) continue;
+        for (std::size_t p = 0; p < table.parameters.size(); ++p) {
+            const std::string& here = groups[first].settings[p];
+            const std::string& there = groups[other.levels.front().group].settings[p];
+            const bool same = here == there || (there.empty() && is_own_setting(table, p, here));
+            if (p != series.parameter && !here.empty() && !same) named.insert(p);
+        }
+    }
+    if (named.empty()) return group_label(table, groups, first, series.parameter);
+    return words_for(table, groups, first, [&](std::size_t p) { return named.contains(p); });
+}
+
+std::string setting_words(const std::string& key, const std::string& setting) {
+    if (setting == "null") return "without " + key;
+    if (!is_step_count(key)) return key + " " + setting;
+    const std::string stage = key.substr(std::string_view("stages.").size());
+    return fmt::format("{} steps of stage {}", setting, stage.substr(0, stage.find('.')));
+}
+
+bool is_own_setting(const StudyTable& table, std::size_t parameter, const std::string& setting) {
+    if (setting.empty()) return true;
+    if (table.own_settings.empty()) return false;
+    const std::string& own = table.own_settings[parameter];
+    if (setting == own || (setting == "null" && own.empty())) return true;
+    const auto a = setting_number(table.parameters[parameter], setting);
+    const auto b = setting_number(table.parameters[parameter], own);
+    return a && b && *a == *b;
+}
+
+std::optional<std::size_t> own_group(const StudyTable& table, const std::vector<StudyGroup>& groups) {
+    std::optional<std::size_t> nearest;
+    double least = std::numeric_limits<double>::infinity();
+    if (table.own_settings.empty() || variants_matter(table)) return nearest;
+    for (std::size_t i = 0; i < groups.size(); ++i) {
+        double distance = 0.0;
+        for (std::size_t p = 0; p < table.parameters.size(); ++p) {
+            if (is_own_setting(table, p, groups[i].settings[p])) continue;
+            const auto size = refinement_size(table.parameters[p], groups[i].settings[p]);
+            const auto own = refinement_size(table.parameters[p], table.own_settings[p]);
+            distance += table.along == p && size && own ? std::abs(std::log(*size / *own))
+                                                        : std::numeric_limits<double>::infinity();
+        }
+        if (distance >= least) continue;
+        least = distance;
+        nearest = i;
+    }
+    return nearest;
+}
+
+bool takes_own_steps(const StudyTable& table, const StudyGroup& group) {
+    for (std::size_t p = 0; p < table.parameters.size(); ++p)
+        if (table.parameters[p] == "solver.accuracy")
+            return refinement_size("solver.accuracy", group.settings[p]).has_value();
+    return false;
+}
+
+std::string advised_settings(const StudyTable& table, const std::vector<StudyGroup>& groups, std::size_t group) {
     const auto others = other_model_marks(table, groups);
-    return words_for(table, groups, group, [&](std::size_t p) {
-        for (std::size_t i = 0; i < groups.size(); ++i)
-            if (!others[i] && groups[i].settings[p] != groups[group].settings[p]) return true;
-        return false;
-    });
+    const StudyGroup& advised = groups[group];
+    std::vector<std::string> words;
+    bool all_own = true;
+    if (variants_matter(table) && !advised.variant.empty()) words.push_back(advised.variant);
+    for (std::size_t p = 0; p < table.parameters.size(); ++p) {
+        const bool own = is_own_setting(table, p, advised.settings[p]);
+        const bool is_named = table.own_settings.empty() ? differs_in_model(groups, others, group, p) : !own;
+        all_own = all_own && own;
+        if (!advised.settings[p].empty() &&
+            (is_named || (table.along == p && !(own && takes_own_steps(table, advised)))))
+            words.push_back(setting_words(table.parameters[p], advised.settings[p]));
+    }
+    if (words.empty()) return "the scene's own settings";
+    return all_own && !table.own_settings.empty() ? listed(words) + " as in the scene" : listed(words);
 }
 
 } // namespace kluft

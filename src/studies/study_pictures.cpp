@@ -76,6 +76,12 @@ std::size_t group_of(const std::vector<StudyGroup>& groups, std::size_t study_ca
 
 } // namespace
 
+bool is_after_peak(std::string_view quantity) { return quantity == "residual_stress"; }
+
+std::string reference_words(const StudyTable& table) {
+    return table.reference ? "case " + table.cases[*table.reference].name : table.reference_name;
+}
+
 QuantityUnit quantity_unit(std::string_view quantity) {
     if (quantity.ends_with("_stress") || quantity.ends_with("_modulus")) return {"MPa", mega};
     if (quantity.ends_with("_strain")) return {"%", 1.0 / percent};
@@ -89,6 +95,8 @@ std::optional<CaseRun> read_case_run(const fs::path& directory) {
         const RunSummary summary = read_summary(directory / "summary.json");
         CaseRun run;
         run.unbalanced_steps = summary.numbers.unbalanced_steps;
+        if (!summary.motion && summary.numbers.open_close_iterations > 0)
+            run.solves = summary.numbers.open_close_iterations;
         if (!summary.platen_stage) return run;
         const auto rows = read_history(directory / "history.csv", needed_columns);
         for (const StepRecord& row : platen_rows(rows, *summary.platen_stage))
@@ -112,11 +120,11 @@ CurvePlot convergence_plot(const StudyTable& table, const std::vector<StudyGroup
         const SeriesValues found = plotted_values(table, groups, each, measure);
         if (found.values.empty()) continue;
         PlottedCurve curve;
-        curve.label = group_label(table, groups, each.levels.front().group, each.parameter);
+        curve.label = series_label(table, groups, series, each);
         for (std::size_t i = 0; i < found.values.size(); ++i)
             curve.points.push_back({{found.sizes[i], found.values[i]}, true});
-        const Convergence result = convergence(found.sizes, found.values);
-        if (result.kind == ConvergenceKind::monotone) {
+        const Convergence result = convergence(found.sizes, found.values, noise_of_values);
+        if (result.kind == ConvergenceKind::monotone && !is_after_peak(measure.name)) {
             curve.label += fmt::format(": limit {:.4g}, order {:.2g}", *result.limit, *result.order);
             plot.references.push_back({"extrapolated", 0.0, *result.limit, plot.curves.size()});
         }
@@ -135,7 +143,7 @@ CurvePlot work_precision_plot(const StudyTable& table, const std::vector<StudyGr
                               const std::vector<StudySeries>& series, const StudyMeasure& measure,
                               const std::vector<WorkPoint>& points) {
     CurvePlot plot;
-    plot.title = "Error of " + measure.name + " against " + table.reference_name;
+    plot.title = "Error of " + measure.name + " against " + reference_words(table);
     plot.x_name = "CPU time (s)";
     plot.y_name = "error (%)";
     plot.log_x = plot.log_y = true;
@@ -148,7 +156,7 @@ CurvePlot work_precision_plot(const StudyTable& table, const std::vector<StudyGr
         if (table.along != each.parameter || plot.curves.size() == most_series) continue;
         for (const SeriesLevel& level : each.levels) curve_of_group.emplace(level.group, plot.curves.size());
         PlottedCurve curve;
-        curve.label = group_label(table, groups, each.levels.front().group, each.parameter);
+        curve.label = series_label(table, groups, series, each);
         curve.joined = false;
         plot.curves.push_back(std::move(curve));
     }
@@ -160,18 +168,26 @@ CurvePlot work_precision_plot(const StudyTable& table, const std::vector<StudyGr
     front.label = "best for their cost";
     front.colour = grey;
     front.dashed = true;
+    PlottedCurve own;
+    own.label = "the scene's own settings";
+    own.colour = grey;
+    own.joined = false;
+    const auto own_settings = own_group(table, groups);
     for (const WorkPoint& point : points) {
         const Vec2 place{point.cpu_s, percent * point.error};
         const std::size_t group = group_of(groups, point.study_case);
         const auto curve = curve_of_group.find(group);
         (curve == curve_of_group.end() ? rest : plot.curves[curve->second]).points.push_back({place, point.balanced});
+        if (own_settings == group && !point.on_front) own.points.push_back({place, point.balanced});
         if (!point.on_front) continue;
-        const bool much_better = point.error < worth_a_text * last_named;
+        const bool much_better = point.error < worth_a_text * last_named || own_settings == group;
         if (much_better) last_named = point.error;
         front.points.push_back({place, true});
-        front.point_texts.push_back(much_better ? group_label(table, groups, group) : "");
+        front.point_texts.push_back(
+            much_better ? (own_settings == group ? "as the scene: " : "") + group_label(table, groups, group) : "");
     }
     plot.curves.push_back(std::move(rest));
+    plot.curves.push_back(std::move(own));
     std::erase_if(plot.curves, [](const PlottedCurve& curve) { return curve.points.empty(); });
     plot.curves.push_back(std::move(front));
     return plot;

@@ -13,6 +13,7 @@
 #include "kluft/scene/quantity.hpp"
 #include "kluft/scene/scene_check.hpp"
 #include "kluft/scene/scene_reader.hpp"
+#include "kluft/scene/scene_schema.hpp"
 #include "kluft/scene/scene_text.hpp"
 #include "kluft/scene/scene_writer.hpp"
 #include "kluft/studies/study.hpp"
@@ -499,6 +500,48 @@ std::string digest_of(const Scene& scene) {
     return digest.text();
 }
 
+const SceneNode* child_of(const SceneNode& node, std::string_view key) {
+    if (node.is_mapping()) return node.find(key);
+    const auto index = node.is_list() ? read_number(key) : std::nullopt;
+    if (!index || *index < 0.0 || *index >= static_cast<double>(node.items.size())) return nullptr;
+    return &node.items[static_cast<std::size_t>(*index)];
+}
+
+/// What a scene says at a path such as stages.1.steps, or its default; no default below a mapping that is not there.
+std::string setting_at(const SceneNode& tree, std::string_view path) {
+    const SceneNode* node = &tree;
+    const SceneNode* parent = nullptr;
+    std::string pattern;
+    for (std::size_t begin = 0; begin <= path.size();) {
+        const std::size_t end = std::min(path.find('.', begin), path.size());
+        const std::string_view key = path.substr(begin, end - begin);
+        const bool is_index = !key.empty() && key.find_first_not_of("0123456789") == std::string_view::npos;
+        pattern = child_pattern(pattern, is_index ? "#" : key);
+        parent = node;
+        if (node != nullptr) node = child_of(*node, key);
+        begin = end + 1;
+    }
+    if (node != nullptr && node->is_scalar()) return node->text;
+    if (node != nullptr && node->is_list()) return "[...]";
+    if (node != nullptr && node->is_mapping()) return "{...}";
+    const bool in_section = std::ranges::count(path, '.') <= 1;
+    const KeyRule* const rule = parent != nullptr || in_section ? find_rule(pattern) : nullptr;
+    return rule != nullptr ? std::string(rule->fallback) : std::string{};
+}
+
+std::vector<std::string> own_settings(const Study& study) {
+    std::vector<std::string> set;
+    for (const auto& setting : study.set) set.push_back(setting.assignment());
+    std::vector<std::string> own;
+    try {
+        const SceneNode tree = tree_of(read_scene(study.scene, set));
+        for (const auto& parameter : study.parameters) own.push_back(setting_at(tree, parameter.key));
+    } catch (const InputError&) {
+        return {}; // the cases may be sound all the same
+    }
+    return own;
+}
+
 /// What a scene's schema says against the settings of a case, in the words of the scene's reader.
 std::vector<std::string> schema_messages(const std::string& text, const fs::path& scene,
                                          const std::vector<std::string>& overrides) {
@@ -685,6 +728,7 @@ ReadStudy read_study_text(std::string_view text, const std::vector<std::string>&
         errors.add(root.at, "", fmt::format("expected at most {} cases, found {:g}", most_cases, n_cases(study)));
     errors.throw_if_any();
     result.cases = planned_cases(study);
+    study.own_settings = own_settings(study);
     CaseCheck check(study, errors);
     for (auto& one : result.cases) check.complete(one);
     check.throw_if_any();

@@ -42,6 +42,11 @@ std::string value_text(const StudyMeasure& measure, double value) {
     return fmt::format("{:.5g}{}{}", value / unit.size, unit.name.empty() ? "" : " ", unit.name);
 }
 
+std::string constant_text(const Convergence& result) {
+    constexpr double round_off = 1e-10;
+    return result.scatter <= round_off ? "no change" : fmt::format("constant to {:.2g} %", percent * result.scatter);
+}
+
 std::string seconds_text(double seconds) { return fmt::format("{:.3g} s", seconds); }
 
 std::string counted(std::size_t n, const std::string& thing) {
@@ -74,6 +79,10 @@ std::string file_word(const std::string& text) {
         word += plain || c == '_' ? c : '-';
     }
     return word;
+}
+
+std::string on_words(const StudyMeasure& measure) {
+    return measure.is_curve ? std::string("in the whole curve") : "on " + measure.name;
 }
 
 /// The report while it grows.
@@ -121,6 +130,19 @@ private:
     [[nodiscard]] std::string sentence(const Advice& advice, const StudyMeasure& measure) const;
     [[nodiscard]] std::string reference_doubt(const StudyMeasure& measure) const;
     [[nodiscard]] std::vector<bool> same_model() const;
+    [[nodiscard]] std::string full_reference_words() const;
+    [[nodiscard]] std::vector<std::string> varied_items() const;
+    [[nodiscard]] bool has_own_text(std::size_t parameter) const;
+    [[nodiscard]] std::string setting_of(const StudySeries& series, const SeriesLevel& level) const;
+    [[nodiscard]] ReportTable chosen_convergence() const;
+    [[nodiscard]] ReportTable other_convergence() const;
+    [[nodiscard]] bool has_replicas() const;
+    [[nodiscard]] std::vector<std::string> named_constants() const;
+    void add_names();
+    [[nodiscard]] std::optional<double> solves_of(std::size_t group) const;
+    [[nodiscard]] std::string cost_text(std::size_t group, double cpu_s) const;
+    [[nodiscard]] std::string own_sentence(const StudyMeasure& measure) const;
+    [[nodiscard]] std::vector<std::string> accuracy_items(const StudyMeasure& measure) const;
     [[nodiscard]] const std::string& label_of(std::size_t group) const { return labels_[group]; }
     /// The quantity that is recommended for, and the curve.
     [[nodiscard]] std::vector<const StudyMeasure*> judged_measures() const;
@@ -177,25 +199,67 @@ void ReportBuilder::add_head() {
     std::vector<std::string> parts;
     for (const auto& [status, count] : counts) parts.push_back(fmt::format("{} {}", count, status_text(status)));
     std::vector<std::string> items{fmt::format("{}: {}; {} of CPU time in all.", counted(table_.cases.size(), "case"),
-                                               listed(parts), seconds_text(cpu)),
-                                   "Varied: " + listed(table_.parameters) + "."};
-    if (!table_.reference_name.empty()) items.push_back("Errors are those against " + table_.reference_name + ".");
+                                               listed(parts), seconds_text(cpu))};
+    if (!table_.reference_name.empty() && table_.reference_name != "none")
+        items.push_back("Errors are those against " + full_reference_words() + ".");
     const auto n_unbalanced = std::ranges::count(unbalanced_, true);
     if (n_unbalanced > 0)
         items.push_back(fmt::format("{} unbalanced load steps: marked in the plots, and never recommended.",
                                     counted(static_cast<std::size_t>(n_unbalanced), "case") +
                                         (n_unbalanced == 1 ? " has" : " have")));
     add(ReportList{std::move(items)});
+    auto varied = varied_items();
+    if (varied.empty()) return;
+    add(ReportParagraph{"Varied:"});
+    add(ReportList{std::move(varied)});
+}
+
+std::string ReportBuilder::full_reference_words() const {
+    if (!table_.reference || table_.own_settings.empty()) return table_.reference_name;
+    for (std::size_t g = 0; g < groups_.size(); ++g)
+        if (std::ranges::find(groups_[g].cases, *table_.reference) != groups_[g].cases.end())
+            return fmt::format("{} ({})", reference_words(table_), advised_settings(table_, groups_, g));
+    return table_.reference_name;
+}
+
+/// "cracks.update: all, event (the scene: event)"; what all cases have as the scene is left out.
+std::vector<std::string> ReportBuilder::varied_items() const {
+    std::vector<std::string> items;
+    for (std::size_t p = 0; p < table_.parameters.size(); ++p) {
+        std::vector<std::string> values;
+        for (const StudyCase& each : table_.cases)
+            if (!each.settings[p].empty() && std::ranges::find(values, each.settings[p]) == values.end())
+                values.push_back(each.settings[p]);
+        if (values.empty() || (values.size() == 1 && is_own_setting(table_, p, values.front()))) continue;
+        constexpr std::size_t most_values = 10;
+        const std::size_t n = values.size();
+        if (n > most_values) {
+            values = {values[0], values[1], values[2], "...", values.back()};
+            values.back() += fmt::format(" ({} values)", n);
+        }
+        items.push_back(table_.parameters[p] + ": " + listed(values));
+        if (has_own_text(p)) items.back() += fmt::format(" (the scene: {})", table_.own_settings[p]);
+    }
+    return items;
+}
+
+/// Whether the scene says a number or a word there, or has a default.
+bool ReportBuilder::has_own_text(std::size_t parameter) const {
+    if (table_.own_settings.empty()) return false;
+    const std::string& own = table_.own_settings[parameter];
+    return !own.empty() && own != "[...]" && own != "{...}";
 }
 
 /// What a series says of a measure, in words.
 std::string verdict_text(const StudyMeasure& measure, const Convergence& result, std::size_t n_values) {
     const std::string scatter = percent_text(result.scatter);
+    if (n_values < 2) return "one value only";
+    if (is_after_peak(measure.name)) return fmt::format("after the peak: no order; scatter {}", scatter);
     switch (result.kind) {
     case ConvergenceKind::too_few:
-        return n_values < 2 ? "one value only" : fmt::format("two values: {} apart", scatter);
+        return fmt::format("two values: {} apart", scatter);
     case ConvergenceKind::constant:
-        return "no change";
+        return constant_text(result);
     case ConvergenceKind::monotone:
         return fmt::format("order {:.2g}, limit {} \u00b1 {}", *result.order, value_text(measure, *result.limit),
                            percent_text(*result.uncertainty));
@@ -207,36 +271,89 @@ std::string verdict_text(const StudyMeasure& measure, const Convergence& result,
     return "";
 }
 
-void ReportBuilder::add_convergence() {
-    ReportTable rows{{"quantity", "refined", "with", "from", "to", "finest value", "verdict"}, {}, {}, 7};
-    for (const StudyMeasure& measure : measures_) {
-        if (measure.is_curve) continue;
-        for (const StudySeries& series : series_) {
-            const SeriesValues found = series_values(table_, groups_, series, measure);
-            if (found.values.empty()) continue;
-            const auto setting = [&](const SeriesLevel& level) {
-                return groups_[level.group].settings[series.parameter];
-            };
-            rows.rows.push_back({measure.name, table_.parameters[series.parameter],
-                                 group_label(table_, groups_, series.levels.front().group, series.parameter),
-                                 setting(series.levels.front()), setting(series.levels.back()),
-                                 value_text(measure, found.values.back()),
-                                 verdict_text(measure, convergence(found.sizes, found.values), found.values.size())});
-        }
+/// The same for a cell of a table.
+std::string short_verdict(const StudyMeasure& measure, const Convergence& result, std::size_t n_values) {
+    if (n_values < 2) return unknown;
+    if (!is_after_peak(measure.name)) {
+        if (result.kind == ConvergenceKind::constant) return constant_text(result);
+        if (result.kind == ConvergenceKind::monotone)
+            return fmt::format("order {:.2g}, \u00b1 {}", *result.order, percent_text(*result.uncertainty));
+        if (result.kind == ConvergenceKind::unsettled) return "\u00b1 " + percent_text(*result.uncertainty);
     }
-    if (rows.rows.empty()) return;
+    return "scatter " + percent_text(result.scatter);
+}
+
+std::string ReportBuilder::setting_of(const StudySeries& series, const SeriesLevel& level) const {
+    return groups_[level.group].settings[series.parameter];
+}
+
+/// The chosen quantity's series in full.
+ReportTable ReportBuilder::chosen_convergence() const {
+    ReportTable rows{{"refined", "with", "from", "to", "finest value", "verdict"}, {}, {}, 6};
+    if (!chosen_ || measures_[*chosen_].is_curve) return rows;
+    const StudyMeasure& measure = measures_[*chosen_];
+    for (const StudySeries& series : series_) {
+        const SeriesValues found = series_values(table_, groups_, series, measure);
+        if (found.values.empty()) continue;
+        const Convergence result = convergence(found.sizes, found.values, noise_of_values);
+        rows.rows.push_back({table_.parameters[series.parameter], series_label(table_, groups_, series_, series),
+                             setting_of(series, series.levels.front()), setting_of(series, series.levels.back()),
+                             value_text(measure, found.values.back()),
+                             verdict_text(measure, result, found.values.size())});
+    }
+    return rows;
+}
+
+/// The other quantities side by side.
+ReportTable ReportBuilder::other_convergence() const {
+    ReportTable rows{{"refined", "with"}, {}, {}, 0};
+    std::vector<const StudyMeasure*> others;
+    for (std::size_t i = 0; i < measures_.size(); ++i)
+        if (chosen_ != i && !measures_[i].is_curve) others.push_back(&measures_[i]);
+    for (const StudyMeasure* const measure : others) rows.head.push_back(measure->name);
+    rows.n_words = rows.head.size();
+    if (others.empty()) return rows;
+    for (const StudySeries& series : series_) {
+        std::vector<std::string> row{table_.parameters[series.parameter],
+                                     series_label(table_, groups_, series_, series)};
+        for (const StudyMeasure* const measure : others) {
+            const SeriesValues found = series_values(table_, groups_, series, *measure);
+            row.push_back(
+                short_verdict(*measure, convergence(found.sizes, found.values, noise_of_values), found.values.size()));
+        }
+        const bool any =
+            std::any_of(row.begin() + 2, row.end(), [](const std::string& cell) { return cell != unknown; });
+        if (any) rows.rows.push_back(std::move(row));
+    }
+    return rows;
+}
+
+void ReportBuilder::add_convergence() {
+    ReportTable chosen = chosen_convergence();
+    ReportTable others = other_convergence();
+    if (chosen.rows.empty() && others.rows.empty()) return;
     add(ReportHeading{2, "Convergence"});
     add(ReportParagraph{
-        "Richardson's extrapolation of the last four values of each series (three where there are no "
-        "more): the observed order p of q = q0 + C h^p, the limit q0, and behind \u00b1 the uncertainty "
-        "of the finest value against it (grid convergence index). Where values go up and down there "
-        "is no order and no limit; the scatter is the range of these values over their mean."});
-    add(std::move(rows));
-    if (std::ranges::find(measures_, std::string("residual_stress"), &StudyMeasure::name) != measures_.end())
-        add(ReportParagraph{
-            "residual_stress comes after the peak, where runs part from each other: what single runs say "
-            "of it does not converge. Only its mean over replicas means something, with its "
-            "confidence."});
+        fmt::format("Richardson's extrapolation of the last four values of each series (three where there are no "
+                    "more): the observed order p of q = q0 + C h^p, the limit q0, and behind \u00b1 the uncertainty "
+                    "of the finest value against it (grid convergence index). Where values go up and down there "
+                    "is no order and no limit; the scatter is the range of these values over their mean. Changes "
+                    "up to {} are called constant.",
+                    percent_text(noise_of_values))});
+    if (!chosen.rows.empty()) {
+        add(ReportParagraph{measures_[*chosen_].name + ":"});
+        add(std::move(chosen));
+    }
+    if (!others.rows.empty()) {
+        add(ReportParagraph{"Other quantities, behind \u00b1 the uncertainty of the finest value:"});
+        add(std::move(others));
+    }
+    for (const StudyMeasure& measure : measures_)
+        if (is_after_peak(measure.name))
+            add(ReportParagraph{measure.name +
+                                " comes after the peak, where runs part from each other: what single runs say of it "
+                                "does not converge. Only its mean over replicas means something, with its "
+                                "confidence."});
     if (!chosen_ || measures_[*chosen_].is_curve) return;
     std::map<std::size_t, std::vector<StudySeries>> by_parameter;
     for (const StudySeries& series : series_) {
@@ -262,8 +379,10 @@ void ReportBuilder::add_work_precision() {
         if (points.size() < 2) continue;
         if (!std::exchange(has_heading, true)) {
             add(ReportHeading{2, "Error against time"});
-            add(ReportParagraph{"Each point is a case that ended as it should. The dashed line joins those that no "
-                                "other case beats in both cost and error; a single point of it may be a lucky hit."});
+            add(ReportParagraph{
+                "Each point is a case that ended as it should. The dashed line joins those that no "
+                "other case beats in both cost and error; a single point of it may be a lucky hit, and CPU "
+                "times of short runs vary from one to the next."});
         }
         add_picture("work-" + measure->name, work_precision_plot(table_, groups_, series_, *measure, points));
     }
@@ -280,16 +399,25 @@ void ReportBuilder::add_band(const StudyGroup& group, const std::string& label) 
     constexpr int n_points = 201;
     const CurveBand band = curve_band(curves, n_points);
     if (band.x.empty()) return;
-    add_picture("band-" + label, band_plot(fmt::format("{} replicas, {}", runs.size(), label), runs, band));
+    add_picture("band-" + label, band_plot(groups_.size() == 1 ? fmt::format("{} replicas", runs.size())
+                                                               : fmt::format("{} replicas, {}", runs.size(), label),
+                                           runs, band));
     const auto top = std::ranges::max_element(band.mean);
     const auto peak = static_cast<std::size_t>(top - band.mean.begin());
     if (peak + 1 == band.mean.size()) return;
+    const auto n = static_cast<double>(curves.size());
+    const double to_confidence = student_quantile(static_cast<int>(curves.size()) - 1, 0.95) / std::sqrt(n);
+    const auto with_spread = [&](double mean, double deviation) {
+        const double share = percent * deviation / std::max(std::abs(mean), 1e-300);
+        return fmt::format("{:.4g} MPa (standard deviation {:.2g} %, 95 % confidence of the mean \u00b1 {:.2g} %)",
+                           mean, share, to_confidence * share);
+    };
     add(ReportParagraph{fmt::format(
-        "The mean curve has its highest point, {:.4g} \u00b1 {:.2g} MPa, at {:.3g} % strain; at the end of the common "
-        "range, {:.3g} %, it is {:.4g} \u00b1 {:.2g} MPa (one standard deviation, {:.2g} % of the mean). Values after "
-        "the peak of a single run mean little: they are given with this band only.",
-        *top, band.deviation[peak], band.x[peak], band.x.back(), band.mean.back(), band.deviation.back(),
-        percent * band.deviation.back() / std::abs(band.mean.back()))});
+        "The mean curve of the differential stress has its highest point, {}, at {:.3g} % strain; at the end of the "
+        "common range, {:.3g} %, it is {}. Values after the peak of a single run mean little: they are given with this "
+        "band only.",
+        with_spread(*top, band.deviation[peak]), band.x[peak], band.x.back(),
+        with_spread(band.mean.back(), band.deviation.back()))});
 }
 
 /// Done members' values of a measure.
@@ -351,47 +479,94 @@ void ReportBuilder::add_curves() {
         if (n_pictures++ == 0) {
             add(ReportHeading{2, "Curves"});
             add(ReportParagraph{"Up to the peak the curves of a series go to one; what a single run does after its "
-                                "peak is one of many ways that are equally likely."});
+                                "peak is one of many ways that are equally likely. They show the differential stress; "
+                                "peak_stress is the largest axial stress, with the lateral one in it."});
         }
-        const std::string with = group_label(table_, groups_, series.levels.front().group, series.parameter);
+        const std::string with = series_label(table_, groups_, series_, series);
         const std::string& key = table_.parameters[series.parameter];
         add_picture(fmt::format("curves-{}-{}", key, with),
                     curves_plot(fmt::format("{}, by {}", with, key), runs, labels));
     }
 }
 
+bool ReportBuilder::has_replicas() const {
+    return std::ranges::any_of(groups_, [](const StudyGroup& group) { return group.cases.size() > 1; });
+}
+
+/// What the names of cases do not say: "reference: 800 steps of stage 1", of each variant what all its cases have and
+/// the scene has not.
+std::vector<std::string> ReportBuilder::named_constants() const {
+    std::vector<std::string> variants;
+    for (const StudyCase& each : table_.cases)
+        if (!each.variant.empty() && std::ranges::find(variants, each.variant) == variants.end())
+            variants.push_back(each.variant);
+    std::vector<std::string> items;
+    for (const std::string& variant : variants) {
+        std::vector<std::string> words;
+        for (std::size_t p = 0; p < table_.parameters.size(); ++p) {
+            std::set<std::string> values;
+            for (const StudyCase& each : table_.cases)
+                if (each.variant == variant) values.insert(each.settings[p]);
+            if (values.size() == 1 && !is_own_setting(table_, p, *values.begin()))
+                words.push_back(setting_words(table_.parameters[p], *values.begin()));
+        }
+        if (!words.empty()) items.push_back(variant + ": " + listed(words));
+    }
+    return items;
+}
+
+/// What the names of cases stand for, where the table does not show all settings.
+void ReportBuilder::add_names() {
+    std::string text = "A case is named after what varies in it; study.csv has all settings.";
+    std::vector<std::string> own;
+    for (std::size_t p = 0; p < table_.parameters.size(); ++p)
+        if (has_own_text(p)) own.push_back(setting_words(table_.parameters[p], table_.own_settings[p]));
+    if (!own.empty()) text += " What its name does not say is as in the scene: " + listed(own) + ".";
+    auto constants = named_constants();
+    if (!constants.empty()) text += " Names of variants stand for:";
+    add(ReportParagraph{std::move(text)});
+    if (!constants.empty()) add(ReportList{std::move(constants)});
+}
+
 void ReportBuilder::add_cases() {
     if (table_.cases.empty()) return;
+    constexpr std::size_t most_parameters = 3; // with a column of their own
+    const bool with_settings = table_.parameters.size() <= most_parameters;
     ReportTable rows{{"case"}, {}, {}, 0};
     const auto references = reference_marks(table_);
-    const bool with_variants = std::ranges::any_of(table_.cases, [](const StudyCase& c) { return !c.variant.empty(); });
-    const bool with_replicas = std::ranges::any_of(table_.cases, [](const StudyCase& c) { return c.replica > 0; });
-    if (with_variants) rows.head.emplace_back("variant");
-    for (const std::string& parameter : table_.parameters) rows.head.push_back(parameter);
-    if (with_replicas) rows.head.emplace_back("replica");
+    const bool with_replicas = has_replicas();
+    if (with_settings)
+        for (const std::string& parameter : table_.parameters) rows.head.push_back(parameter);
     rows.head.emplace_back("status");
     rows.n_words = rows.head.size();
+    std::vector<std::pair<const StudyMeasure*, bool>> shown; // whether with its errors
     for (const StudyMeasure& measure : measures_) {
+        if (with_replicas && is_after_peak(measure.name)) continue;
+        const bool has_errors =
+            std::ranges::any_of(measure.errors, [](const auto& error) { return error.has_value(); });
+        shown.emplace_back(&measure, has_errors && !is_after_peak(measure.name));
         if (!measure.is_curve) rows.head.push_back(measure.name);
-        rows.head.emplace_back(measure.is_curve ? "error of the curve" : "error");
+        if (shown.back().second) rows.head.emplace_back(measure.is_curve ? "error of the curve" : "error");
     }
     rows.head.emplace_back("CPU time");
     for (std::size_t i = 0; i < table_.cases.size(); ++i) {
         const StudyCase& each = table_.cases[i];
         std::vector<std::string> row{each.name};
-        if (with_variants) row.push_back(each.variant);
-        for (const std::string& setting : each.settings) row.push_back(setting.empty() ? "as the scene" : setting);
-        if (with_replicas) row.push_back(fmt::format("{}", each.replica));
+        for (std::size_t p = 0; with_settings && p < table_.parameters.size(); ++p)
+            row.push_back(each.settings[p].empty() ? "as the scene" : each.settings[p]);
         row.push_back(references[i] ? "reference" : status_text(each.status) + (unbalanced_[i] ? ", unbalanced" : ""));
-        for (const StudyMeasure& measure : measures_) {
-            if (!measure.is_curve) row.push_back(measure.values[i] ? value_text(measure, *measure.values[i]) : unknown);
-            row.push_back(measure.errors[i] ? error_text(*measure.errors[i], !measure.is_curve) : unknown);
+        for (const auto& [measure, with_error] : shown) {
+            if (!measure->is_curve)
+                row.push_back(measure->values[i] ? value_text(*measure, *measure->values[i]) : unknown);
+            if (with_error)
+                row.push_back(measure->errors[i] ? error_text(*measure->errors[i], !measure->is_curve) : unknown);
         }
         row.push_back(each.cpu_s ? seconds_text(*each.cpu_s) : unknown);
         if (each.status != CaseStatus::done) rows.marked.push_back(rows.rows.size());
         rows.rows.push_back(std::move(row));
     }
     add(ReportHeading{2, "Cases"});
+    if (!with_settings) add_names();
     add(std::move(rows));
     add_failures();
 }
@@ -434,14 +609,64 @@ void ReportBuilder::add_model_choices() {
                     found.n, measure.name, percent * found.mean, percent * found.deviation)});
 }
 
+/// Linear solves of one of its cases.
+std::optional<double> ReportBuilder::solves_of(std::size_t group) const {
+    std::vector<double> solves;
+    for (const std::size_t i : groups_[group].cases)
+        if (runs_[i] && runs_[i]->solves) solves.push_back(*runs_[i]->solves);
+    if (solves.empty()) return std::nullopt;
+    return ensemble_statistics(solves).mean;
+}
+
+/// "1.2 s of CPU time and 412 solves, 0.6 of the scene's own settings, 0.2 of the reference".
+std::string ReportBuilder::cost_text(std::size_t group, double cpu_s) const {
+    std::string text = seconds_text(cpu_s) + " of CPU time";
+    if (const auto solves = solves_of(group)) text += fmt::format(" and {:.0f} solves", *solves);
+    const auto own = own_group(table_, groups_);
+    if (!own || *own == group) return text;
+    const auto own_cost = group_cost(table_, groups_[*own]);
+    if (own_cost && *own_cost > 0.0) text += fmt::format(", {:.2g} of the scene's own settings", cpu_s / *own_cost);
+    return text;
+}
+
+/// What the scene's own settings come to, or those nearest to them.
+std::string ReportBuilder::own_sentence(const StudyMeasure& measure) const {
+    const auto own = own_group(table_, groups_);
+    if (!own) return "";
+    const auto error = group_error(table_, groups_[*own], measure);
+    const auto cost = group_cost(table_, groups_[*own]);
+    if (!error || !cost) return "";
+    bool exact = true;
+    for (std::size_t p = 0; p < table_.parameters.size(); ++p)
+        exact = exact && is_own_setting(table_, p, groups_[*own].settings[p]);
+    return fmt::format("The {}, {}, have an error of {:.2g} % {} and cost {}.",
+                       exact ? "scene's own settings" : "settings nearest to the scene's own",
+                       advised_settings(table_, groups_, *own), percent * *error, on_words(measure),
+                       cost_text(*own, *cost));
+}
+
+/// What cases that ask for an accuracy come to.
+std::vector<std::string> ReportBuilder::accuracy_items(const StudyMeasure& measure) const {
+    std::vector<std::string> items;
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+        const auto error = group_error(table_, groups_[g], measure);
+        const auto cost = group_cost(table_, groups_[g]);
+        if (!takes_own_steps(table_, groups_[g]) || other_models_[g] || !error || !cost) continue;
+        items.push_back(fmt::format("{}: error {:.2g} % {}, {}.", advised_settings(table_, groups_, g),
+                                    percent * *error, on_words(measure), cost_text(g, *cost)));
+    }
+    return items;
+}
+
 std::string ReportBuilder::sentence(const Advice& advice, const StudyMeasure& measure) const {
-    const std::string what = measure.is_curve ? std::string("in the whole curve") : "on " + measure.name;
-    std::string text = fmt::format("For {:.3g} % error {}: ", percent * advice.bound, what);
+    std::string text = fmt::format("For {:.3g} % error {}: ", percent * advice.bound, on_words(measure));
     if (advice.group) {
-        text +=
-            fmt::format("{} (error {:.2g} %) costs {} of CPU time", full_group_label(table_, groups_, *advice.group),
-                        percent * advice.error, seconds_text(advice.cpu_s));
-        if (advice.reference_share) text += fmt::format(" ({:.2g} of the reference)", *advice.reference_share);
+        const auto references = reference_marks(table_);
+        if (std::ranges::any_of(groups_[*advice.group].cases, [&](std::size_t i) { return references[i]; }))
+            text += "only the reference itself: ";
+        text += fmt::format("{} (error {:.2g} %) costs {}", advised_settings(table_, groups_, *advice.group),
+                            percent * advice.error, cost_text(*advice.group, advice.cpu_s));
+        if (advice.reference_share) text += fmt::format(", {:.2g} of the reference", *advice.reference_share);
         text += ".";
     } else {
         text += "no settings of this study hold it with a finer case that confirms them.";
@@ -469,7 +694,7 @@ std::string ReportBuilder::reference_doubt(const StudyMeasure& measure) const {
         const StudyGroup& finest = groups_[series.levels.back().group];
         if (std::ranges::none_of(finest.cases, [&](std::size_t i) { return references[i]; })) continue;
         const SeriesValues found = series_values(table_, groups_, series, measure);
-        const Convergence result = convergence(found.sizes, found.values);
+        const Convergence result = convergence(found.sizes, found.values, noise_of_values);
         if (result.uncertainty) uncertainty = std::max(uncertainty.value_or(0.0), *result.uncertainty);
         if (result.kind == ConvergenceKind::scattered) scatter = std::max(scatter.value_or(0.0), result.scatter);
     }
@@ -478,6 +703,17 @@ std::string ReportBuilder::reference_doubt(const StudyMeasure& measure) const {
                            percent_text(*scatter));
     if (uncertainty)
         return fmt::format("The reference itself is uncertain by {}, which comes on top.", percent_text(*uncertainty));
+    std::optional<double> nearest;
+    for (const StudySeries& series : series_) {
+        const std::size_t finest = series.levels.back().group;
+        if (table_.along != series.parameter || other_models_[finest]) continue;
+        const auto error = group_error(table_, groups_[finest], measure);
+        if (error) nearest = std::max(nearest.value_or(0.0), *error);
+    }
+    if (nearest)
+        return fmt::format("The reference's own error is not known from this study, and comes on top; the finest cases "
+                           "of each series along {} lie within {} of it.",
+                           table_.parameters[*table_.along], percent_text(*nearest));
     return "The reference's own error is not known from this study, and comes on top.";
 }
 
@@ -493,12 +729,23 @@ void ReportBuilder::add_recommendation() {
                         "of the rock."});
     for (const StudyMeasure* const measure : judged) {
         std::vector<std::string> items;
+        if (auto own = own_sentence(*measure); !own.empty()) items.push_back(std::move(own));
         for (const Advice& advice : cheapest_settings(table_, groups_, *measure, unbalanced_, options_.bounds))
             items.push_back(sentence(advice, *measure));
         add(ReportList{std::move(items)});
         const std::string doubt = reference_doubt(*measure);
         if (!doubt.empty()) add(ReportParagraph{doubt});
     }
+    add(ReportParagraph{
+        "CPU times of single short runs vary by some per cent from one to the next; numbers of solves do "
+        "not."});
+    auto accurate = accuracy_items(*judged.front());
+    if (accurate.empty()) return;
+    add(ReportParagraph{
+        "Cases with solver.accuracy take their own steps, such that the estimated error of the stress up to "
+        "its peak stays below it: the number of steps of a stage says the size of the first one only. "
+        "They are confirmed by cases of a smaller accuracy, not by cases of more steps:"});
+    add(ReportList{std::move(accurate)});
 }
 
 /// Pictures of an earlier report.

@@ -168,7 +168,7 @@ std::string settings_in_words(const Study& study, const PlannedCase& one) {
     std::vector<std::string> words;
     if (!one.variant.empty()) words.push_back("variant: " + one.variant);
     for (std::size_t p = 0; p < study.parameters.size(); ++p)
-        words.push_back(study.parameters[p].key + ": " + one.settings[p]);
+        if (!one.settings[p].empty()) words.push_back(study.parameters[p].key + ": " + one.settings[p]);
     return fmt::format("{}", fmt::join(words, ", "));
 }
 
@@ -212,7 +212,8 @@ void name_reference(const ReadStudy& read, const std::vector<std::optional<std::
     } else if (different.size() == 1) {
         table.reference = *different.begin();
         const PlannedCase& one = read.cases[*table.reference];
-        table.reference_name = fmt::format("case {} ({})", one.name, settings_in_words(study, one));
+        const std::string settings = settings_in_words(study, one);
+        table.reference_name = "case " + one.name + (settings.empty() ? "" : " (" + settings + ")");
     } else {
         table.reference_name = chosen_in_words(study);
     }
@@ -350,6 +351,7 @@ StudyTable study_table(const ReadStudy& read, const std::vector<CaseResult>& res
     table.directory = directory;
     table.quantities = study.quantities;
     table.along = study.along;
+    table.own_settings = study.own_settings;
     for (const auto& parameter : study.parameters) table.parameters.push_back(parameter.key);
     const auto references = reference_cases(study, read.cases);
     name_reference(read, references, table);

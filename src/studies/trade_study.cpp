@@ -24,6 +24,11 @@ using Texts = std::vector<std::string>;
 constexpr std::array<int, 6> step_counts{25, 50, 100, 200, 400, 800};
 constexpr const char* event_tolerance_of_reference = "1e-3";
 
+/// Keys that one integrator only takes: beside the other one they are refused.
+constexpr std::array implicit_keys{"solver.detection_every", "solver.accuracy"};
+constexpr std::array explicit_keys{"analysis.damping", "analysis.density_scaling", "analysis.loading_rate",
+                                   "analysis.crack_check_interval"};
+
 /// A key with the values that it takes.
 struct Variation {
     std::string key;
@@ -54,14 +59,20 @@ bool same_number(const std::string& a, const std::string& b) {
     return x && y ? *x == *y : a == b;
 }
 
-/// What the scene itself says for plain keys without lists on their way; else what holds without it.
-std::string own_setting(const SceneNode& tree, const std::string& key) {
+/// What the scene itself has at a key without lists on its way; null if nothing.
+const SceneNode* node_at(const SceneNode& tree, const std::string& key) {
     const SceneNode* node = &tree;
     for (std::size_t begin = 0; node != nullptr && begin <= key.size();) {
         const std::size_t end = std::min(key.find('.', begin), key.size());
         node = node->find(std::string_view(key).substr(begin, end - begin));
         begin = end + 1;
     }
+    return node;
+}
+
+/// What the scene itself says; else what holds without it.
+std::string own_setting(const SceneNode& tree, const std::string& key) {
+    const SceneNode* const node = node_at(tree, key);
     if (node != nullptr && node->is_scalar()) return node->text;
     const KeyRule* const rule = find_rule(key);
     return rule != nullptr ? std::string(rule->fallback) : std::string{};
@@ -108,15 +119,16 @@ bool can_be_rigid(const Scene& scene) {
 /// Collects the variants of the study.
 class TradeStudy {
 public:
-    TradeStudy(const Scene& scene, const SceneNode& tree) : scene_(scene), cracks_(has_potential_cracks(scene)) {
+    TradeStudy(const Scene& scene, const SceneNode& tree)
+        : scene_(scene), tree_(tree), cracks_(has_potential_cracks(scene)),
+          implicit_(scene.integrator == Integrator::implicit) {
         const std::size_t stage = main_stage(scene).value_or(0);
         steps_key_ = fmt::format("stages.{}.steps", stage);
         own_.push_back({steps_key_, {fmt::format("{}", scene.loads.stages[stage].steps)}});
-        if (cracks_)
-            for (const char* key : {"cracks.update", "cracks.every", "cracks.event_tolerance"})
-                own_.push_back({key, {own_setting(tree, key)}});
-        for (const char* key : {"solver.tolerance", "solver.detection_every"})
-            if (is_known(key)) own_.push_back({key, {own_setting(tree, key)}});
+        if (implicit_)
+            add_own_implicit_settings();
+        else if (cracks_)
+            own_.push_back({"analysis.crack_check_interval", {own_setting(tree, "analysis.crack_check_interval")}});
         add_steps();
         add_refinements();
         add_methods();
@@ -128,6 +140,16 @@ public:
     [[nodiscard]] const std::string& along() const { return steps_key_; }
 
 private:
+    /// An accuracy would take other steps than those given: only its own variant has one.
+    void add_own_implicit_settings() {
+        if (cracks_)
+            for (const char* key : {"cracks.update", "cracks.every", "cracks.event_tolerance"})
+                own_.push_back({key, {own_setting(tree_, key)}});
+        for (const char* key : {"solver.tolerance", "solver.detection_every"})
+            own_.push_back({key, {own_setting(tree_, key)}});
+        if (node_at(tree_, "solver.accuracy") != nullptr) own_.push_back({"solver.accuracy", {"null"}});
+    }
+
     [[nodiscard]] const std::string* own(const std::string& key) const {
         for (const Variation& each : own_)
             if (each.key == key) return &each.values.front();
@@ -161,20 +183,33 @@ private:
     void add_steps() {
         std::vector<Variation> crossed{{steps_key_, {}}};
         for (const int steps : step_counts) crossed.front().values.push_back(fmt::format("{}", steps));
-        if (cracks_) crossed.push_back({"cracks.update", {"all", "critical_first", "single", "event"}});
+        if (cracks_ && implicit_) crossed.push_back({"cracks.update", {"all", "critical_first", "single", "event"}});
         add("steps", crossed);
         const int own_steps = static_cast<int>(*read_number(*own(steps_key_)));
         if (std::ranges::find(step_counts, own_steps) == step_counts.end()) add("own settings", {});
     }
 
     void add_refinements() {
+        if (!implicit_) {
+            if (cracks_) add_values("check interval", "analysis.crack_check_interval", {"2", "5", "10", "20"});
+            return;
+        }
         if (cracks_) add_values("check interval", "cracks.every", {"1", "2", "5"});
         if (cracks_ && *own("cracks.update") == "event")
             add_values("event tolerance", "cracks.event_tolerance", {"5e-2", "2e-2", "5e-3", "1e-3"});
         add_values("residual tolerance", "solver.tolerance", {"1e-3", "1e-4", "1e-5", "1e-6", "1e-7"});
-        if (is_known("solver.detection_every"))
-            add_values("detection interval", "solver.detection_every", {"1", "2", "5"});
-        if (is_known("solver.accuracy")) add("accuracy", {{"solver.accuracy", {"0.05", "0.02", "0.01"}}});
+        add_values("detection interval", "solver.detection_every", {"1", "2", "5"});
+        add_accuracy();
+    }
+
+    void add_accuracy() {
+        Texts values{"0.05", "0.02", "0.01"};
+        const SceneNode* const given = node_at(tree_, "solver.accuracy");
+        if (given != nullptr && given->is_scalar()) {
+            std::erase_if(values, [&](const std::string& value) { return same_number(value, given->text); });
+            values.insert(values.begin(), given->text);
+        }
+        add("accuracy", {{"solver.accuracy", values}});
     }
 
     /// Step counts of a method that is looked at beside the scene's: two, so that one can confirm the other.
@@ -183,12 +218,21 @@ private:
         return {steps, number_text(2.0 * *read_number(steps))};
     }
 
+    /// The scene's own settings with another integrator, without what that one does not take.
+    void add_integrator(const std::string& name, const auto& refused) {
+        std::vector<Variation> all = own_but({{steps_key_, own_and_twice()}, {"analysis.integrator", {name}}});
+        for (const char* const key : refused) {
+            std::erase_if(all, [&](const Variation& each) { return each.key == key; });
+            if (node_at(tree_, key) != nullptr) all.push_back({key, {"null"}});
+        }
+        variants_.push_back({name, std::move(all)});
+    }
+
     void add_methods() {
-        const bool can_be_explicit = scene_.kinematics == Kinematics::affine && !reduces_strengths(scene_);
-        if (scene_.integrator == Integrator::explicit_motion)
-            add("implicit", {{steps_key_, own_and_twice()}, {"analysis.integrator", {"implicit"}}});
-        else if (can_be_explicit)
-            add("explicit", {{steps_key_, own_and_twice()}, {"analysis.integrator", {"explicit"}}});
+        if (!implicit_)
+            add_integrator("implicit", explicit_keys);
+        else if (scene_.kinematics == Kinematics::affine && !reduces_strengths(scene_))
+            add_integrator("explicit", implicit_keys);
     }
 
     void add_models() {
@@ -221,6 +265,10 @@ private:
 
     void add_reference() {
         std::vector<Variation> finest{{steps_key_, {fmt::format("{}", step_counts.back())}}};
+        if (!implicit_) {
+            add("reference", finest);
+            return;
+        }
         if (cracks_) {
             finest.push_back({"cracks.update", {"event"}});
             finest.push_back({"cracks.every", {"1"}});
@@ -229,12 +277,14 @@ private:
         constexpr double tight = 1e-6;
         const auto own_tolerance = read_number(*own("solver.tolerance"));
         if (!own_tolerance || *own_tolerance > tight) finest.push_back({"solver.tolerance", {"1e-6"}});
-        if (is_known("solver.detection_every")) finest.push_back({"solver.detection_every", {"1"}});
+        finest.push_back({"solver.detection_every", {"1"}});
         add("reference", finest);
     }
 
     const Scene& scene_;
+    const SceneNode& tree_;
     bool cracks_;
+    bool implicit_;
     std::string steps_key_;
     std::vector<Variation> own_; ///< numerical settings of the scene, one value each
     std::vector<Variant> variants_;
@@ -260,7 +310,8 @@ SceneNode tree_of(const Scene& scene) {
 
 std::string trade_study(const std::filesystem::path& path, const Scene& scene, const Texts& quantities) {
     const Texts compared = quantities.empty() ? usual_quantities(scene) : quantities;
-    const TradeStudy study(scene, tree_of(scene));
+    const SceneNode tree = tree_of(scene);
+    const TradeStudy study(scene, tree);
     std::string text = fmt::format("title: {}\nscene: {}\ncombine: product\nvariants:\n",
                                    quoted("Trade of accuracy against time: " + scene.title), quoted(path.string()));
     for (const Variant& variant : study.variants()) {

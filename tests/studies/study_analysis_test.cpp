@@ -282,7 +282,58 @@ TEST(GroupLabel, NamesWhatIsUnusual) {
     EXPECT_EQ(group_label(table, groups, 0), "steps 25");
     EXPECT_EQ(group_label(table, groups, 2), "steps 100, update all");
     EXPECT_EQ(group_label(table, groups, 0, 0), "usual settings");
-    EXPECT_EQ(full_group_label(table, groups, 0), "steps 25, update event");
+    EXPECT_EQ(advised_settings(table, groups, 0), "25 steps of stage 0, cracks.update event");
+}
+
+TEST(GroupLabel, NamesParametersByAsMuchOfTheirPathAsTellsThemApart) {
+    StudyTable table = made_table({"a.hexagons.spacing", "a.voronoi.spacing"}, std::nullopt);
+    table.cases = {done_case({"0.1", ""}, 1.0, 0.0, 1.0), done_case({"null", "0.1"}, 1.0, 0.0, 1.0)};
+    const auto groups = study_groups(table);
+    EXPECT_EQ(group_label(table, groups, 1), "without hexagons.spacing, voronoi.spacing 0.1");
+}
+
+TEST(SeriesLabel, NamesWhatTellsSeriesApart) {
+    StudyTable table = made_table({"stages.0.steps", "cracks.update"}, 0);
+    for (const char* update : {"all", "event"})
+        for (const char* steps : {"25", "50"}) table.cases.push_back(done_case({steps, update}, 1.0, 0.0, 1.0));
+    table.cases.push_back(done_case({"100", "event"}, 1.0, 0.0, 1.0)); // now most have the update of events
+    const auto groups = study_groups(table);
+    const auto series = study_series(table, groups);
+    ASSERT_EQ(series.size(), 2U);
+    EXPECT_EQ(series_label(table, groups, series, series[0]), "update all");
+    EXPECT_EQ(series_label(table, groups, series, series[1]), "update event");
+}
+
+TEST(OwnSettings, AreNotNamedInAdviceButForTheStepsAndAreFoundOrTheNearest) {
+    StudyTable table = made_table({"stages.1.steps", "cracks.update", "solver.tolerance", "solver.accuracy"}, 0);
+    table.own_settings = {"90", "event", "1e-5", ""};
+    table.cases = {done_case({"25", "event", "1e-5", ""}, 1.0, 0.0, 1.0),
+                   done_case({"100", "event", "0.00001", "null"}, 1.0, 0.0, 1.0),
+                   done_case({"90", "all", "1e-5", ""}, 1.0, 0.0, 1.0),
+                   done_case({"100", "event", "1e-5", "0.01"}, 1.0, 0.0, 1.0)};
+    auto groups = study_groups(table);
+    EXPECT_EQ(advised_settings(table, groups, 1), "100 steps of stage 1");
+    EXPECT_EQ(advised_settings(table, groups, 2), "90 steps of stage 1, cracks.update all");
+    EXPECT_EQ(advised_settings(table, groups, 3), "100 steps of stage 1, solver.accuracy 0.01");
+    EXPECT_EQ(own_group(table, groups), 1U);
+    table.own_settings[0] = "100";
+    EXPECT_EQ(advised_settings(table, groups, 3), "solver.accuracy 0.01"); // takes its own steps
+    table.own_settings[0] = "90";
+    table.cases.push_back(done_case({"90", "event", "1e-5", ""}, 1.0, 0.0, 1.0));
+    groups = study_groups(table);
+    EXPECT_EQ(own_group(table, groups), 4U);
+    EXPECT_EQ(advised_settings(table, groups, 4), "90 steps of stage 1 as in the scene");
+    table.own_settings.clear();
+    EXPECT_EQ(own_group(table, groups), std::nullopt);
+}
+
+TEST(Richardson, CallsChangesBelowTheNoiseNone) {
+    const std::vector<double> sizes{4.0, 2.0, 1.0};
+    const std::vector<double> values{1.0 + 4e-6, 1.0 + 2e-6, 1.0 + 1e-6};
+    EXPECT_EQ(convergence(sizes, values).kind, ConvergenceKind::monotone);
+    const Convergence found = convergence(sizes, values, 1e-4);
+    EXPECT_EQ(found.kind, ConvergenceKind::constant);
+    EXPECT_NEAR(*found.uncertainty, 3e-6, 1e-11);
 }
 
 } // namespace

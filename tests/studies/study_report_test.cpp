@@ -79,7 +79,9 @@ TEST(StudyReport, SaysOrderLimitFailuresAndWhatAccuracyCosts) {
     EXPECT_THAT(text, HasSubstr("killed by signal 9"));
     EXPECT_THAT(text, HasSubstr("## Recommendation"));
     // 25 steps at events have an error of 0.8 %, and so have all finer ones less
-    EXPECT_THAT(text, HasSubstr("For 1 % error on peak\\_stress: steps 25, update event (error 0.8 %) costs 1.25 s"));
+    EXPECT_THAT(text,
+                HasSubstr("For 1 % error on peak\\_stress: 25 steps of stage 1, cracks.update event (error 0.8 %) "
+                          "costs 1.25 s"));
     EXPECT_THAT(text, Not(HasSubstr("## Replicas")));
     EXPECT_THAT(text, Not(HasSubstr("## Model choices")));
     for (const char* name : {"study-convergence-stages-1-steps", "study-work-peak_stress"})
@@ -111,6 +113,7 @@ TEST(StudyReport, DrawsTheBandOfReplicasAndCountsMembers) {
         text,
         HasSubstr(
             "| 5 | 1 MPa | 1.58 % | ± 1.96 % | 13 |")); // 2.776 * 1.58/sqrt(5); by hand 2.179 * 1.58/sqrt(13) = 0.955
+    EXPECT_THAT(text, HasSubstr("(standard deviation 1.6 %, 95 % confidence of the mean ± 2 %)"));
     EXPECT_THAT(text, HasSubstr("with this band only"));
     EXPECT_EQ(n_files(directory.path(), "study-band"), 2U);
     EXPECT_THAT(text, Not(HasSubstr("## Convergence")));
@@ -129,7 +132,59 @@ TEST(StudyReport, SeparatesModelChoicesFromErrors) {
     const std::string text = read_file(directory / "study.md");
     EXPECT_THAT(text, HasSubstr("## Model choices"));
     EXPECT_THAT(text, HasSubstr("+10 %"));
-    EXPECT_THAT(text, HasSubstr("For 5 % error on peak\\_stress: steps 50 (error 1 %)"));
+    EXPECT_THAT(text, HasSubstr("For 5 % error on peak\\_stress: 50 steps of stage 0 (error 1 %)"));
+}
+
+TEST(StudyReport, OfManyParametersHasNamesAndWhatTheyStandFor) {
+    const TemporaryDirectory directory;
+    StudyTable table = made_table({"stages.1.steps", "cracks.update", "solver.tolerance", "solver.accuracy"}, 0);
+    table.directory = directory.path();
+    table.own_settings = {"50", "event", "1e-5", ""};
+    table.cases = {done_case({"25", "event", "1e-5", ""}, 1.02, 0.02, 1.0),
+                   done_case({"50", "event", "1e-5", ""}, 1.01, 0.01, 2.0),
+                   done_case({"50", "event", "1e-5", "0.05"}, 1.004, 0.004, 1.5),
+                   done_case({"100", "event", "1e-6", ""}, 1.0, 0.0, 4.0)};
+    const std::vector<std::string> variants{"steps", "steps", "accuracy", "reference"};
+    for (std::size_t i = 0; i < table.cases.size(); ++i) {
+        table.cases[i].variant = variants[i];
+        table.cases[i].name = fmt::format("{}-{}", variants[i], i);
+    }
+    table.reference = 3;
+    write_study_report(table, directory.path());
+    const std::string text = read_file(directory / "study.md");
+    EXPECT_THAT(text, HasSubstr("those against case reference-3 (100 steps of stage 1, solver.tolerance 1e-6)"));
+    EXPECT_THAT(text, HasSubstr("- stages.1.steps: 25, 50, 100 (the scene: 50)"));
+    EXPECT_THAT(text, Not(HasSubstr("- cracks.update:"))); // all as the scene
+    EXPECT_THAT(text, HasSubstr("| case | status | peak\\_stress | error | CPU time |"));
+    EXPECT_THAT(text, HasSubstr("- reference: 100 steps of stage 1, solver.tolerance 1e-6"));
+    EXPECT_THAT(text,
+                HasSubstr("The scene's own settings, 50 steps of stage 1 as in the scene, have an error of 1 % on "
+                          "peak\\_stress and cost 2 s of CPU time."));
+    EXPECT_THAT(text,
+                HasSubstr("For 2 % error on peak\\_stress: 25 steps of stage 1 (error 2 %) costs 1 s of CPU time, "
+                          "0.5 of the scene's own settings, 0.25 of the reference."));
+    EXPECT_THAT(text, HasSubstr("- solver.accuracy 0.05: error 0.4 % on peak\\_stress, 1.5 s of CPU time, 0.75 of the "
+                                "scene's own settings."));
+}
+
+TEST(StudyReport, ClaimsNoOrderAfterThePeakAndNoneBelowTheNoise) {
+    const TemporaryDirectory directory;
+    StudyTable table = made_table({"stages.1.steps"}, 0);
+    table.directory = directory.path();
+    table.quantities = {"peak_stress", "residual_stress"};
+    for (const int steps : {25, 50, 100}) {
+        StudyCase made = done_case({fmt::format("{}", steps)}, 1e6 * (1.0 + 1e-4 / steps), 0.0, 1.0);
+        made.quantities.emplace_back(1e6 * (1.0 + 1.0 / steps));
+        made.errors.emplace_back(0.01);
+        table.cases.push_back(made);
+    }
+    write_study_report(table, directory.path());
+    EXPECT_THAT(read_file(directory / "study.md"), HasSubstr("| constant to 0.0003 % |"));
+    EXPECT_THAT(read_file(directory / "study.md"), HasSubstr("| scatter 2.93 % |")); // 0.03/1.02333
+    write_study_report(table, directory.path(), {.quantity = "residual_stress"});
+    const std::string text = read_file(directory / "study.md");
+    EXPECT_THAT(text, HasSubstr("after the peak: no order; scatter 2.93 %"));
+    EXPECT_THAT(text, Not(HasSubstr("order 1")));
 }
 
 TEST(StudyReport, OfNothingYetHasTheCasesOnlyAndNoPictures) {

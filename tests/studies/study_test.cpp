@@ -112,6 +112,19 @@ TEST_F(StudyFile, VariantsAreCrossedWithWhatVariesAndMayVaryMore) {
     EXPECT_EQ(study.cases[5].variant, "event");
 }
 
+TEST_F(StudyFile, KnowsWhatTheSceneSaysItself) {
+    const ReadStudy study =
+        read("set: {cracks.every: 3}\n"
+             "vary: {stages.1.steps: [5, 10], solver.detection_every: [1, 2]}\n"
+             "variants:\n"
+             "  - {name: one}\n"
+             "  - {name: more, vary: {cracks.every: [5, 6], geometry.tessellation.hexagons: [null],\n"
+             "                        geometry.tessellation.voronoi.spacing: [0.2],\n"
+             "                        geometry.tessellation.voronoi.seed: [1, 2]}}\n");
+    // the scene's, the default, that of `set`, a mapping, nothing, nothing below what is not there
+    EXPECT_THAT(study.study.own_settings, ElementsAre("40", "1", "3", "{...}", "", ""));
+}
+
 TEST_F(StudyFile, NamesOfCasesStayWhenAValueIsAddedAndDifferWhenTheyAreCut) {
     const auto few = names_in(read("vary: {stages.1.steps: [5, 20], materials.rock.cohesion: [1 MPa]}\n"));
     const auto more = names_in(read("vary: {stages.1.steps: [5, 10, 20], materials.rock.cohesion: [1 MPa, 2 MPa]}\n"));

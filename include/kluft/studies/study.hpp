@@ -68,6 +68,9 @@ struct Study {
     std::vector<StudySetting> set; ///< the same in all cases
     std::vector<StudyVariant> variants;
     std::vector<StudyParameter> parameters; ///< of all variants, each once with all its values
+    /// Per parameter what the scene says with `set` alone, or its default; "" for nothing, "[...]" and "{...}" for lists
+    /// and mappings. Empty where the scene cannot be read without a variant.
+    std::vector<std::string> own_settings;
     bool together = false; ///< the first values of all parameters, the second ones, ... instead of the product
     ReplicaPlan replicas;
     std::vector<std::string> quantities;

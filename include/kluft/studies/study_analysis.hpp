@@ -90,7 +90,7 @@ struct SeriesValues {
 
 enum class ConvergenceKind {
     too_few,   ///< fewer than three values
-    constant,  ///< all equal to ten digits
+    constant,  ///< no change above the noise
     monotone,  ///< with an order and a limit
     unsettled, ///< monotone, but with no order that two successive estimates agree on
     scattered  ///< up and down
@@ -110,10 +110,12 @@ struct Convergence {
 /// convergence index; Roache, P. J. 1994, J. Fluids Eng. 116, 405-413). With other ratios q = q0 + C h^p is fitted by
 /// least squares to the last values, at most four, and the root mean square of what remains is added to the
 /// uncertainty. No order and no limit are given unless the last values, at most four, change in one direction in steps
-/// that become smaller, and p is between 0.3 and 4.5. With four values p of the first three must not differ by more than
+/// that become smaller, and p is between 0.5 and 4.5. With four values p of the first three must not differ by more than
 /// 1 from that of the last three; else the uncertainty is three times the mean change from one value to the next (Eca,
 /// L. & Hoekstra, M. 2014, J. Comput. Phys. 262, 104-130).
-[[nodiscard]] Convergence convergence(const std::vector<double>& sizes, const std::vector<double>& values);
+/// `noise`: a scatter up to this is no change.
+[[nodiscard]] Convergence convergence(const std::vector<double>& sizes, const std::vector<double>& values,
+                                      double noise = 1e-10);
 
 /// A case that can be had for a price.
 struct WorkPoint {
@@ -175,8 +177,26 @@ struct Advice {
 [[nodiscard]] std::string group_label(const StudyTable& table, const std::vector<StudyGroup>& groups, std::size_t group,
                                       std::optional<std::size_t> without = {});
 
-/// The same with every setting in which a group of the references' model differs from this one.
-[[nodiscard]] std::string full_group_label(const StudyTable& table, const std::vector<StudyGroup>& groups,
+/// What tells a series from the others of its parameter in `all`: "update event"; of the only one its group_label.
+[[nodiscard]] std::string series_label(const StudyTable& table, const std::vector<StudyGroup>& groups,
+                                       const std::vector<StudySeries>& all, const StudySeries& series);
+
+/// "100 steps of stage 1", "cracks.update all", "without solver.accuracy" (null).
+[[nodiscard]] std::string setting_words(const std::string& key, const std::string& setting);
+
+/// Whether a case with this setting has what the scene itself says; nothing set is that too.
+[[nodiscard]] bool is_own_setting(const StudyTable& table, std::size_t parameter, const std::string& setting);
+
+/// The group with the scene's own settings, or else the one that differs from them in the parameter `along` only and in
+/// this the least. Nothing where the own settings are not known.
+[[nodiscard]] std::optional<std::size_t> own_group(const StudyTable& table, const std::vector<StudyGroup>& groups);
+
+/// Whether the group sets solver.accuracy, so that its number of steps gives the first step only.
+[[nodiscard]] bool takes_own_steps(const StudyTable& table, const StudyGroup& group);
+
+/// The parameter `along` (a step count as in the scene not of groups that take their own steps) and what differs from the scene's own settings: "25 steps of stage 1, cracks.update all". Where
+/// the own settings are not known all in which a group of the references' model differs from this one.
+[[nodiscard]] std::string advised_settings(const StudyTable& table, const std::vector<StudyGroup>& groups,
                                            std::size_t group);
 
 } // namespace kluft

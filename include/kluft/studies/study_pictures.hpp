@@ -29,7 +29,17 @@ struct CaseRun {
     std::vector<PlottedPoint> points; ///< axial strain (%), differential stress (MPa), from where the platen moves
     std::vector<Vec2> curve;          ///< the balanced ones of them as long as the strain grows
     int unbalanced_steps = 0;
+    std::optional<int> solves; ///< linear ones in the whole run; none of an explicit run
 };
+
+/// Changes of a value up to this, relative, are not looked at: a solver's tolerance and round-off make them.
+inline constexpr double noise_of_values = 1e-4;
+
+/// Whether single runs say little of it, since they part from each other at the peak.
+[[nodiscard]] bool is_after_peak(std::string_view quantity);
+
+/// "case reference", without its settings.
+[[nodiscard]] std::string reference_words(const StudyTable& table);
 
 /// Nothing where the case has left no summary or history that can be read.
 [[nodiscard]] std::optional<CaseRun> read_case_run(const std::filesystem::path& directory);
@@ -40,7 +50,7 @@ struct CaseRun {
                                          const std::vector<StudySeries>& series, const StudyMeasure& measure);
 
 /// Error (%) over CPU time, both logarithmic: the points of each series along the study's parameter in one colour,
-/// the rest in another, and the front with its settings beside it.
+/// the rest in another, and the front with its settings beside it, as with the scene's own.
 [[nodiscard]] CurvePlot work_precision_plot(const StudyTable& table, const std::vector<StudyGroup>& groups,
                                             const std::vector<StudySeries>& series, const StudyMeasure& measure,
                                             const std::vector<WorkPoint>& points);

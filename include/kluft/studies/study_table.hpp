@@ -34,12 +34,13 @@ struct StudyCase {
 
 struct StudyTable {
     std::string title;
-    std::filesystem::path directory;      ///< of the study; results of a case stand in directory/cases/<name>
-    std::vector<std::string> parameters;  ///< key paths that vary
-    std::vector<std::string> quantities;  ///< names of numbers in summary.json
-    std::optional<std::size_t> along;     ///< parameter that plots and extrapolation run along, with numeric values
-    std::optional<std::size_t> reference; ///< case that the others are compared with, if it is one of them
-    std::string reference_name;           ///< in words: "case 0007 (stages.1.steps: 800)", "closed form", a directory
+    std::filesystem::path directory;       ///< of the study; results of a case stand in directory/cases/<name>
+    std::vector<std::string> parameters;   ///< key paths that vary
+    std::vector<std::string> own_settings; ///< per parameter what the scene itself says; empty where that is not known
+    std::vector<std::string> quantities;   ///< names of numbers in summary.json
+    std::optional<std::size_t> along;      ///< parameter that plots and extrapolation run along, with numeric values
+    std::optional<std::size_t> reference;  ///< case that the others are compared with, if it is one of them
+    std::string reference_name;            ///< in words: "case 0007 (stages.1.steps: 800)", "closed form", a directory
     std::vector<StudyCase> cases;
 };
 
