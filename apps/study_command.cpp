@@ -187,7 +187,8 @@ ExitCode study(const StudyArguments& arguments) {
     refuse_unknown_quantity(read.study, arguments.quantity);
     if (arguments.collect) {
         if (!fs::is_directory(directory))
-            throw InputError("kluft study --collect: expected the directory of a study, found no " + directory.string());
+            throw InputError("kluft study --collect: expected the directory of a study, found no " +
+                             directory.string());
         const StudyTable table = collect_study(read, directory);
         make_directory(directory);
         write_results(table, arguments.quantity);

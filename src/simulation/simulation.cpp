@@ -389,13 +389,14 @@ private:
     void set_accuracy() {
         const StepControl& control = work_.control;
         const bool may_soften = prescribes_strain() && control.stage_of_largest == work_.stage;
-        const double lost = 1.0 - std::abs(control.axial_stress) / control.largest_stress;
-        accuracy_ = may_soften ? std::max(options_.accuracy, softening_share * lost) : options_.accuracy;
+        stress_lost_ = may_soften ? 1.0 - std::abs(control.axial_stress) / control.largest_stress : 0.0;
+        accuracy_ = std::max(options_.accuracy, softening_share * stress_lost_);
         cracks_.event_tolerance = accuracy_;
         balance_ = std::min(options_.balance, accurate_balance * accuracy_);
     }
 
-    [[nodiscard]] bool is_past_peak() const { return accuracy_ > options_.accuracy; }
+    /// By more than the accuracy that is asked for.
+    [[nodiscard]] bool is_past_peak() const { return stress_lost_ > options_.accuracy; }
 
     /// The error of a step that ended at an event or was relaxed: as that of the last one that was judged.
     void charge_unjudged() {
@@ -986,6 +987,7 @@ private:
     int iterations_at_start_ = 0;
     double tried_load_factor_ = 0.0;
     bool warned_of_lost_contact_ = false;
+    double stress_lost_ = 0.0; ///< since the peak of the stage in progress, relative
     bool step_balanced_ = true;
     double worst_share_ = 0.0;
     int last_worst_block_ = -1;
