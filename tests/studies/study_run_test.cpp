@@ -311,8 +311,8 @@ TEST_F(StudyRuns, CommandWritesTheTableAndAnswersMistakesWithTheirPlace) {
     EXPECT_THAT(lines_of(table), SizeIs(3));
     EXPECT_EQ(exit_code_of(in + "study.yaml -o out --collect >said 2>&1"), 0);
     EXPECT_EQ(content_of(directory_ / "out" / "study.csv"), table);
-    EXPECT_EQ(exit_code_of(in + "study.yaml -o other --collect >said 2>&1"), 1);
-    EXPECT_THAT(content_of(directory_ / "said"), HasSubstr("2 not run to the end"));
+    EXPECT_EQ(exit_code_of(in + "study.yaml -o other --collect >said 2>&1"), 2) << "no directory of a study";
+    EXPECT_THAT(content_of(directory_ / "said"), HasSubstr("expected the directory of a study, found no "));
     EXPECT_EQ(exit_code_of(in + "step-siz scene.yaml >said 2>&1"), 2);
     EXPECT_THAT(content_of(directory_ / "said"), HasSubstr("did you mean 'step-size'?"));
     EXPECT_EQ(exit_code_of(in + "absent.yaml >said 2>&1"), 2);
