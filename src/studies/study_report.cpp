@@ -16,6 +16,7 @@
 #include "kluft/studies/ensemble.hpp"
 #include "kluft/studies/study_analysis.hpp"
 #include "kluft/studies/study_pictures.hpp"
+#include "kluft/studies/study_results.hpp"
 
 namespace kluft {
 
@@ -54,21 +55,9 @@ std::string counted(std::size_t n, const std::string& thing) {
 }
 
 std::string status_text(CaseStatus status) {
-    switch (status) {
-    case CaseStatus::waiting:
-        return "waiting";
-    case CaseStatus::running:
-        return "running";
-    case CaseStatus::done:
-        return "done";
-    case CaseStatus::no_equilibrium:
-        return "no equilibrium";
-    case CaseStatus::refused:
-        return "refused";
-    case CaseStatus::failed:
-        return "failed";
-    }
-    return "";
+    std::string name = case_status_name(status);
+    std::ranges::replace(name, '_', ' ');
+    return name;
 }
 
 /// "kept-letters-only" for the name of a file.
