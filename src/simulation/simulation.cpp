@@ -562,13 +562,17 @@ private:
         const double width = target - from;
         double low = 0.0;
         double high = 1.0;
-        double g_low = event_index(work_.displacement) - 1.0;
-        double g_high = event_index(predicted(target)) - 1.0;
+        const auto index_at = [&](double load_factor) {
+            set_load(load_factor);
+            return event_index(predicted(load_factor)) - 1.0;
+        };
+        double g_low = index_at(from);
+        double g_high = index_at(target);
         if (g_high <= accuracy_ || g_low >= 0.0) return target;
         double at = high;
         for (int i = 0; i < quick_event_trials && std::abs(g_high) > 0.1 * accuracy_; ++i) {
             at = high - g_high * (high - low) / (g_high - g_low);
-            const double g = event_index(predicted(from + at * width)) - 1.0;
+            const double g = index_at(from + at * width);
             if (g >= 0.0) {
                 high = at;
                 g_high = g;
@@ -857,9 +861,9 @@ private:
         if (f_high <= 1.0 + tolerance) return to;
         double low = from;
         double high = to;
-        if (reduces_strengths()) set_load(from);
+        set_load(from); // the stresses of rigid blocks and reduced strengths follow the load
         double g_low = event_index(work_.displacement) - goal;
-        if (reduces_strengths()) set_load(to);
+        set_load(to);
         double g_high = f_high - goal;
         if (g_low >= 0.0) return to;
         for (int i = 0; i < max_event_trials && high - low > least_width; ++i) {

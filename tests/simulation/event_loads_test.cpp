@@ -1,0 +1,81 @@
+// The first crack of a body in tension comes where f reaches 1, whatever brings the load, the blocks' kinematics and the
+// load steps.
+#include <cmath>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "support/scene_run.hpp"
+
+namespace kluft {
+namespace {
+
+constexpr double strength = 1e6;        // tensile, Pa
+constexpr double event_tolerance = 2e-2; // default of cracks.event_tolerance
+
+/// A specimen of hexagons that hangs from its top or stands on its bottom, without its stages.
+std::string specimen(const std::string& held) {
+    return R"(
+kluft: 1
+materials: {rock: {density: 2500, youngs_modulus: 10 GPa, poissons_ratio: 0.15, cohesion: 5 MPa, friction_angle: 40, tensile_strength: 1 MPa}}
+interfaces:
+  crack: {kind: potential_crack, stiffness_ratio: 10, shear_ratio: 0.5, fails_to: joint}
+  joint: {kind: fracture, stiffness_ratio: 10, shear_ratio: 0.5, friction_angle: 30}
+geometry: {domain: {rectangle: {width: 0.4, height: 0.8}}, tessellation: {hexagons: {spacing: 0.1}, interface: crack}}
+boundaries: {)" +
+           held + ": {support: fixed}}\n";
+}
+
+struct Loading {
+    std::string name;
+    std::string held;
+    std::string stages; ///< of a load that is several times what the body carries; the last one has {} steps
+};
+
+/// Lateral pressure stays while the body is pulled; gravity is that of a centrifuge.
+const std::vector<Loading> loadings{
+    {"pressure", "bottom", "stages: [{{pressure: {{top: -4 MPa}}, steps: {}}}]"},
+    {"pressure_under_lateral_pressure", "bottom",
+     "stages: [{{pressure: {{left: 0.5 MPa, right: 0.5 MPa}}}}, {{pressure: {{top: -4 MPa}}, steps: {}}}]"},
+    {"gravity", "top", "stages: [{{gravity: 2000, steps: {}}}]"},
+    {"forces", "bottom",
+     "stages: [{{forces: {{a: {{point: [0.11, 0.74], force: [0, 6e5]}}, b: {{point: [0.29, 0.74], force: [0, 6e5]}}}}, "
+     "steps: {}}}]"},
+    {"strain_of_a_platen", "bottom", "stages: [{{strain: {{boundary: top, value: -4e-4}}, steps: {}}}]"},
+    {"stress_of_a_platen", "bottom", "stages: [{{stress: {{boundary: top, value: -4 MPa}}, steps: {}}}]"},
+};
+
+class FirstCrack : public ::testing::TestWithParam<std::tuple<Loading, std::string>> {
+protected:
+    [[nodiscard]] static SceneRun run(int steps) {
+        const auto& [loading, kinematics] = GetParam();
+        return run_scene(specimen(loading.held) + fmt::format(fmt::runtime(loading.stages), steps),
+                         {"analysis.kinematics=" + kinematics});
+    }
+};
+
+// f_t = -p3/sigma_t with the mean stress of the two blocks (docs/theory.md, failure index).
+TEST_P(FirstCrack, ComesAtTheStrengthWhateverTheLoadStep) {
+    for (const int steps : {1, 2, 4, 8, 40}) {
+        const SceneRun pulled = run(steps);
+        ASSERT_FALSE(pulled.cracks.empty()) << steps << " steps";
+        const CrackRecord& first = pulled.cracks.front();
+        EXPECT_EQ(first.mode, CrackMode::tension) << steps << " steps";
+        EXPECT_GE(-first.p3, strength) << steps << " steps";
+        EXPECT_LE(-first.p3, (1.0 + event_tolerance) * strength) << steps << " steps";
+    }
+}
+
+std::string name_of(const ::testing::TestParamInfo<FirstCrack::ParamType>& info) {
+    return std::get<0>(info.param).name + "_" + std::get<1>(info.param);
+}
+
+INSTANTIATE_TEST_SUITE_P(LoadsAndKinematics, FirstCrack,
+                         ::testing::Combine(::testing::ValuesIn(loadings), ::testing::Values("affine", "rigid")),
+                         name_of);
+
+} // namespace
+} // namespace kluft
