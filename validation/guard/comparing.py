@@ -4,6 +4,7 @@ import csv
 import json
 
 import keeping
+from kept import TABLES
 
 # What the clock and the machine say. Everything else has to be equal to the last digit.
 COLUMNS_OF_TIME = {"elapsed_s", "cpu_s"}
@@ -114,7 +115,7 @@ def difference_of_files(first, second):
 
 def difference_of_runs(first, second):
     names = sorted({file.name for place in (first, second) for file in place.iterdir() if file.is_file()},
-                   key=lambda name: (name != "run.json", name not in keeping.TABLES, name))
+                   key=lambda name: (name != "run.json", name not in TABLES, name))
     found = [(name, text) for name in names if (text := difference_of_files(first / name, second / name))]
     if not found:
         return ""

@@ -1,11 +1,10 @@
 """Runs what plan.py says and keeps what came out."""
 
 import concurrent.futures
+import csv
 import fnmatch
-import hashlib
 import json
 import os
-import re
 import shlex
 import shutil
 import subprocess
@@ -15,14 +14,12 @@ import time
 from pathlib import Path
 
 import plan
+from kept import STAND_IN, keep_run, without, words_of_mode
 
-STAND_IN = "--stand-in"
 MARK = "guard.json"  # beside the runs: which mode they are of
-TABLES = ("history.csv", "equilibria.csv", "cracks.csv", "histories.csv", "summary.json")
 QUIET = {"output.pictures": False, "output.fields": False}
-TIME_OF_LOG = re.compile(r"^\S+ \S+ ")
-SECONDS_OF_LOG = re.compile(r", [0-9.]+ s; results in \S+")
 PATIENCE = 600  # seconds until a first state must have been saved
+ATTEMPTS = 20  # to kill a run in its second stage, also on a busy machine
 
 
 class BadUse(Exception):
@@ -45,51 +42,6 @@ def words_of(overrides):
     return words
 
 
-def words_of_mode(mode):
-    return ["--set", "solver.repeatable=true"] if mode == "repeatable" else ["--threads", "1"]
-
-
-def without(words, option):
-    """Without an option and its value."""
-    words = list(words)
-    while option in words:
-        at = words.index(option)
-        del words[at:at + 2]
-    return words
-
-
-# ---- what is kept of a run ---------------------------------------------------------------------------------------
-
-
-def plain(text, places):
-    """Without the names of directories."""
-    for place, name in [*places, (str(plan.ROOT), "PROJECT")]:
-        text = text.replace(str(place), name)
-    return text
-
-
-def log_lines(path, places):
-    """The log without times."""
-    lines = path.read_text(encoding="utf-8", errors="replace").splitlines() if path.exists() else []
-    return "".join(plain(SECONDS_OF_LOG.sub("", TIME_OF_LOG.sub("", line)), places) + "\n" for line in lines)
-
-
-def keep_run(results, target, words, done, places):
-    """`results`: where the program wrote; `words`: of its command line; `done`: exit code and text of each process."""
-    target.mkdir(parents=True)
-    for name in TABLES:
-        if (results / name).exists():
-            shutil.copyfile(results / name, target / name)
-    fields = sorted((results / "fields").glob("*.vtu"))
-    if fields:
-        sums = "".join(f"{hashlib.sha256(file.read_bytes()).hexdigest()}  {file.name}\n" for file in fields)
-        (target / "fields.txt").write_text(sums, encoding="utf-8")
-    (target / "log.txt").write_text(log_lines(results / "run.log", places), encoding="utf-8")
-    (target / "stderr.txt").write_text(plain("".join(text for _, text in done), places), encoding="utf-8")
-    facts = {"arguments": [plain(word, places) for word in words], "exit_codes": [code for code, _ in done]}
-    (target / "run.json").write_text(json.dumps(facts, indent=1) + "\n", encoding="utf-8")
-
-
 # ---- runs of the guard -------------------------------------------------------------------------------------------
 
 
@@ -103,24 +55,39 @@ def finished(words):
     return child.returncode, text
 
 
-def killed_after_first_stage(words, results):
+def killed_with_a_state(words, results):
     """A run that is killed when it has saved its first state; what it wrote since then is there as well."""
     child = started(words)
     begin = time.monotonic()
     while not (results / "state.h5").exists():
         if child.poll() is not None or time.monotonic() - begin > PATIENCE:
             child.kill()
-            return child.returncode, "ended before a state was saved\n" + child.communicate()[1]
+            raise BadUse(f"ended before a state was saved: {child.communicate()[1].strip()[-400:]}")
         time.sleep(0.002)
     child.kill()
     _, text = child.communicate()
     return child.returncode, text
 
 
+def is_of_first_stage(results):
+    """Whether the saved state is that of the end of the first stage: the second one has not come to its end."""
+    with open(results / "history.csv", newline="", encoding="utf-8") as file:
+        rows = [row for row in csv.DictReader(file) if None not in row.values()]
+    return not any(int(row["stage"]) > 1 or (int(row["stage"]) == 1 and float(row["load_factor"]) >= 1) for row in rows)
+
+
+def killed_after_first_stage(words, results):
+    for _ in range(ATTEMPTS):
+        shutil.rmtree(results, ignore_errors=True)
+        done = killed_with_a_state(words, results)
+        if is_of_first_stage(results):
+            return done
+    raise BadUse("the run could not be killed in its second stage; the machine is too busy or the stage is too short")
+
+
 def run_one(run, options, scratch):
     results = Path(tempfile.mkdtemp(dir=scratch))
     overrides = {**(QUIET if run.quiet else {"output.pictures": False}), **run.overrides}
-    # The command as it stands in the summary of a run has no directories of this machine.
     command = ["run", str(run.scene), "-o", str(results / "out"), "--quiet", *words_of_mode(options.mode), *run.words]
     words = [*command, *words_of(overrides)]
     call = [str(options.binary), *words]
@@ -165,7 +132,7 @@ def run_script(script, options, scratch):
                 "mode": options.mode}
     (place / "settings.json").write_text(json.dumps(settings), encoding="utf-8")
     program = place / "kluft"
-    program.write_text("#!/bin/sh\nexec " + shlex.join([sys.executable, str(plan.HERE / "run"), STAND_IN, str(place / "settings.json")])
+    program.write_text("#!/bin/sh\nexec " + shlex.join([sys.executable, "-S", str(plan.HERE / "run"), STAND_IN, str(place / "settings.json")])
                        + ' "$@"\n', encoding="utf-8")
     program.chmod(0o755)
     command = [word.format(program=program, output=output) for word in script.command]
@@ -178,32 +145,6 @@ def run_script(script, options, scratch):
         raise BadUse(f"{script.name}: runs nothing: {done.stdout.strip()[-600:]}")
     shutil.rmtree(place)
     return count
-
-
-def free_name(directory, name):
-    """A name that is not taken: a script may run something twice under one name."""
-    number, target = 1, directory / name
-    while target.exists():
-        number += 1
-        target = directory / f"{name}~{number}"
-    return target
-
-
-def stand_in(settings_file, words):
-    """Called by scripts instead of the program: runs it with the options of the mode, and keeps its results."""
-    settings = json.loads(Path(settings_file).read_text(encoding="utf-8"))
-    binary = settings["binary"]
-    if words[:1] != ["run"] or "-o" not in words:
-        os.execv(binary, [binary, *words])
-    results, output = Path(words[words.index("-o") + 1]).resolve(), Path(settings["output"]).resolve()
-    words = [*without(words, "--threads"), *words_of_mode(settings["mode"])]
-    done = subprocess.run([binary, *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, errors="replace", check=False)
-    name = str(results.relative_to(output)) if results.is_relative_to(output) else results.name
-    target = free_name(Path(settings["directory"]), f"{settings['name']}/{name}")
-    keep_run(results, target, words, [(done.returncode, done.stderr)], [(output, "RESULTS")])
-    sys.stdout.write(done.stdout)
-    sys.stderr.write(done.stderr)
-    return done.returncode if done.returncode >= 0 else 128 - done.returncode
 
 
 # ---- all together ------------------------------------------------------------------------------------------------
@@ -263,7 +204,7 @@ def keep(options):
                 try:
                     count, seconds = future.result()
                 except (BadUse, OSError) as error:
-                    failures.append(str(error))
+                    failures.append(name)
                     print(f"{name}: {error}", file=sys.stderr, flush=True)
                     continue
                 n_runs += count
