@@ -108,7 +108,7 @@ def difference_of_files(first, second):
     text = f"line {line}, {key[1]}: {shown(a.get(key))} | {shown(b.get(key))}"
     largest = largest_difference(a, b, key[1])
     if largest is not None:
-        text += f", at most {largest:.1e} in that column"
+        text += f", largest relative difference in that column {largest:.1e}"
     lines_a, lines_b = max((k[0] for k in a), default=0), max((k[0] for k in b), default=0)
     return text + (f", {lines_a} and {lines_b} lines" if lines_a != lines_b else "")
 
