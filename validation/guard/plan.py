@@ -105,10 +105,30 @@ def explicit_runs():
     ]
 
 
+def accuracy_runs():
+    """Steps by their error, on other scenes: first steps that are too large, loads that are prescribed, rigid blocks."""
+    triaxial = MODELS / "triaxial"
+    scenes = {
+        "coarse": (SCENES / "accuracy.yaml", {}),
+        "fine": (SCENES / "accuracy.yaml", {"solver.accuracy": 0.003}),
+        "large-first-step": (SCENES / "accuracy.yaml", {"stages.1.steps": 2}),
+        "case-1": (triaxial / "case-1.yaml", {"solver.accuracy": 0.01}),
+        "case-1-large-first-step": (triaxial / "case-1.yaml", {"solver.accuracy": 0.002, "stages.1.steps": 1}),
+        "case-3": (triaxial / "case-3.yaml", {"solver.accuracy": 0.02, "stages.1.strain.value": "1.4 %"}),
+        "outcrop": (MODELS / "outcrop-kb7.yaml", {"solver.accuracy": 0.01, "stages.0.steps": 2}),
+        "stages": (SCENES / "stages.yaml", {"solver.accuracy": 0.02}),
+        "collapse": (SCENES / "collapse.yaml", {"solver.accuracy": 0.02}),
+        "rigid": (SCENES / "rigid.yaml", {"solver.accuracy": 0.02}),
+        "reduction": (SCENES / "reduction.yaml", {"solver.accuracy": 0.02}),
+    }
+    return [Run(f"own/accuracy/{name}", scene, overrides) for name, (scene, overrides) in scenes.items()]
+
+
 def own_runs():
     runs = [Run(f"own/cracks/{name}", SCENES / "cracks.yaml", overrides) for name, overrides in CRACKS.items()]
     runs += [Run(f"own/{name}", SCENES / f"{name}.yaml") for name in
-             ("accuracy", "rigid", "reduction", "collapse", "no-equilibrium", "stages")]
+             ("rigid", "reduction", "collapse", "no-equilibrium", "stages")]
+    runs += accuracy_runs()
     runs += [
         Run("own/reduction-rigid", SCENES / "reduction.yaml", {"analysis.kinematics": "rigid", "materials.rock.cohesion": "0.08 MPa"}),
         Run("own/stages-killed-resumed", SCENES / "stages.yaml", resume={}, killed=True),
