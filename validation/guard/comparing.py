@@ -52,9 +52,10 @@ def leaves(value, path=""):
 
 
 def cells_of_json(path):
+    """The values by their keys, whose order means nothing."""
     tree = json.loads(path.read_text(encoding="utf-8"), parse_float=str, parse_int=str)
     pairs = [(key, text) for key, text in leaves(tree) if key not in KEYS_OF_TIME and not key.startswith(PREFIX_OF_TIME)]
-    return {(number, key): text for number, (key, text) in enumerate(pairs, 1)}
+    return {(number, key): text for number, (key, text) in enumerate(sorted(pairs), 1)}
 
 
 def cells_of_text(path):
