@@ -18,7 +18,7 @@
 #include "kluft/scene/quantity.hpp"
 #include "kluft/scene/scene_model.hpp"
 #include "kluft/scene/scene_reader.hpp"
-#include "kluft/simulation/state_points.hpp"
+#include "kluft/simulation/state_fields.hpp"
 #include "kluft/studies/finished_run.hpp"
 
 namespace kluft {
@@ -134,7 +134,7 @@ void draw_blocks_of_run(const DrawArguments& arguments, const std::vector<fs::pa
     const SceneModel built = build_scene_model(scene);
     const State state = read_state(saved, fingerprint(built.model));
     auto history = read_curve(directory, {}).history;
-    std::erase_if(history, [&](const StepRecord& record) { return record.step > state.step; });
+    std::erase_if(history, [&](const StepRecord& record) { return record.step > state.at.step; });
     BlocksPlot plot = plot_of(scene);
     plot.title = arguments.title.empty() ? heading_of(directory).title : arguments.title;
     plot.after = after_title(history);

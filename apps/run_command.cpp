@@ -24,7 +24,7 @@
 #include "kluft/scene/scene_reader.hpp"
 #include "kluft/simulation/measurements.hpp"
 #include "kluft/simulation/simulation.hpp"
-#include "kluft/simulation/state_points.hpp"
+#include "kluft/simulation/state_fields.hpp"
 #include "kluft/simulation/strength_reduction.hpp"
 
 namespace kluft {
@@ -92,39 +92,6 @@ double earlier_cpu_s(const fs::path& directory) {
     }
 }
 
-RunOutcome outcome_of(const RunReport& report, const Model& model, double earlier_cpu) {
-    const RunSeconds& seconds = report.costs.seconds;
-    RunOutcome outcome;
-    outcome.status = report.status;
-    outcome.message = report.diagnosis;
-    outcome.factor_of_safety = report.factor_of_safety;
-    outcome.estimated_error = report.estimated_error;
-    outcome.motion = report.motion;
-    outcome.open_close_iterations = report.costs.open_close_iterations;
-    outcome.counts = {{"factorizations", report.costs.factorizations},
-                      {"analyses", report.costs.analyses},
-                      {"updates", report.costs.updates},
-                      {"rank", report.costs.largest_rank},
-                      {"refinements", report.costs.refinements},
-                      {"relaxations", report.costs.relaxations},
-                      {"events", report.costs.events},
-                      {"rejected_steps", report.costs.rejected_steps}};
-    outcome.unknowns = unknowns_per_block(model.kinematics) * model.system.n_blocks();
-    outcome.elapsed_s = report.costs.elapsed_s;
-    outcome.cpu_s = earlier_cpu + processor_seconds();
-    outcome.version = std::string(version());
-    outcome.seconds = {{"detection", seconds.detection},
-                       {"set_up", seconds.set_up},
-                       {"assembly", seconds.assembly},
-                       {"analysis", seconds.analysis},
-                       {"factorization", seconds.factorization},
-                       {"update", seconds.update},
-                       {"solution", seconds.solution},
-                       {"crack_check", seconds.crack_check},
-                       {"output", seconds.observers}};
-    return outcome;
-}
-
 ExitCode exit_code(RunStatus status) {
     switch (status) {
     case RunStatus::done:
@@ -147,12 +114,14 @@ std::string closing_line(const RunReport& report, const RunSummary& summary, con
                             100.0 * summary.numbers.peak_strain.value_or(0.0),
                             summary.numbers.peak_reached ? "" : " (still rising)");
     }
-    if (report.factor_of_safety) text += fmt::format(", factor of safety {:.6g}", *report.factor_of_safety);
-    if (summary.estimated_error) text += fmt::format(", estimated error {:.2g} %", 100.0 * *summary.estimated_error);
+    if (report.results.factor_of_safety)
+        text += fmt::format(", factor of safety {:.6g}", *report.results.factor_of_safety);
+    if (summary.results.estimated_error)
+        text += fmt::format(", estimated error {:.2g} %", 100.0 * *summary.results.estimated_error);
     const std::string work = report.motion ? fmt::format("{} time steps", report.motion->time_steps)
-                                           : fmt::format("{} solves", summary.numbers.open_close_iterations);
+                                           : fmt::format("{} solves", summary.costs.open_close_iterations);
     text += fmt::format(", {} tension and {} shear cracks, {}, {:.1f} s; results in {}", summary.numbers.cracks_tension,
-                        summary.numbers.cracks_shear, work, summary.elapsed_s, directory.string());
+                        summary.numbers.cracks_shear, work, summary.costs.elapsed_s, directory.string());
     if (summary.numbers.unbalanced_steps > 0)
         text += fmt::format("; {} steps unbalanced", summary.numbers.unbalanced_steps);
     return text;
@@ -181,8 +150,9 @@ ExitCode simulate(const Model& model, const Scene& scene, State& state, RunWrite
     }
     RunSummary summary;
     try {
-        summary =
-            writer.finish(outcome_of(report, model, earlier_cpu), state, [&] { return fields_of_state(model, state); });
+        summary = writer.finish({report, unknowns_per_block(model.kinematics) * model.system.n_blocks(),
+                                 earlier_cpu + processor_seconds(), std::string(version())},
+                                state, [&] { return fields_of_state(model, state); });
     } catch (const ResourceError& error) {
         log.error(error.what());
         if (report.diagnosis == error.what()) return ExitCode::out_of_resources; // said already
@@ -220,7 +190,7 @@ ExitCode run(const RunArguments& arguments) {
     RunWriterOptions options = writer_options(scene, model);
     if (arguments.resume) {
         state = read_state(directory / "state.h5", options.fingerprint);
-        options.resumed_step = state.step;
+        options.resumed_step = state.at.step;
     }
     const double earlier_cpu = arguments.resume ? earlier_cpu_s(directory) : 0.0; // before the writer removes it
     RunWriter writer(directory, model.system, std::move(options));

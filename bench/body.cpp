@@ -7,9 +7,9 @@
 #include "kluft/kinematics/affine.hpp"
 #include "kluft/scene/scene_model.hpp"
 #include "kluft/scene/scene_reader.hpp"
+#include "kluft/simulation/placement.hpp"
 #include "kluft/simulation/simulation.hpp"
 #include "kluft/simulation/stage_loads.hpp"
-#include "kluft/simulation/state_points.hpp"
 
 namespace kluft::bench {
 
@@ -30,8 +30,8 @@ Eigen::VectorXd grown(const BlockSystem& system) {
 
 State state_of(const Model& model, Joining joining, const Eigen::VectorXd& displacement) {
     State state = initial_state(model);
-    state.displacement = displacement;
-    if (joining == Joining::fractured) std::ranges::fill(state.interfaces, InterfaceStatus::shear_crack);
+    state.body.displacement = displacement;
+    if (joining == Joining::fractured) std::ranges::fill(state.body.interfaces, InterfaceStatus::shear_crack);
     return state;
 }
 
@@ -52,18 +52,14 @@ double mean_diagonal(const BlockMatrix& matrix) {
 Body::Body(const Model& model, Joining joining) : model_(&model), displacement_(grown(model.system)) {
     const BlockSystem& system = model.system;
     const State state = state_of(model, joining, displacement_);
-    problem_.system = &system;
-    problem_.moduli = &model.moduli;
-    problem_.laws = &model.laws;
-    place_bonds(model, state, problem_.bonds);
-    StateContacts contacts = state_contacts(model, state);
-    problem_.contacts = std::move(contacts.points);
+    placement_.bonds = placed_bonds(model, state.body);
+    DetectedContacts contacts = detected_contacts(model, state.body);
+    placement_.contacts = std::move(contacts.points);
     pattern_ = pattern_of(system, std::move(contacts.near_pairs));
 
-    const StageLoads loads(model, state, model.loads.stages.back());
-    problem_.constraints = loads.constraints();
-    problem_.pressure_edges = loads.edges();
-    problem_.pressures = loads.pressures(1.0);
+    const int last = static_cast<int>(model.loads.stages.size()) - 1;
+    at_ = loads_at(model, StageLoads(model, state.stage_start, model.loads.stages.back()), last, 1.0);
+    problem_.body = loaded_body(model, placement_, at_);
     problem_.start = displacement_;
     problem_.least_mass_area = std::sqrt(0.75) * system.spacing * system.spacing;
     const double height = (system.upper - system.lower).maxCoeff();
@@ -72,13 +68,13 @@ Body::Body(const Model& model, Joining joining) : model_(&model), displacement_(
 
 void Body::stiffness(EquilibriumEvaluator& evaluator, BlockMatrix& matrix) const {
     evaluator.tangent(displacement_, TangentKind::symmetric, matrix);
-    project(problem_.constraints, matrix, mean_diagonal(matrix));
+    project(at_.loads.constraints, matrix, mean_diagonal(matrix));
 }
 
 Eigen::VectorXd Body::load() const {
     Eigen::VectorXd forces(displacement_.size());
     for (Eigen::Index i = 0; i < forces.size(); ++i) forces[i] = 1.0 + std::sin(0.7 * static_cast<double>(i));
-    problem_.constraints.project(forces);
+    at_.loads.constraints.project(forces);
     return forces;
 }
 

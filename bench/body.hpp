@@ -10,6 +10,7 @@
 #include "kluft/assembly/block_matrix.hpp"
 #include "kluft/equilibrium/equilibrium_problem.hpp"
 #include "kluft/simulation/model.hpp"
+#include "kluft/simulation/stage_loads.hpp"
 
 namespace kluft::bench {
 
@@ -40,6 +41,8 @@ public:
 
 private:
     const Model* model_;
+    Placement placement_;
+    LoadsAt at_;
     EquilibriumProblem problem_;
     BlockPattern pattern_;
     Eigen::VectorXd displacement_;

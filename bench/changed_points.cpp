@@ -24,7 +24,7 @@ struct Candidate {
 std::vector<Candidate> free_interfaces(const Body& body) {
     const BlockSystem& system = body.model().system;
     std::vector<char> held(system.blocks.size(), 0);
-    for (const auto& row : body.problem().constraints.rows()) held[row.block] = 1;
+    for (const auto& row : body.problem().body.loads->constraints.rows()) held[row.block] = 1;
     std::vector<Candidate> candidates;
     for (int i = 0; i < system.n_interfaces(); ++i) {
         const Interface& interface = system.interfaces[i];

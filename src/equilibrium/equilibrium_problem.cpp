@@ -113,10 +113,10 @@ Mat2 full_stiffness(const InterfaceLaw& law) {
 Mat2 point_tangent(const EquilibriumProblem& problem, const ContactPoint& point, const Eigen::VectorXd& q,
                    TangentKind kind) {
     if (kind == TangentKind::touching) {
-        const bool touches = gap_and_slip(point, q).gap <= touching_gap * problem.system->spacing;
-        return touches ? full_stiffness((*problem.laws)[point.law]) : Mat2(Mat2::Zero());
+        const bool touches = gap_and_slip(point, q).gap <= touching_gap * problem.body.system->spacing;
+        return touches ? full_stiffness((*problem.body.laws)[point.law]) : Mat2(Mat2::Zero());
     }
-    const PointTraction traction = contact_traction(*problem.laws, point, q);
+    const PointTraction traction = contact_traction(*problem.body.laws, point, q);
     if (traction.state == ContactState::open) return Mat2::Zero();
     return kind == TangentKind::symmetric ? symmetric_tangent(traction) : traction.tangent;
 }
@@ -137,13 +137,13 @@ Mat2 symmetric_tangent(const PointTraction& traction) {
 // ---- the residual ------------------------------------------------------------------------------------------------------
 
 void EquilibriumEvaluator::residual(const Eigen::VectorXd& q, Residual& result) {
-    body_forces(problem_, q, body_forces_);
+    body_forces(problem_.body, q, body_forces_);
     result.forces.swap(body_forces_.forces);
     if (!problem_.eta.empty()) add_mass_forces(q, result.forces);
-    if (problem_.kinematics == Kinematics::rigid) {
+    if (problem_.body.kinematics == Kinematics::rigid) {
         turned_to_ = q;
-        turns_.set(*problem_.system, q);
-        turns_.curvatures(*problem_.system, result.forces, curvatures_);
+        turns_.set(*problem_.body.system, q);
+        turns_.curvatures(*problem_.body.system, result.forces, curvatures_);
         result.force_scale = turns_.norm_of_magnitudes(body_forces_.magnitudes);
     } else {
         result.force_scale = body_forces_.magnitudes.norm();
@@ -157,7 +157,7 @@ void EquilibriumEvaluator::reduce_to_unknowns(const Eigen::VectorXd& forces, Eig
 }
 
 void EquilibriumEvaluator::add_mass_forces(const Eigen::VectorXd& q, Eigen::VectorXd& forces) const {
-    const BlockSystem& system = *problem_.system;
+    const BlockSystem& system = *problem_.body.system;
     for (int b = 0; b < system.n_blocks(); ++b) {
         const Vec6 moved = q.segment<n_block_unknowns>(n_block_unknowns * b) -
                            problem_.start.segment<n_block_unknowns>(n_block_unknowns * b);
@@ -170,13 +170,13 @@ void EquilibriumEvaluator::add_mass_forces(const Eigen::VectorXd& q, Eigen::Vect
 
 void EquilibriumEvaluator::tangent(const Eigen::VectorXd& q, TangentKind kind, BlockMatrix& matrix) {
     matrix.pattern = &pattern_;
-    if (problem_.kinematics == Kinematics::rigid) return rigid_tangent(q, kind, matrix);
+    if (problem_.body.kinematics == Kinematics::rigid) return rigid_tangent(q, kind, matrix);
     set_bond_tangents(matrix);
     add_block_tangents(q, kind, matrix);
     add_contact_tangents(q, kind, matrix);
     if (kind == TangentKind::exact) {
-        for (const PressureEdge& edge : problem_.pressure_edges) {
-            const double pressure = problem_.pressures[edge.boundary];
+        for (const PressureEdge& edge : problem_.body.loads->pressure_edges) {
+            const double pressure = problem_.body.loads->pressures[edge.boundary];
             if (pressure == 0.0) continue;
             add_pressure_tangent(edge, pressure, matrix.values[pattern_.diagonal(edge.block)]);
         }
@@ -192,8 +192,8 @@ void EquilibriumEvaluator::rigid_tangent(const Eigen::VectorXd& q, TangentKind k
     add_rigid_block_tangents(kind, matrix);
     add_rigid_contact_tangents(q, kind, matrix);
     if (kind != TangentKind::exact) return;
-    for (const PressureEdge& edge : problem_.pressure_edges) {
-        const double pressure = problem_.pressures[edge.boundary];
+    for (const PressureEdge& edge : problem_.body.loads->pressure_edges) {
+        const double pressure = problem_.body.loads->pressures[edge.boundary];
         if (pressure == 0.0) continue;
         Mat6 stiffness = Mat6::Zero();
         add_pressure_tangent(edge, pressure, stiffness);
@@ -203,21 +203,21 @@ void EquilibriumEvaluator::rigid_tangent(const Eigen::VectorXd& q, TangentKind k
 
 void EquilibriumEvaluator::set_rigid_bond_tangents(BlockMatrix& matrix) const {
     RowClearing clearing(matrix.rigid_values, pattern_);
-    for (const Bond& bond : problem_.bonds) {
+    for (const Bond& bond : problem_.body.placement->bonds) {
         clearing.advance(std::max(bond.block_a, bond.block_b) + 1);
         RigidPairMoments moments;
         for (int k = 0; k < n_bond_points; ++k)
             moments.add(turns_.lever(bond.block_a, bond.xi_a[k]), turns_.lever(bond.block_b, bond.xi_b[k]));
-        add_rigid_pair_tangent(moments,
-                               point_stiffness(bond.normal(), bond.weight, full_stiffness((*problem_.laws)[bond.law])),
-                               PairBlocks(matrix.rigid_values, pattern_, bond.block_a, bond.block_b));
+        add_rigid_pair_tangent(
+            moments, point_stiffness(bond.normal(), bond.weight, full_stiffness((*problem_.body.laws)[bond.law])),
+            PairBlocks(matrix.rigid_values, pattern_, bond.block_a, bond.block_b));
     }
     clearing.advance(pattern_.n_blocks());
 }
 
 void EquilibriumEvaluator::add_rigid_contact_tangents(const Eigen::VectorXd& q, TangentKind kind,
                                                       BlockMatrix& matrix) const {
-    for (const ContactPoint& point : problem_.contacts) {
+    for (const ContactPoint& point : problem_.body.placement->contacts) {
         const Mat2 tangent = point_tangent(problem_, point, q, kind);
         if (tangent.isZero(0.0)) continue;
         RigidPairMoments moments;
@@ -230,7 +230,7 @@ void EquilibriumEvaluator::add_rigid_contact_tangents(const Eigen::VectorXd& q, 
 /// d2q/dw2 = -R/h in the numbers of D: under compression the forces on D push a turning block on, and that part of the
 /// stiffness is negative; only the exact tangent has it.
 void EquilibriumEvaluator::add_rigid_block_tangents(TangentKind kind, BlockMatrix& matrix) const {
-    const BlockSystem& system = *problem_.system;
+    const BlockSystem& system = *problem_.body.system;
     for (int b = 0; b < system.n_blocks(); ++b) {
         Mat3& diagonal = matrix.rigid_values[pattern_.diagonal(b)];
         diagonal(2, 2) += kind == TangentKind::exact ? curvatures_[b] : std::max(0.0, curvatures_[b]);
@@ -240,22 +240,24 @@ void EquilibriumEvaluator::add_rigid_block_tangents(TangentKind kind, BlockMatri
 }
 
 void EquilibriumEvaluator::add_block_tangents(const Eigen::VectorXd& q, TangentKind kind, BlockMatrix& matrix) const {
-    const BlockSystem& system = *problem_.system;
+    const BlockSystem& system = *problem_.body.system;
     for (int b = 0; b < system.n_blocks(); ++b) {
         const Block& block = system.blocks[b];
         Mat6& diagonal = matrix.values[pattern_.diagonal(b)];
         if (!problem_.eta.empty()) diagonal += problem_.eta[b] * mass_matrix(block, problem_.least_mass_area);
-        diagonal.block<4, 4>(2, 2) += elastic_tangent(deformation_gradient(q, b, block.size),
-                                                      (*problem_.moduli)[block.material], kind != TangentKind::exact);
+        diagonal.block<4, 4>(2, 2) +=
+            elastic_tangent(deformation_gradient(q, b, block.size), (*problem_.body.moduli)[block.material],
+                            kind != TangentKind::exact);
     }
 }
 
 /// The bonds are in the order of their lower block, so that only a band of rows is in use at a time.
 void EquilibriumEvaluator::set_bond_tangents(BlockMatrix& matrix) const {
     RowClearing clearing(matrix.values, pattern_);
-    for (const Bond& bond : problem_.bonds) {
+    for (const Bond& bond : problem_.body.placement->bonds) {
         clearing.advance(std::max(bond.block_a, bond.block_b) + 1);
-        const Mat2 stiffness = point_stiffness(bond.normal(), bond.weight, full_stiffness((*problem_.laws)[bond.law]));
+        const Mat2 stiffness =
+            point_stiffness(bond.normal(), bond.weight, full_stiffness((*problem_.body.laws)[bond.law]));
         PairMoments moments;
         for (int k = 0; k < n_bond_points; ++k) moments.add(bond.xi_a[k], bond.xi_b[k]);
         add_pair_tangent(moments, stiffness, PairBlocks(matrix.values, pattern_, bond.block_a, bond.block_b));
@@ -264,7 +266,7 @@ void EquilibriumEvaluator::set_bond_tangents(BlockMatrix& matrix) const {
 }
 
 void EquilibriumEvaluator::add_contact_tangents(const Eigen::VectorXd& q, TangentKind kind, BlockMatrix& matrix) const {
-    for (const ContactPoint& point : problem_.contacts) {
+    for (const ContactPoint& point : problem_.body.placement->contacts) {
         const Mat2 tangent = point_tangent(problem_, point, q, kind);
         if (tangent.isZero(0.0)) continue;
         PairMoments moments;
@@ -277,11 +279,11 @@ void EquilibriumEvaluator::add_contact_tangents(const Eigen::VectorXd& q, Tangen
 double viscous_force(const EquilibriumProblem& problem, const Eigen::VectorXd& q) {
     if (problem.eta.empty()) return 0.0;
     double sum = 0.0;
-    for (int b = 0; b < problem.system->n_blocks(); ++b) {
+    for (int b = 0; b < problem.body.system->n_blocks(); ++b) {
         const Vec6 moved = q.segment<n_block_unknowns>(n_block_unknowns * b) -
                            problem.start.segment<n_block_unknowns>(n_block_unknowns * b);
-        const Block& block = problem.system->blocks[b];
-        if (problem.kinematics == Kinematics::rigid) {
+        const Block& block = problem.body.system->blocks[b];
+        if (problem.body.kinematics == Kinematics::rigid) {
             const Vec6 force = problem.eta[b] * (mass_matrix(block, problem.least_mass_area) * moved);
             sum += (rigid_motion(q, b, block.size).transpose() * force).squaredNorm();
             continue;

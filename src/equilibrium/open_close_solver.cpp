@@ -62,7 +62,7 @@ std::vector<int> restless_blocks(const Eigen::VectorXd& forces, int nu, const st
 
 /// Of prescribed displacements. The gradient of a rigid block, h (R - I), has the round-off of its size.
 double prescribed_roundoff(const EquilibriumProblem& problem, const Eigen::VectorXd& q) {
-    const double of_size = problem.kinematics == Kinematics::rigid ? 1e-13 * problem.system->spacing : 0.0;
+    const double of_size = problem.body.kinematics == Kinematics::rigid ? 1e-13 * problem.body.system->spacing : 0.0;
     return of_size + 1e-13 * q.lpNorm<Eigen::Infinity>();
 }
 
@@ -79,9 +79,9 @@ template <class Lists> std::vector<int> union_of(const Lists& lists) {
 /// Removes the reactions; what remains has the work of the forces in every free motion, the platen's travel included.
 void OpenCloseSolver::keep_free_part(const EquilibriumProblem& problem, const Eigen::VectorXd& q,
                                      Eigen::VectorXd& forces) const {
-    const bool travels = problem.platen_force.has_value();
-    const double missing = travels ? travel_.dot(forces) - problem.platen_force->at(q) : 0.0;
-    problem.constraints.project(forces);
+    const bool travels = problem.body.loads->platen_force.has_value();
+    const double missing = travels ? travel_.dot(forces) - problem.body.loads->platen_force->at(q) : 0.0;
+    problem.body.loads->constraints.project(forces);
     if (travels) forces += missing / travel_.squaredNorm() * travel_;
 }
 
@@ -169,7 +169,7 @@ void OpenCloseSolver::move_to(const EquilibriumProblem& problem, const Eigen::Ve
         return;
     }
     position_ = q;
-    move_rigid(*problem.system, increment_, s, position_);
+    move_rigid(*problem.body.system, increment_, s, position_);
 }
 
 /// The forces on the unknowns.
@@ -187,25 +187,25 @@ void OpenCloseSolver::assemble(const EquilibriumProblem& problem, EquilibriumEva
                                const Eigen::VectorXd& q, TangentKind kind) {
     const Stopwatch watch(assembly_seconds_);
     evaluator.tangent(q, kind, matrix_);
-    if (problem.platen_force) {
+    if (problem.body.loads->platen_force) {
         matrix_.multiply(travel_, travel_column_);
         matrix_.multiply_transposed(travel_, travel_row_);
         if (nu_ == n_rigid_unknowns) {
-            evaluator.reduce_to_unknowns(problem.platen_force->widening, scratch_);
-            travel_row_ -= problem.platen_force->stress * scratch_;
+            evaluator.reduce_to_unknowns(problem.body.loads->platen_force->widening, scratch_);
+            travel_row_ -= problem.body.loads->platen_force->stress * scratch_;
         } else {
-            travel_row_ -= problem.platen_force->stress * problem.platen_force->widening;
+            travel_row_ -= problem.body.loads->platen_force->stress * problem.body.loads->platen_force->widening;
         }
         travel_column_ *= -1.0;
-        problem.constraints.project(travel_column_);
+        problem.body.loads->constraints.project(travel_column_);
     }
     right_side_ = -residual_.forces;
     if (!prescribed_.isZero(0.0)) {
         matrix_.multiply(prescribed_, scratch_);
         right_side_ -= scratch_;
     }
-    problem.constraints.project(right_side_);
-    project(problem.constraints, matrix_, typical_diagonal(matrix_));
+    problem.body.loads->constraints.project(right_side_);
+    project(problem.body.loads->constraints, matrix_, typical_diagonal(matrix_));
 }
 
 /// increment_ and response_ by a factorization of the assembled matrix.
@@ -215,7 +215,7 @@ bool OpenCloseSolver::solve_anew(const EquilibriumProblem& problem, TangentKind 
     if (!linear_solver_.factorize(std::move(matrix_), exact ? Factorization::lu : Factorization::cholesky))
         return false;
     linear_solver_.solve(right_side_, increment_);
-    if (problem.platen_force) linear_solver_.solve(travel_column_, response_);
+    if (problem.body.loads->platen_force) linear_solver_.solve(travel_column_, response_);
     return true;
 }
 
@@ -250,7 +250,7 @@ bool OpenCloseSolver::renew_factor(const EquilibriumProblem& problem, Equilibriu
     {
         const Stopwatch watch(assembly_seconds_);
         evaluator.tangent(q, TangentKind::symmetric, matrix_);
-        project(problem.constraints, matrix_, typical_diagonal(matrix_));
+        project(problem.body.loads->constraints, matrix_, typical_diagonal(matrix_));
     }
     reference_.take(problem, q, matrix_);
     if (!linear_solver_.factorize(std::move(matrix_), Factorization::rounded_cholesky)) {
@@ -273,7 +273,7 @@ bool OpenCloseSolver::solve_refined(const EquilibriumProblem& problem) {
     const SolveReport report = linear_solver_.solve(matrix_, right_side_, goal, max_refinements, increment_);
     if (fresh_refinements_ < 0) fresh_refinements_ = report.refinements;
     excess_refinements_ += std::max(0, report.refinements - fresh_refinements_);
-    if (!report.accepted || !problem.platen_force) return report.accepted;
+    if (!report.accepted || !problem.body.loads->platen_force) return report.accepted;
     goal.residual = travel_residual * travel_column_.norm();
     return linear_solver_.solve(matrix_, travel_column_, goal, max_refinements, response_).accepted;
 }
@@ -281,7 +281,7 @@ bool OpenCloseSolver::solve_refined(const EquilibriumProblem& problem) {
 /// The increment for the platen's travel as a bordered system, by a second solution with the same factor:
 /// travel_row . increment = out_of_balance.
 void OpenCloseSolver::add_travel(const EquilibriumProblem& problem, double out_of_balance) {
-    problem.constraints.project(response_);
+    problem.body.loads->constraints.project(response_);
     response_ += travel_;
     increment_ += (out_of_balance - travel_row_.dot(increment_)) / travel_row_.dot(response_) * response_;
 }
@@ -295,12 +295,13 @@ bool OpenCloseSolver::find_increment(const EquilibriumProblem& problem, Equilibr
         assemble(problem, evaluator, q, kind);
         if (!solve_anew(problem, kind)) return false;
     }
-    problem.constraints.project(increment_);
-    if (problem.platen_force) {
-        add_travel(problem, problem.platen_force->at(q) - travel_.dot(residual_.forces) - travel_row_.dot(prescribed_));
+    problem.body.loads->constraints.project(increment_);
+    if (problem.body.loads->platen_force) {
+        add_travel(problem, problem.body.loads->platen_force->at(q) - travel_.dot(residual_.forces) -
+                                travel_row_.dot(prescribed_));
     }
     increment_ += prescribed_;
-    limit_increment(*problem.system);
+    limit_increment(*problem.body.system);
     return true;
 }
 
@@ -310,17 +311,18 @@ OpenCloseSummary OpenCloseSolver::solve(const EquilibriumProblem& problem, const
     const int max_iterations =
         relaxes ? std::min(relaxation_iterations, options_.max_iterations) : options_.max_iterations;
     EquilibriumEvaluator evaluator(problem, pattern);
-    nu_ = unknowns_per_block(problem.kinematics);
+    nu_ = unknowns_per_block(problem.body.kinematics);
     OpenCloseSummary summary;
     full_step_forces_.resize(0);
     for (auto& blocks : restless_) blocks.clear();
     int short_steps = 0; // in succession
     double previous_norm = -1.0;
-    if (problem.platen_force) travel_ = problem.constraints.travel_motion(nu_ * problem.system->n_blocks());
+    if (problem.body.loads->platen_force)
+        travel_ = problem.body.loads->constraints.travel_motion(nu_ * problem.body.system->n_blocks());
     Eigen::VectorXd free_forces;
     for (;;) {
         evaluate(evaluator, q, residual_);
-        problem.constraints.correction(q, prescribed_);
+        problem.body.loads->constraints.correction(q, prescribed_);
         free_forces = residual_.forces;
         keep_free_part(problem, q, free_forces);
         const double norm = free_forces.norm();
@@ -343,7 +345,8 @@ OpenCloseSummary OpenCloseSolver::solve(const EquilibriumProblem& problem, const
         }
         const bool first = summary.iterations == 0;
         if (held) prescribed_.setZero();
-        const bool touching = first && unloaded && !problem.contacts.empty(); // a bonded body has its stiffness
+        const bool touching =
+            first && unloaded && !problem.body.placement->contacts.empty(); // a bonded body has its stiffness
         if (!find_increment(problem, evaluator, q, touching ? TangentKind::touching : options_.tangent)) {
             summary.termination = Termination::singular;
             return summary;
@@ -360,7 +363,7 @@ OpenCloseSummary OpenCloseSolver::solve(const EquilibriumProblem& problem, const
         restless_[summary.iterations % restless_.size()] = restless_blocks(full_step_forces_, nu_, limited_);
         short_steps = s < short_step ? short_steps + 1 : 0;
         if (nu_ == n_rigid_unknowns) {
-            move_rigid(*problem.system, increment_, s, q);
+            move_rigid(*problem.body.system, increment_, s, q);
         } else {
             q += s * increment_;
         }

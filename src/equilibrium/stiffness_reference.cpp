@@ -16,11 +16,11 @@ constexpr double least_mass_change = 0.2; ///< of the block's stiffness
 
 /// A row over the unknowns of a block, in the free motions; that of a rigid block in the first three places.
 void make_free(const EquilibriumProblem& problem, const Eigen::VectorXd& q, int block, Vec6& row) {
-    if (problem.kinematics == Kinematics::rigid) {
-        const Vec3 reduced = rigid_motion(q, block, problem.system->blocks[block].size).transpose() * row;
+    if (problem.body.kinematics == Kinematics::rigid) {
+        const Vec3 reduced = rigid_motion(q, block, problem.body.system->blocks[block].size).transpose() * row;
         row << reduced, 0.0, 0.0, 0.0;
     }
-    problem.constraints.project(block, row);
+    problem.body.loads->constraints.project(block, row);
 }
 
 void set_rows(const EquilibriumProblem& problem, const Eigen::VectorXd& q, const ContactPoint& point, int first,
@@ -54,8 +54,8 @@ StiffnessReference::Key StiffnessReference::key_of(const ContactKey& k) {
 void StiffnessReference::collect(const EquilibriumProblem& problem, const Eigen::VectorXd& q,
                                  std::vector<Patch>& patches) {
     patches.clear();
-    for (int i = 0; i < static_cast<int>(problem.contacts.size()); ++i) {
-        const ContactPoint& point = problem.contacts[i];
+    for (int i = 0; i < static_cast<int>(problem.body.placement->contacts.size()); ++i) {
+        const ContactPoint& point = problem.body.placement->contacts[i];
         const Key key = key_of(point.key);
         if (patches.empty() || patches.back().key != key) {
             Patch patch;
@@ -66,8 +66,8 @@ void StiffnessReference::collect(const EquilibriumProblem& problem, const Eigen:
             patches.push_back(patch);
         }
         Patch& patch = patches.back();
-        patch.scale += point.weight * (*problem.laws)[point.law].normal_stiffness;
-        const Mat2 stiffness = point.weight * symmetric_tangent(contact_traction(problem, i, q));
+        patch.scale += point.weight * (*problem.body.laws)[point.law].normal_stiffness;
+        const Mat2 stiffness = point.weight * symmetric_tangent(contact_traction(problem.body, i, q));
         if (point.key.point < 0) {
             set_rows(problem, q, point, 0, patch.change);
             patch.change.stiffness.topLeftCorner<2, 2>() += stiffness;
@@ -93,22 +93,22 @@ void StiffnessReference::take(const EquilibriumProblem& problem, const Eigen::Ve
     }
     collect(problem, q, reference_);
     bonded_.clear();
-    for (const Bond& bond : problem.bonds) bonded_.push_back(bond.interface);
+    for (const Bond& bond : problem.body.placement->bonds) bonded_.push_back(bond.interface);
     numbers_.clear();
 }
 
 /// A broken bond was a patch of the reference, along its whole edge.
 void StiffnessReference::add_broken_bonds(const EquilibriumProblem& problem) {
     std::vector<int> bonded;
-    for (const Bond& bond : problem.bonds) bonded.push_back(bond.interface);
+    for (const Bond& bond : problem.body.placement->bonds) bonded.push_back(bond.interface);
     if (bonded.size() == bonded_.size()) return;
     std::vector<int> broken;
     std::ranges::set_difference(bonded_, bonded, std::back_inserter(broken));
     for (const int i : broken) {
-        const Interface& interface = problem.system->interfaces[i];
-        const InterfaceLaw& law = (*problem.laws)[interface.interface_type];
-        const Edge& edge = problem.system->blocks[interface.block_a].edges[interface.edge_a];
-        const double length = (edge_end(*problem.system, edge) - edge_start(*problem.system, edge)).norm();
+        const Interface& interface = problem.body.system->interfaces[i];
+        const InterfaceLaw& law = (*problem.body.laws)[interface.interface_type];
+        const Edge& edge = problem.body.system->blocks[interface.block_a].edges[interface.edge_a];
+        const double length = (edge_end(*problem.body.system, edge) - edge_start(*problem.body.system, edge)).norm();
         Patch patch;
         patch.key = key_of(key_of_own_edges(interface, 0));
         patch.scale = length * law.normal_stiffness;
@@ -151,13 +151,13 @@ const std::vector<StiffnessChange>& StiffnessReference::changes(const Equilibriu
 
 /// Relaxation changes eta by powers of four on single blocks. A loose block has no other stiffness.
 void StiffnessReference::add_masses(const EquilibriumProblem& problem, const Eigen::VectorXd& q) {
-    const bool rigid = problem.kinematics == Kinematics::rigid;
-    const int nu = unknowns_per_block(problem.kinematics);
+    const bool rigid = problem.body.kinematics == Kinematics::rigid;
+    const int nu = unknowns_per_block(problem.body.kinematics);
     const auto eta_at = [](const std::vector<double>& eta, int b) { return eta.empty() ? 0.0 : eta[b]; };
-    for (int b = 0; b < problem.system->n_blocks(); ++b) {
+    for (int b = 0; b < problem.body.system->n_blocks(); ++b) {
         const double change = eta_at(problem.eta, b) - eta_at(eta_, b);
         if (change == 0.0) continue;
-        const Block& block = problem.system->blocks[b];
+        const Block& block = problem.body.system->blocks[b];
         Mat6 mass = change * mass_matrix(block, problem.least_mass_area);
         if (rigid) {
             const Mat63 motion = rigid_motion(q, b, block.size);
@@ -174,7 +174,7 @@ void StiffnessReference::add_masses(const EquilibriumProblem& problem, const Eig
             added.n_rows = n;
             for (int i = 0; i < n; ++i) {
                 Vec6 row = Vec6::Unit(first + i);
-                problem.constraints.project(b, row);
+                problem.body.loads->constraints.project(b, row);
                 added.rows_a.row(i) = row;
             }
             added.stiffness.topLeftCorner(n, n) = stiffness;

@@ -11,17 +11,17 @@ namespace {
 /// Zero for a fixed block, whose weight nothing but its support feels.
 Vec2 weight_of(const LoadedBody& body, int b) {
     const Block& block = body.system->blocks[b];
-    if (body.densities.empty() || block.fixed) return Vec2::Zero();
-    return body.densities[block.material] * block.area * body.gravity;
+    if (body.densities == nullptr || block.fixed) return Vec2::Zero();
+    return (*body.densities)[block.material] * block.area * body.loads->gravity;
 }
 
 /// Calls visit(block, xi, force) for each load but the weights.
 template <class Visit> void for_each_surface_load(const LoadedBody& body, const Eigen::VectorXd& q, Visit visit) {
-    for (const PressureEdge& edge : body.pressure_edges) {
-        const double pressure = body.pressures[edge.boundary];
+    for (const PressureEdge& edge : body.loads->pressure_edges) {
+        const double pressure = body.loads->pressures[edge.boundary];
         if (pressure != 0.0) visit(edge.block, edge.xi_middle, pressure_force(edge, pressure, q));
     }
-    for (const PointLoad& load : body.point_loads) visit(load.block, load.xi, load.force);
+    for (const PointLoad& load : body.loads->point_loads) visit(load.block, load.xi, load.force);
 }
 
 /// Sums the forces and, where they are wanted, their magnitudes.
@@ -47,7 +47,7 @@ public:
                     result_.magnitudes.segment<4>(n_block_unknowns * b + 2) += columns.cwiseAbs();
                 raise_stiffest(2.0 * moduli.mu + moduli.lambda);
             }
-            if (!body.densities.empty()) {
+            if (body.densities != nullptr) {
                 const Vec2 weight = weight_of(body, b);
                 result_.forces.segment<2>(n_block_unknowns * b) -= weight;
                 if constexpr (with_magnitudes) result_.magnitudes.segment<2>(n_block_unknowns * b) += weight.cwiseAbs();
@@ -57,7 +57,7 @@ public:
 
     /// Interface forces are internal: +f on b where f is what b's opening stretches.
     void add_bonds(const LoadedBody& body, const Eigen::VectorXd& q) {
-        for (const Bond& bond : body.bonds) {
+        for (const Bond& bond : body.placement->bonds) {
             const InterfaceLaw& law = (*body.laws)[bond.law];
             for (int k = 0; k < n_bond_points; ++k) {
                 const auto traction = bond_traction(law, bond, k, q);
@@ -70,7 +70,7 @@ public:
     }
 
     template <class Keep> void add_contacts(const LoadedBody& body, const Eigen::VectorXd& q, Keep keep) {
-        for (const ContactPoint& point : body.contacts) {
+        for (const ContactPoint& point : body.placement->contacts) {
             const auto traction = contact_traction(*body.laws, point, q);
             const Vec2 force = point.weight * (traction.normal * point.normal + traction.shear * point.tangent);
             add(point.block_b, point.xi_b, force);
@@ -130,11 +130,11 @@ PointTraction contact_traction(const std::vector<InterfaceLaw>& laws, const Cont
 }
 
 PointTraction contact_traction(const LoadedBody& body, int i, const Eigen::VectorXd& q) {
-    return contact_traction(*body.laws, body.contacts[i], q);
+    return contact_traction(*body.laws, body.placement->contacts[i], q);
 }
 
 PointTraction bond_traction(const LoadedBody& body, int i, int point, const Eigen::VectorXd& q) {
-    const Bond& bond = body.bonds[i];
+    const Bond& bond = body.placement->bonds[i];
     return bond_traction((*body.laws)[bond.law], bond, point, q);
 }
 
@@ -154,7 +154,7 @@ std::vector<Mat2> block_stresses(const LoadedBody& body, const Eigen::VectorXd& 
     if (body.kinematics == Kinematics::affine) return block_stresses(*body.system, *body.moduli, q);
     BodyForces sum;
     body_forces(body, q, sum);
-    body.constraints.add_reactions(sum.forces);
+    body.loads->constraints.add_reactions(sum.forces);
     std::vector<Mat2> stresses;
     stresses.reserve(body.system->blocks.size());
     for (int b = 0; b < body.system->n_blocks(); ++b) {

@@ -185,24 +185,20 @@ void RunWriter::write_pictures(const FieldRecord& fields) const {
 
 RunSummary RunWriter::summary_of(const RunOutcome& outcome) const {
     RunSummary summary;
-    summary.status = outcome.status;
+    summary.status = outcome.report.status;
     summary.title = options_.title;
     summary.numbers = curve_numbers(equilibria_, history_, options_.platen_stage, options_.plane);
-    if (outcome.open_close_iterations) summary.numbers.open_close_iterations = *outcome.open_close_iterations;
     summary.platen_stage = options_.platen_stage;
     summary.blocks = system_.n_blocks();
     summary.interfaces = system_.n_interfaces();
     summary.unknowns = outcome.unknowns;
-    summary.counts = outcome.counts;
-    summary.elapsed_s = outcome.elapsed_s;
+    summary.costs = outcome.report.costs;
     summary.cpu_s = outcome.cpu_s;
     summary.peak_memory_bytes = peak_memory_bytes();
     summary.version = outcome.version;
-    summary.seconds = outcome.seconds;
-    summary.message = outcome.message;
-    summary.factor_of_safety = outcome.factor_of_safety;
-    summary.estimated_error = outcome.estimated_error;
-    summary.motion = outcome.motion;
+    summary.message = outcome.report.diagnosis;
+    summary.results = outcome.report.results;
+    summary.motion = outcome.report.motion;
     return summary;
 }
 
@@ -211,7 +207,7 @@ RunSummary RunWriter::finish(const RunOutcome& outcome, const State& state,
     RunSummary summary = summary_of(outcome);
     FirstError errors;
     // Out of memory in the middle of a report the rows may end before the state; then the last saved state stays.
-    if (!history_.empty() && history_.back().step == state.step) errors.attempt([&] { checkpoint(state); });
+    if (!history_.empty() && history_.back().step == state.at.step) errors.attempt([&] { checkpoint(state); });
     errors.attempt([&] { write_summary(directory_ / "summary.json", summary); });
     errors.attempt([&] {
         const bool fields_missing =

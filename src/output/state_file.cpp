@@ -1,7 +1,6 @@
 #include "kluft/output/state_file.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <string_view>
 #include <utility>
@@ -16,7 +15,7 @@ namespace kluft {
 
 namespace {
 
-constexpr int format_version = 5;
+constexpr int format_version = 6;
 constexpr std::string_view format_name = "kluft state";
 
 /// What went wrong inside HDF5; the callers add the file's name.
@@ -164,25 +163,7 @@ struct Writer {
         for (const auto& [a, b] : v) numbers.insert(numbers.end(), {a, b});
         write_array(file, name, numbers.data(), numbers.size());
     }
-    void operator()(const char* name, const StepControl& c) {
-        const std::array numbers{c.size,         c.curvature,      c.lag,
-                                 c.axial_stress, c.largest_stress, c.largest_mean_stress,
-                                 c.path_error,   c.event_error,    c.estimated_error};
-        write_array(file, (std::string(name) + "_numbers").c_str(), numbers.data(), numbers.size());
-        const std::array counts{c.stage_of_largest, c.missed_events};
-        write_array(file, (std::string(name) + "_counts").c_str(), counts.data(), counts.size());
-        write_array(file, (std::string(name) + "_slipped").c_str(), c.slipped.data(), c.slipped.size());
-    }
-    void operator()(const char* name, const RunCosts& costs) {
-        const std::array counts{costs.open_close_iterations, costs.factorizations, costs.analyses,    costs.updates,
-                                costs.largest_rank,          costs.refinements,    costs.relaxations, costs.events,
-                                costs.rejected_steps};
-        const RunSeconds& s = costs.seconds;
-        const std::array seconds{costs.elapsed_s, s.detection, s.set_up,   s.assembly,    s.analysis,
-                                 s.factorization, s.update,    s.solution, s.crack_check, s.observers};
-        write_array(file, (std::string(name) + "_counts").c_str(), counts.data(), counts.size());
-        write_array(file, (std::string(name) + "_seconds").c_str(), seconds.data(), seconds.size());
-    }
+    void operator()(const char* name, const std::vector<int>& v) { write_array(file, name, v.data(), v.size()); }
 };
 
 /// Fetches the members of a state one by one.
@@ -221,54 +202,8 @@ struct Reader {
         v.clear();
         for (std::size_t i = 0; i < numbers.size(); i += 2) v.emplace_back(numbers[i], numbers[i + 1]);
     }
-    void operator()(const char* name, StepControl& c) {
-        const auto n = read_array<double>(file, (std::string(name) + "_numbers").c_str());
-        const auto counts = read_array<int>(file, (std::string(name) + "_counts").c_str());
-        if (n.size() != 9 || counts.size() != 2) throw Hdf5Failure{name};
-        c = {n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8], counts[0], counts[1], {}};
-        c.slipped = read_array<int>(file, (std::string(name) + "_slipped").c_str());
-    }
-    void operator()(const char* name, RunCosts& costs) {
-        const auto counts = read_array<int>(file, (std::string(name) + "_counts").c_str());
-        const auto seconds = read_array<double>(file, (std::string(name) + "_seconds").c_str());
-        if (counts.size() != 9 || seconds.size() != 10) throw Hdf5Failure{name};
-        costs.open_close_iterations = counts[0];
-        costs.factorizations = counts[1];
-        costs.analyses = counts[2];
-        costs.updates = counts[3];
-        costs.largest_rank = counts[4];
-        costs.refinements = counts[5];
-        costs.relaxations = counts[6];
-        costs.events = counts[7];
-        costs.rejected_steps = counts[8];
-        costs.elapsed_s = seconds[0];
-        costs.seconds = {seconds[1], seconds[2], seconds[3], seconds[4], seconds[5],
-                         seconds[6], seconds[7], seconds[8], seconds[9]};
-    }
+    void operator()(const char* name, std::vector<int>& v) { v = read_array<int>(file, name); }
 };
-
-/// Calls visit(name, member) for every member of a state. Members: State, const or not.
-template <class Members, class Visit> void visit_members(Members& state, Visit&& visit) {
-    visit("stage", state.stage);
-    visit("step_in_stage", state.step_in_stage);
-    visit("step", state.step);
-    visit("load_factor", state.load_factor);
-    visit("displacement", state.displacement);
-    visit("stage_start_displacement", state.stage_start_displacement);
-    visit("reference_displacement", state.reference_displacement);
-    visit("reference_set", state.reference_set);
-    visit("interfaces", state.interfaces);
-    visit("bond_shear", state.bond_shear);
-    visit("contacts", state.contacts);
-    visit("boundary_pressure", state.boundary_pressure);
-    visit("unbalanced_ratio", state.unbalanced_ratio);
-    visit("unbalanced_in_succession", state.unbalanced_in_succession);
-    visit("displacement_rate", state.displacement_rate);
-    visit("viscosity_factor", state.viscosity_factor);
-    visit("near_pairs", state.near_pairs);
-    visit("control", state.control);
-    visit("costs", state.costs);
-}
 
 std::string file_image(const State& state, const std::string& fingerprint, const std::string& scene) {
     const Identifier access = memory_access();
@@ -277,7 +212,7 @@ std::string file_image(const State& state, const std::string& fingerprint, const
     write_text(file, "fingerprint", fingerprint);
     write_array(file, "format_version", &format_version, 1);
     write_array(file, "scene", std::vector<std::uint8_t>(scene.begin(), scene.end()).data(), scene.size());
-    visit_members(state, Writer{file});
+    visit_saved(state, Writer{file});
     checked(H5Fflush(file, H5F_SCOPE_GLOBAL), "not flushed");
     const ssize_t size = H5Fget_file_image(file, nullptr, 0);
     if (size <= 0) throw Hdf5Failure{"no image"};
@@ -310,7 +245,7 @@ State state_in(hid_t file, const std::string& place, const std::string& expected
     if (read_text(file, "fingerprint") != expected_fingerprint)
         throw InputError(place + ": belongs to another scene, or the scene was changed since it was saved");
     State state;
-    visit_members(state, Reader{file});
+    visit_saved(state, Reader{file});
     return state;
 }
 

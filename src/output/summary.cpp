@@ -18,10 +18,6 @@ namespace kluft {
 
 namespace {
 
-/// Members of the file that count what was computed.
-constexpr std::array count_names{"factorizations", "analyses",    "updates", "rank",
-                                 "refinements",    "relaxations", "events",  "rejected_steps"};
-
 using Json = nlohmann::ordered_json;
 using Rows = std::vector<StepRecord>;
 
@@ -128,7 +124,6 @@ void add_elastic_constants(const Rows& equilibria, const Rows& history, int plat
 void add_counts(const Rows& history, CurveNumbers& numbers) {
     for (const StepRecord& row : history) {
         numbers.unbalanced_steps += row.balanced ? 0 : 1;
-        numbers.open_close_iterations += row.open_close_iterations;
     }
     if (history.empty()) return;
     numbers.steps = history.back().step;
@@ -170,7 +165,6 @@ void read_numbers(const Json& json, CurveNumbers& numbers) {
     json.at("cracks_shear").get_to(numbers.cracks_shear);
     json.at("steps").get_to(numbers.steps);
     json.at("unbalanced_steps").get_to(numbers.unbalanced_steps);
-    json.at("open_close_iterations").get_to(numbers.open_close_iterations);
 }
 
 RunSummary summary_in(const Json& json) {
@@ -182,17 +176,21 @@ RunSummary summary_in(const Json& json) {
     json.at("blocks").get_to(summary.blocks);
     json.at("interfaces").get_to(summary.interfaces);
     json.at("unknowns").get_to(summary.unknowns);
-    for (const char* name : count_names)
-        summary.counts[name] = json.value(name, std::int64_t{0}); // an earlier version has fewer
-    summary.elapsed_s = optional_number(json, "elapsed_s").value_or(0.0);
+    visit_counts(summary.costs, [&](const char* name, int& count) {
+        count = json.value(name, 0); // an earlier version has fewer
+    });
+    summary.costs.elapsed_s = optional_number(json, "elapsed_s").value_or(0.0);
     if (json.contains("cpu_s")) summary.cpu_s = optional_number(json, "cpu_s").value_or(0.0);
     json.at("peak_memory_bytes").get_to(summary.peak_memory_bytes);
     json.at("version").get_to(summary.version);
-    for (const auto& [stage, seconds] : json.at("seconds").items())
-        summary.seconds[stage] = seconds.is_null() ? 0.0 : seconds.get<double>();
+    const Json& times = json.at("seconds");
+    visit_seconds(summary.costs.seconds, [&](const char* name, double& seconds) {
+        if (times.contains(name)) seconds = optional_number(times, name).value_or(0.0);
+    });
     json.at("message").get_to(summary.message);
-    if (json.contains("factor_of_safety")) summary.factor_of_safety = optional_number(json, "factor_of_safety");
-    if (json.contains("estimated_error")) summary.estimated_error = optional_number(json, "estimated_error");
+    visit_results(summary.results, [&](const char* name, std::optional<double>& result) {
+        if (json.contains(name)) result = optional_number(json, name);
+    });
     if (json.value("integrator", "implicit") == "explicit") {
         summary.motion =
             MotionReport{json.at("time_steps").get<long>(), optional_number(json, "time_step").value_or(0.0),
@@ -255,7 +253,8 @@ std::string summary_json(const RunSummary& summary) {
     json["poissons_ratio"] = number(numbers.poissons_ratio);
     json["axial_modulus"] = number(numbers.axial_modulus);
     json["lateral_ratio"] = number(numbers.lateral_ratio);
-    json["factor_of_safety"] = number(summary.factor_of_safety);
+    visit_results(summary.results,
+                  [&](const char* name, const std::optional<double>& result) { json[name] = number(result); });
     json["cracks_tension"] = numbers.cracks_tension;
     json["cracks_shear"] = numbers.cracks_shear;
     json["blocks"] = summary.blocks;
@@ -263,26 +262,22 @@ std::string summary_json(const RunSummary& summary) {
     json["unknowns"] = summary.unknowns;
     json["steps"] = numbers.steps;
     json["unbalanced_steps"] = numbers.unbalanced_steps;
-    json["open_close_iterations"] = numbers.open_close_iterations;
-    for (const char* name : count_names) {
-        const auto count = summary.counts.find(name);
-        json[name] = count == summary.counts.end() ? 0 : count->second;
-    }
-    json["estimated_error"] = number(summary.estimated_error);
+    visit_counts(summary.costs, [&](const char* name, int count) { json[name] = count; });
     json["integrator"] = summary.motion ? "explicit" : "implicit";
     if (summary.motion) {
         json["time_steps"] = summary.motion->time_steps;
         json["time_step"] = number(summary.motion->time_step);
         json["energy_error"] = number(summary.motion->energy_error);
     }
-    json["elapsed_s"] = number(summary.elapsed_s);
+    json["elapsed_s"] = number(summary.costs.elapsed_s);
     json["cpu_s"] = number(summary.cpu_s);
     json["peak_memory_bytes"] = summary.peak_memory_bytes;
     json["platen_stage"] = summary.platen_stage ? Json(*summary.platen_stage) : Json(nullptr);
     json["version"] = summary.version;
     json["message"] = summary.message;
     json["seconds"] = Json::object();
-    for (const auto& [stage, seconds] : summary.seconds) json["seconds"][stage] = number(seconds);
+    visit_seconds(summary.costs.seconds,
+                  [&](const char* name, double seconds) { json["seconds"][name] = number(seconds); });
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 

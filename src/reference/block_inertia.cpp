@@ -66,14 +66,14 @@ std::vector<Mat6> stiffness_bounds(const LoadedBody& body) {
         const ElasticModuli& moduli = (*body.moduli)[system.blocks[b].material];
         bounds[b].block<4, 4>(2, 2) += elastic_tangent(Mat2::Identity(), moduli, true);
     }
-    for (const Bond& bond : body.bonds) {
+    for (const Bond& bond : body.placement->bonds) {
         for (int k = 0; k < n_bond_points; ++k) {
             const InterfaceLaw& law = (*body.laws)[bond.law];
             add_point(bond.normal(), bond.tangent, bond.xi_a[k], bond.weight, law, bounds[bond.block_a]);
             add_point(bond.normal(), bond.tangent, bond.xi_b[k], bond.weight, law, bounds[bond.block_b]);
         }
     }
-    for (const ContactPoint& point : body.contacts) {
+    for (const ContactPoint& point : body.placement->contacts) {
         const InterfaceLaw& law = (*body.laws)[point.law];
         add_point(point.normal, point.tangent, point.xi_a, point.weight, law, bounds[point.block_a]);
         add_point(point.normal, point.tangent, point.xi_b, point.weight, law, bounds[point.block_b]);
@@ -88,7 +88,10 @@ std::vector<Mat6> initial_stiffness_bounds(const Model& model) {
     body.laws = &model.laws;
     const Eigen::VectorXd rest = Eigen::VectorXd::Zero(n_block_unknowns * model.system.n_blocks());
     const double shear[n_bond_points] = {};
-    for (int i = 0; i < model.system.n_interfaces(); ++i) body.bonds.push_back(bond_at(model.system, i, rest, shear));
+    Placement placement;
+    for (int i = 0; i < model.system.n_interfaces(); ++i)
+        placement.bonds.push_back(bond_at(model.system, i, rest, shear));
+    body.placement = &placement;
     return stiffness_bounds(body);
 }
 

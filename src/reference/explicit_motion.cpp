@@ -75,8 +75,12 @@ double bond_energy(const LoadedBody& body, const Bond& bond, const Eigen::Vector
     return bond.weight * energy;
 }
 
-ExplicitMotion::ExplicitMotion(LoadedBody body, std::vector<Mat6> masses, double damping, Eigen::VectorXd q)
-    : body_(std::move(body)), masses_(std::move(masses)), damping_(damping), q_(std::move(q)) {
+ExplicitMotion::ExplicitMotion(const LoadedBody& body, Placement placement, Loads loads, std::vector<Mat6> masses,
+                               double damping, Eigen::VectorXd q)
+    : placement_(std::move(placement)), loads_(std::move(loads)), body_(body), masses_(std::move(masses)),
+      damping_(damping), q_(std::move(q)) {
+    body_.placement = &placement_;
+    body_.loads = &loads_;
     velocity_.setZero(q_.size());
     external_.setZero(q_.size());
     damping_force_.setZero(q_.size());
@@ -90,7 +94,7 @@ void ExplicitMotion::restart() {
     time_step_ = stable_time_step(largest_frequency(stiffness_bounds(body_), masses_), damping_);
     hold_blocks();
     kept_.clear();
-    for (const ContactPoint& point : body_.contacts) {
+    for (const ContactPoint& point : placement_.contacts) {
         const auto traction = contact_traction(*body_.laws, point, q_);
         kept_.push_back({traction.normal, traction.shear, traction.history.dilation});
     }
@@ -100,8 +104,8 @@ void ExplicitMotion::hold_blocks() {
     holds_.clear();
     held_.assign(masses_.size(), 0);
     travel_mass_ = 0.0;
-    const Eigen::VectorXd travel = body_.constraints.travel_motion(q_.size());
-    for (const ConstrainedBlock& constrained : body_.constraints.blocks()) {
+    const Eigen::VectorXd travel = loads_.constraints.travel_motion(q_.size());
+    for (const ConstrainedBlock& constrained : loads_.constraints.blocks()) {
         const int b = constrained.block;
         HeldBlock hold;
         hold.block = b;
@@ -118,8 +122,8 @@ void ExplicitMotion::hold_blocks() {
 
 /// What slid since the last time step is history now; its work was lost.
 void ExplicitMotion::keep_histories() {
-    for (std::size_t i = 0; i < body_.contacts.size(); ++i) {
-        ContactPoint& point = body_.contacts[i];
+    for (std::size_t i = 0; i < placement_.contacts.size(); ++i) {
+        ContactPoint& point = placement_.contacts[i];
         const PointTraction& traction = tractions_[i];
         Kept& kept = kept_[i];
         const double slip = gap_and_slip(point, q_).slip;
@@ -150,7 +154,7 @@ void ExplicitMotion::accelerate_free_blocks(double interval) {
 /// The free motion of the held blocks, and the travel of a platen that is loaded by stress. Both are without inertia
 /// for each other.
 void ExplicitMotion::accelerate_held_blocks(double interval) {
-    double on_travel = travel_mass_ > 0.0 && body_.platen_force ? body_.platen_force->at(q_) : 0.0;
+    double on_travel = travel_mass_ > 0.0 && loads_.platen_force ? loads_.platen_force->at(q_) : 0.0;
     for (const HeldBlock& hold : holds_) {
         const Vec6 force = -of_block(forces_.forces, hold.block);
         const Vec6 free_force = hold.projector * force;
@@ -183,7 +187,7 @@ void ExplicitMotion::advance() {
     const Eigen::VectorXd before = velocity_;
     velocity_ += increment_;
     q_ += time_step_ * velocity_;
-    body_.constraints.correction(q_, correction_);
+    loads_.constraints.correction(q_, correction_);
     for (const HeldBlock& hold : holds_) {
         const Vec6 missing = of_block(correction_, hold.block);
         const Vec6 prescribed = missing - hold.free_part * missing;
@@ -214,8 +218,8 @@ const BodyForces& ExplicitMotion::evaluate() {
 
 double ExplicitMotion::springs_energy() const {
     double energy = 0.0;
-    for (const Bond& bond : body_.bonds) energy += bond_energy(body_, bond, q_);
-    for (const ContactPoint& point : body_.contacts) energy += contact_energy(body_, point, q_);
+    for (const Bond& bond : placement_.bonds) energy += bond_energy(body_, bond, q_);
+    for (const ContactPoint& point : placement_.contacts) energy += contact_energy(body_, point, q_);
     return energy;
 }
 

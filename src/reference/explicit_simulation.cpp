@@ -9,12 +9,15 @@
 
 #include "kluft/core/stopwatch.hpp"
 #include "kluft/fracture/crack_check.hpp"
+#include "kluft/loading/boundary_geometry.hpp"
 #include "kluft/reference/block_inertia.hpp"
 #include "kluft/reference/explicit_motion.hpp"
+#include "kluft/simulation/journal.hpp"
 #include "kluft/simulation/measurements.hpp"
-#include "kluft/simulation/run_course.hpp"
+#include "kluft/simulation/placement.hpp"
+#include "kluft/simulation/stage_loads.hpp"
 #include "kluft/simulation/state_check.hpp"
-#include "kluft/simulation/state_points.hpp"
+#include "kluft/simulation/step.hpp"
 #include "kluft/simulation/weakening.hpp"
 
 namespace kluft {
@@ -40,44 +43,40 @@ class ExplicitRun {
 public:
     ExplicitRun(const Model& model, const CrackOptions& cracks, const SolverOptions& solver,
                 const ExplicitOptions& options, State& state, StepObserver& observer, const std::atomic<bool>& stop)
-        : model_(model), cracks_(cracks), solver_(solver), options_(options), course_(model, state, observer, stop),
-          motion_(loaded_body(), block_masses(model, options.density_scaling), options.damping, state.displacement),
+        : model_(model), cracks_(cracks), solver_(solver), options_(options), state_(state), stop_(stop),
+          journal_(model, state, observer, number_of_steps(model)),
+          motion_(body_of(model), {}, {}, block_masses(model, options.density_scaling), options.damping,
+                  state.body.displacement),
           crossing_time_(crossing_time(model, block_masses(model, options.density_scaling))),
-          detected_at_(state.displacement) {
+          detected_at_(state.body.displacement) {
         extents_.reserve(model.system.blocks.size());
         for (const Block& block : model.system.blocks) extents_.push_back(largest_coordinate(block));
     }
 
     RunReport run() {
-        LoadSteps steps;
-        steps.begin_stage = [this] { begin_stage(); };
-        steps.initial_record = [this] {
-            set_load(0.0);
-            return measure();
-        };
-        steps.load_step = [this](double target, bool) { return load_step(target); };
-        steps.look_back = [this](const StepRecord& record) { look_back(record); };
-        steps.end_stage = [this] {
-            leave_stage(model_, *course_.loads, motion_.body(), motion_.evaluate().forces, work_);
-        };
-        steps.costs = [this] {
-            RunCosts costs = report_.costs;
-            costs.elapsed_s = course_.elapsed();
-            return costs;
-        };
-        steps.fields = [this] { return field_record(model_, work_, motion_.body()); };
-        RunReport report = run_stages(course_, steps);
+        RunReport report = report_of(journal_, [this] {
+            for (;;) {
+                const StageLoads loads = enter_stage(model_, state_);
+                loads_ = &loads;
+                begin_stage();
+                const StageEnd end = run_stage();
+                const bool last = state_.at.stage + 1 == static_cast<int>(model_.loads.stages.size());
+                if (end.failure || last) return journal_.ended(state_, end);
+                leave_stage(model_, loads, motion_.loads(), motion_.evaluate().forces, state_);
+                state_.costs = journal_.costs();
+            }
+        });
         report.motion = MotionReport{time_steps_, motion_.time_step(), worst_energy_error_};
         return report;
     }
 
 private:
-    [[nodiscard]] LoadedBody loaded_body() const {
+    [[nodiscard]] static LoadedBody body_of(const Model& model) {
         LoadedBody body;
-        body.system = &model_.system;
-        body.moduli = &model_.moduli;
-        body.laws = &model_.laws;
-        if (has_gravity(model_)) body.densities = model_.densities;
+        body.system = &model.system;
+        body.moduli = &model.moduli;
+        body.laws = &model.laws;
+        body.densities = has_gravity(model) ? &model.densities : nullptr;
         return body;
     }
 
@@ -90,69 +89,101 @@ private:
 
     // ---- load steps ------------------------------------------------------------------------------------------
 
+    [[nodiscard]] const Stage& stage() const { return model_.loads.stages[state_.at.stage]; }
+    [[nodiscard]] State& work() { return step_.end; }
+    [[nodiscard]] bool failed() const { return step_.failure.has_value(); }
+    void fail(FailureKind kind, std::string what) { step_.failure = Failure{.kind = kind, .what = std::move(what)}; }
+
     void begin_stage() {
-        motion_.body().constraints = course_.loads->constraints();
-        motion_.body().pressure_edges = course_.loads->edges();
+        begin_step();
+        motion_.loads().constraints = loads_->constraints();
+        motion_.loads().pressure_edges = loads_->edges();
         motion_.add_detection_energy(detect());
         if (has_platen_velocity() && platen_time() < motion_.time_step()) {
-            report_.warnings.push_back(fmt::format(
+            journal_.report().warnings.push_back(fmt::format(
                 "stage {}: the platen is slower than loading_rate, since a load step takes one time step at "
                 "least; expected {:g} steps or fewer",
-                work_.stage, std::floor(course_.stage().steps * platen_time() / motion_.time_step())));
+                state_.at.stage, std::floor(stage().steps * platen_time() / motion_.time_step())));
         }
+        if (state_.at.step > 0 || state_.at.stage > 0) return;
+        set_load(0.0);
+        const StepRecord row = measure();
+        journal_.begin(row, state_, in_place());
+    }
+
+    StageEnd run_stage() {
+        StageEnd end;
+        while (!end.failure && state_.at.step_in_stage < stage().steps) {
+            const bool last = state_.at.step_in_stage + 1 == stage().steps;
+            take_step(static_cast<double>(state_.at.step_in_stage + 1) / stage().steps);
+            if (failed()) return commit_balanced_part(std::move(step_), state_, journal_);
+            const StepRecord row = step_.row;
+            commit(std::move(step_), {.last_of_stage = last}, state_, journal_);
+            end.failure = failure_after(row);
+            end.step = state_.at.step + 1;
+        }
+        return end;
     }
 
     void set_load(double load_factor) {
-        apply_load(model_, *course_.loads, work_.stage, load_factor, motion_.body());
-        work_.load_factor = load_factor;
+        move_loads(model_, *loads_, state_.at.stage, load_factor, motion_.loads());
+        work().at.load_factor = load_factor;
     }
 
-    StepRecord load_step(double to) {
-        const double from = static_cast<double>(work_.step_in_stage) / course_.stage().steps;
+    void begin_step() {
+        step_ = Step{};
+        step_.end = state_;
+        step_.row = journal_.last_row();
+        step_.balanced_part = Step::BalancedPart{state_.body, state_.at.load_factor, {}, 0, 0};
+    }
+
+    void take_step(double to) {
+        begin_step();
+        const double from = static_cast<double>(state_.at.step_in_stage) / stage().steps;
         const bool steady = has_platen_velocity();
         const double duration = steady ? platen_time() : load_time();
         move_load(from, to, duration, steady);
         if (!steady) wait(longest_wait * duration);
+        if (failed()) return;
         set_load(to);
         keep_state();
-        StepRecord record = measure();
-        record.load_factor = to;
-        notify_equilibrium(course_, record);
-        work_.unbalanced_ratio = record.unbalanced_ratio;
-        return record;
+        if (failed()) return;
+        step_.row = measure();
+        step_.row.load_factor = to;
+        step_.equilibria.push_back(step_.row);
+        step_.balanced = step_.row.balanced;
+        step_.worst_share = step_.row.unbalanced_ratio;
+        step_.in_place = in_place();
+    }
+
+    /// A copy of what the fields of the state follow from.
+    [[nodiscard]] LoadedPlacement in_place() {
+        return {motion_.placement(), {motion_.loads(), model_.laws, work().at.load_factor, 1.0}};
     }
 
     /// A platen of constant velocity waits for nothing, so that its load steps may be unbalanced.
-    void look_back(const StepRecord& record) const {
-        if (has_platen_velocity()) return;
-        const bool past_strength = !record.balanced && course_.is_platen_loaded_by_stress();
-        if (past_strength || work_.unbalanced_in_succession >= solver_.max_unbalanced_steps)
-            throw LostEquilibrium{fmt::format("the unbalanced force is {:.2g} of the forces", record.unbalanced_ratio),
-                                  true};
+    [[nodiscard]] std::optional<Failure> failure_after(const StepRecord& row) const {
+        if (has_platen_velocity()) return std::nullopt;
+        const bool past_strength = !row.balanced && is_platen_loaded_by_stress(stage());
+        if (!past_strength && state_.unbalanced_in_succession < solver_.max_unbalanced_steps) return std::nullopt;
+        return Failure{.what = fmt::format("the unbalanced force is {:.2g} of the forces", row.unbalanced_ratio)};
     }
 
     [[nodiscard]] bool has_platen_velocity() const {
-        const auto& motion = course_.stage().motion;
+        const auto& motion = stage().motion;
         return options_.loading_rate > 0.0 && motion && motion->control != PlatenControl::stress;
     }
 
     [[nodiscard]] double load_time() const {
-        const int steps = course_.stage().steps;
+        const int steps = stage().steps;
         return std::max(crossings_per_step, crossings_per_stage / steps) * crossing_time_;
     }
 
     [[nodiscard]] double platen_time() const {
-        const Stage& stage = course_.stage();
-        double distance = std::abs(stage.motion->value);
-        if (stage.motion->control == PlatenControl::strain) distance *= platen_distance(model_, *stage.motion);
-        return distance / (stage.steps * options_.loading_rate);
-    }
-
-    static double platen_distance(const Model& model, const PlatenMotion& motion) {
-        const Vec2 normal = boundary_frame(model.system, motion.boundary).normal;
-        const int fixed = opposite_boundary(model.system, motion.boundary);
-        const Vec2 base = fixed >= 0 ? mean_position(model.system, fixed) : model.system.lower;
-        return std::abs(normal.dot(mean_position(model.system, motion.boundary) - base));
+        double distance = std::abs(stage().motion->value);
+        if (stage().motion->control == PlatenControl::strain)
+            distance *= distance_across(model_.system, stage().motion->boundary);
+        return distance / (stage().steps * options_.loading_rate);
     }
 
     // ---- time steps ------------------------------------------------------------------------------------------
@@ -160,7 +191,7 @@ private:
     void move_load(double from, double to, double duration, bool steady) {
         double done = 0.0;
         double passed = 0.0;
-        while (done < 1.0) {
+        while (done < 1.0 && !failed()) {
             const bool patient = !steady && passed < longest_wait * duration;
             const double rate = patient ? load_rate_ : 1.0;
             done = std::min(1.0, done + rate * motion_.time_step() / duration);
@@ -168,12 +199,12 @@ private:
             set_load(from + (to - from) * (steady ? done : smooth(done)));
             advance();
         }
-        set_load(to);
+        if (!failed()) set_load(to);
     }
 
     void wait(double longest) {
         const double balance = reference_balance * solver_.balance;
-        for (double passed = 0.0; passed < longest; passed += motion_.time_step()) {
+        for (double passed = 0.0; passed < longest && !failed(); passed += motion_.time_step()) {
             advance();
             if (time_steps_ % watch_interval == 0 && force_ratio() <= balance && is_at_rest(balance)) return;
         }
@@ -181,11 +212,12 @@ private:
 
     void advance() {
         {
-            const Stopwatch watch(report_.costs.seconds.assembly);
+            const Stopwatch watch(journal_.report().costs.seconds.assembly);
             motion_.advance();
         }
         ++time_steps_;
         if (time_steps_ % watch_interval == 0) watch_motion();
+        if (failed()) return;
         if (model_.has_potential_cracks && time_steps_ % options_.crack_check_interval == 0) break_bonds();
         if (time_steps_ % progress_interval == 0) report_progress();
     }
@@ -200,7 +232,7 @@ private:
     }
 
     void watch_motion() {
-        if (course_.stop) throw Interrupted{};
+        if (stop_) throw Interrupted{};
         if (time_steps_ % (10 * watch_interval) == 0 || force_scale_ == 0.0)
             force_scale_ = motion_.evaluate().magnitudes.norm();
         load_rate_ =
@@ -208,13 +240,14 @@ private:
         const double spacing = model_.system.spacing;
         const double fastest = largest_motion(motion_.velocity()) * motion_.time_step();
         if (!std::isfinite(motion_.unbalanced_force()) || !(fastest < wildest_motion * spacing))
-            throw LostEquilibrium{fmt::format("after {} time steps blocks move without limit", time_steps_), true};
-        if (course_.is_loaded_by_stress() &&
-            largest_motion(motion_.displacement() - course_.accepted.displacement) > collapse_motion * spacing)
-            throw LostEquilibrium{"the body falls or flows", true};
+            return fail(FailureKind::falling,
+                        fmt::format("after {} time steps blocks move without limit", time_steps_));
+        if (is_loaded_by_stress(stage()) &&
+            largest_motion(motion_.displacement() - state_.body.displacement) > collapse_motion * spacing)
+            return fail(FailureKind::falling, "the body falls or flows");
         if (largest_motion(motion_.displacement() - detected_at_) > detection_motion * spacing) {
             keep_state();
-            motion_.add_detection_energy(detect());
+            if (!failed()) motion_.add_detection_energy(detect());
         }
     }
 
@@ -234,36 +267,45 @@ private:
     void keep_state() {
         (void)motion_.evaluate();
         if (auto flaw = flaw_of_displacements(motion_.body(), motion_.displacement()); !flaw.empty())
-            throw LostEquilibrium{std::move(flaw), false};
-        work_.displacement = motion_.displacement();
-        keep_histories(motion_.body(), work_.displacement, work_);
+            return fail(FailureKind::broken_body, std::move(flaw));
+        work().body.displacement = motion_.displacement();
+        keep_histories(motion_.body(), work().body.displacement, work().body);
     }
 
     /// Contacts and frames of the work state. Returns the elastic energy that the springs lost by that (J/m).
     double detect() {
-        const Stopwatch watch(report_.costs.seconds.detection);
+        const Stopwatch watch(journal_.report().costs.seconds.detection);
         const double before = motion_.springs_energy();
-        bonded_ = bonded_interfaces(work_);
-        place_bonds(model_, work_, motion_.body().bonds);
-        motion_.body().contacts = state_contacts(model_, work_).points;
+        motion_.placement().bonds = placed_bonds(model_, work().body);
+        motion_.placement().contacts = detected_contacts(model_, work().body).points;
         motion_.restart();
         detected_at_ = motion_.displacement();
-        ++report_.detections;
+        ++journal_.report().detections;
         return before - motion_.springs_energy();
     }
 
     // ---- cracks ----------------------------------------------------------------------------------------------
 
+    [[nodiscard]] std::vector<CrackCandidate> candidates() {
+        const Stopwatch watch(journal_.report().costs.seconds.crack_check);
+        ++journal_.report().crack_checks;
+        return check_cracks(model_, cracks_.criterion, work(), 1.0, motion_.body(), motion_.displacement());
+    }
+
     void break_bonds() {
-        const auto broken = chosen_to_fail(cracks_, check_cracks(course_, cracks_.criterion, bonded_, model_.strengths,
-                                                                 motion_.body(), motion_.displacement()));
+        const auto broken = chosen_to_fail(cracks_, candidates());
         if (broken.empty()) return;
         if (!std::isfinite(motion_.unbalanced_force())) return; // watch_motion ends the run
         keep_state();
+        if (failed()) return;
         const StepRecord before = measure();
-        if (before.balanced) notify_equilibrium(course_, before);
+        if (failed()) return;
+        if (before.balanced) step_.equilibria.push_back(before);
         double energy = energy_of_interfaces(broken);
-        weaken_together(course_, broken, before.axial_strain);
+        weaken_together(model_, broken, before.axial_strain, step_);
+        if (before.balanced)
+            step_.balanced_part = Step::BalancedPart{work().body, work().at.load_factor, in_place(),
+                                                     step_.equilibria.size(), step_.cracks.size()};
         const double lost = detect();
         energy -= energy_of_interfaces(broken);
         motion_.add_crack_energy(energy);
@@ -277,9 +319,9 @@ private:
             return std::ranges::find(candidates, interface, &CrackCandidate::interface) != candidates.end();
         };
         double energy = 0.0;
-        for (const Bond& bond : body.bonds)
+        for (const Bond& bond : body.placement->bonds)
             if (concerns(bond.interface)) energy += bond_energy(body, bond, motion_.displacement());
-        for (const ContactPoint& point : body.contacts)
+        for (const ContactPoint& point : body.placement->contacts)
             if (point.interface >= 0 && concerns(point.interface))
                 energy += contact_energy(body, point, motion_.displacement());
         return energy;
@@ -290,7 +332,7 @@ private:
     StepRecord measure() {
         const BodyForces forces = motion_.evaluate();
         force_scale_ = forces.magnitudes.norm();
-        StepRecord record = measure_step(model_, course_.gauges, work_, motion_.body(), *course_.loads,
+        StepRecord record = measure_step(model_, journal_.gauges(), work(), motion_.body(), *loads_,
                                          motion_.displacement(), forces.forces);
         const EnergyBalance energy = motion_.energies();
         MotionRecord motion;
@@ -309,20 +351,21 @@ private:
         record.motion = motion;
         record.unbalanced_ratio = time_steps_ > 0 ? force_ratio() : 0.0;
         record.balanced = record.unbalanced_ratio <= solver_.balance;
-        record.crack_passes = course_.passes;
-        record.elapsed_s = course_.elapsed();
+        record.crack_passes = step_.crack_passes;
+        record.elapsed_s = journal_.elapsed();
         if (!std::isfinite(record.axial_stress) || !std::isfinite(energy.external_work))
-            throw LostEquilibrium{fmt::format("after {} time steps the displacements are no numbers", time_steps_)};
+            fail(FailureKind::broken_body,
+                 fmt::format("after {} time steps the displacements are no numbers", time_steps_));
         return record;
     }
 
     /// Difference of the forces on the moved and the opposite boundary over the larger one.
     [[nodiscard]] double platen_imbalance(const Eigen::VectorXd& forces) const {
-        const Gauges& gauges = course_.gauges;
+        const Gauges& gauges = journal_.gauges();
         if (gauges.moved < 0 || gauges.opposite < 0) return 0.0;
         const auto force_on = [&](int boundary) {
             const BoundaryFrame frame = boundary_frame(model_.system, boundary);
-            return frame.length * boundary_stress(motion_.body(), forces, boundary, course_.loads->is_held(boundary),
+            return frame.length * boundary_stress(*motion_.body().loads, forces, boundary, loads_->is_held(boundary),
                                                   frame.length, frame.normal);
         };
         const double a = force_on(gauges.moved);
@@ -331,21 +374,24 @@ private:
         return larger > 0.0 ? std::abs(a - b) / larger : 0.0;
     }
 
-    void report_progress() { notify_progress(course_, work_.load_factor, static_cast<int>(time_steps_)); }
+    void report_progress() {
+        journal_.progress(work(), step_.row, work().at.load_factor, static_cast<int>(time_steps_));
+    }
 
     const Model& model_;
     const CrackOptions& cracks_;
     const SolverOptions& solver_;
     const ExplicitOptions& options_;
-    RunCourse course_;
-    State& work_ = course_.work;         ///< where the body was when its state was last kept
-    RunReport& report_ = course_.report; ///< so far
+    State& state_; ///< at the last committed load step
+    const std::atomic<bool>& stop_;
+    Journal journal_;
+    const StageLoads* loads_ = nullptr; ///< of the stage in progress
+    Step step_;                         ///< in progress; its end is where the body was when its state was last kept
 
     ExplicitMotion motion_;
     double crossing_time_;
     Eigen::VectorXd detected_at_;
     std::vector<double> extents_; ///< largest distance from the centroid in block coordinates, per block
-    std::vector<char> bonded_;    ///< per interface of the work state
     long time_steps_ = 0;
     double load_rate_ = 1.0;
     double force_scale_ = 0.0;

@@ -61,7 +61,7 @@ struct ContactSum {
 };
 
 void add_bonds(const HistoryGauge& gauge, const LoadedBody& body, const Eigen::VectorXd& q, ContactSum& sum) {
-    for (const Bond& bond : body.bonds) {
+    for (const Bond& bond : body.placement->bonds) {
         if (!concerns(gauge, body.system->interfaces[bond.interface])) continue;
         for (int k = 0; k < n_bond_points; ++k) {
             const Vec2 relative = relative_displacement(bond, k, q);
@@ -73,7 +73,7 @@ void add_bonds(const HistoryGauge& gauge, const LoadedBody& body, const Eigen::V
 
 void add_contacts(const HistoryGauge& gauge, const LoadedBody& body, const Eigen::VectorXd& q, ContactSum& sum) {
     const BlockSystem& system = *body.system;
-    for (const ContactPoint& point : body.contacts) {
+    for (const ContactPoint& point : body.placement->contacts) {
         if (!concerns(gauge, system, point)) continue;
         const Block& block = system.blocks[point.block_a];
         const Vec2 x = block.centroid + block.size * point.xi_a;

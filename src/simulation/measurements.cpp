@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "kluft/kinematics/affine.hpp"
+#include "kluft/loading/boundary_geometry.hpp"
 
 namespace kluft {
 
@@ -20,12 +21,6 @@ int uppermost_boundary(const BlockSystem& system) {
         }
     }
     return best;
-}
-
-/// Severity of a state, to name an interface by its worst point.
-int severity(ContactState state) {
-    if (state == ContactState::open) return 0;
-    return state == ContactState::locked ? 1 : 2;
 }
 
 struct PairOfEdges {
@@ -52,8 +47,7 @@ Gauges make_gauges(const Model& model) {
     gauges.axial_normal = boundary_frame(system, gauges.moved).normal;
     gauges.lateral_normal = {gauges.axial_normal.y(), -gauges.axial_normal.x()};
     gauges.opposite = opposite_boundary(system, gauges.moved);
-    const Vec2 base = gauges.opposite >= 0 ? mean_position(system, gauges.opposite) : system.lower;
-    gauges.length = std::abs(gauges.axial_normal.dot(mean_position(system, gauges.moved) - base));
+    gauges.length = distance_across(system, gauges.moved);
     gauges.lateral = lateral_boundaries(system, gauges.moved);
     gauges.width = width_across(system, gauges.moved).width;
     return gauges;
@@ -76,18 +70,23 @@ Strains measure_strains(const Model& model, const Gauges& gauges, const Eigen::V
     return strains;
 }
 
+int severity(ContactState state) {
+    if (state == ContactState::open) return 0;
+    return state == ContactState::locked ? 1 : 2;
+}
+
 ContactCounts count_contacts(const Model& model, const State& state, const LoadedBody& body, const Eigen::VectorXd& q) {
     ContactCounts counts;
     const auto add = [&](ContactState worst) {
         ++(worst == ContactState::open ? counts.open : worst == ContactState::sliding ? counts.sliding : counts.locked);
     };
     std::vector<char> seen(model.system.interfaces.size(), 0);
-    for (int first = 0; first < static_cast<int>(body.contacts.size());) {
+    for (int first = 0; first < static_cast<int>(body.placement->contacts.size());) {
         int last = first;
         ContactState worst = ContactState::open;
-        const ContactPoint& head = body.contacts[first];
-        while (last < static_cast<int>(body.contacts.size()) &&
-               edges_of(body.contacts[last].key) == edges_of(head.key)) {
+        const ContactPoint& head = body.placement->contacts[first];
+        while (last < static_cast<int>(body.placement->contacts.size()) &&
+               edges_of(body.placement->contacts[last].key) == edges_of(head.key)) {
             const ContactState s = contact_traction(body, last, q).state;
             if (severity(s) > severity(worst)) worst = s;
             ++last;
@@ -101,7 +100,7 @@ ContactCounts count_contacts(const Model& model, const State& state, const Loade
         first = last;
     }
     for (int i = 0; i < model.system.n_interfaces(); ++i) {
-        if (state.interfaces[i] == InterfaceStatus::potential_crack) {
+        if (state.body.interfaces[i] == InterfaceStatus::potential_crack) {
             ++counts.locked;
         } else if (!seen[i]) {
             ++counts.open;
@@ -112,7 +111,7 @@ ContactCounts count_contacts(const Model& model, const State& state, const Loade
 
 std::vector<InterfaceTraction> bond_tractions(const Model& model, const LoadedBody& body, const Eigen::VectorXd& q) {
     std::vector<InterfaceTraction> tractions(model.system.interfaces.size());
-    for (const Bond& bond : body.bonds) {
+    for (const Bond& bond : body.placement->bonds) {
         for (int k = 0; k < n_bond_points; ++k) {
             const auto traction = bond_traction((*body.laws)[bond.law], bond, k, q);
             tractions[bond.interface].normal += 0.5 * traction.normal;
@@ -125,16 +124,16 @@ std::vector<InterfaceTraction> bond_tractions(const Model& model, const LoadedBo
 StepRecord measure_step(const Model& model, const Gauges& gauges, const State& state, const LoadedBody& body,
                         const StageLoads& loads, const Eigen::VectorXd& q, const Eigen::VectorXd& forces) {
     StepRecord record;
-    record.step = state.step + 1;
-    record.stage = state.stage;
-    record.load_factor = state.load_factor;
-    const Strains strains = measure_strains(model, gauges, q, state.reference_displacement);
+    record.step = state.at.step + 1;
+    record.stage = state.at.stage;
+    record.load_factor = state.at.load_factor;
+    const Strains strains = measure_strains(model, gauges, q, state.strain_zero);
     const Strains total = measure_strains(model, gauges, q, Eigen::VectorXd());
     record.axial_strain = strains.axial;
     record.lateral_strain = strains.lateral;
     record.volumetric_strain = strains.axial + strains.lateral;
     const auto stress_on = [&](int boundary, double length, const Vec2& normal) {
-        return boundary_stress(body, forces, boundary, loads.is_held(boundary), length, normal);
+        return boundary_stress(*body.loads, forces, boundary, loads.is_held(boundary), length, normal);
     };
     if (gauges.moved >= 0) {
         const double width = gauges.width * (1.0 - total.lateral);
@@ -145,69 +144,14 @@ StepRecord measure_step(const Model& model, const Gauges& gauges, const State& s
         record.lateral_stress += 0.5 * stress_on(side, height, boundary_frame(model.system, side).normal);
     }
     record.differential_stress = record.axial_stress - record.lateral_stress;
-    record.cracks_tension = static_cast<int>(std::ranges::count(state.interfaces, InterfaceStatus::tension_crack));
-    record.cracks_shear = static_cast<int>(std::ranges::count(state.interfaces, InterfaceStatus::shear_crack));
+    record.cracks_tension = static_cast<int>(std::ranges::count(state.body.interfaces, InterfaceStatus::tension_crack));
+    record.cracks_shear = static_cast<int>(std::ranges::count(state.body.interfaces, InterfaceStatus::shear_crack));
     const auto counts = count_contacts(model, state, body, q);
     record.open = counts.open;
     record.sliding = counts.sliding;
     record.locked = counts.locked;
     record.histories = measure_histories(model, body, q);
     return record;
-}
-
-FieldRecord field_record(const Model& model, const State& state, const LoadedBody& body) {
-    const BlockSystem& system = model.system;
-    const Eigen::VectorXd& q = state.displacement;
-    FieldRecord fields;
-    fields.stress = block_stresses(body, q);
-    for (int b = 0; b < system.n_blocks(); ++b) {
-        for (const Edge& edge : system.blocks[b].edges) {
-            const Vec2 xi = block_coordinates(system.blocks[b], edge_start(system, edge));
-            fields.displacement.push_back(displacement_at(q, b, xi));
-        }
-    }
-    fields.interfaces.resize(system.interfaces.size());
-    for (int i = 0; i < system.n_interfaces(); ++i) {
-        const Interface& interface = system.interfaces[i];
-        const Edge& edge = system.blocks[interface.block_a].edges[interface.edge_a];
-        auto& record = fields.interfaces[i];
-        record.bonded = state.interfaces[i] == InterfaceStatus::potential_crack;
-        record.broken = state.interfaces[i] == InterfaceStatus::tension_crack ||
-                        state.interfaces[i] == InterfaceStatus::shear_crack;
-        record.mode = state.interfaces[i] == InterfaceStatus::shear_crack ? CrackMode::shear : CrackMode::tension;
-        record.state = record.bonded ? ContactState::locked : ContactState::open;
-        const Vec2 middle = 0.5 * (edge_start(system, edge) + edge_end(system, edge));
-        const auto moved = [&](int b) { return displacement_at(q, b, block_coordinates(system.blocks[b], middle)); };
-        const Vec2 relative = moved(interface.block_b) - moved(interface.block_a);
-        const Vec2 along = (current_position(system, q, interface.block_a, edge.end) -
-                            current_position(system, q, interface.block_a, edge.start))
-                               .normalized();
-        record.gap = right_normal(along).dot(relative);
-        record.slip = along.dot(relative);
-    }
-    const auto bonds = bond_tractions(model, body, q);
-    for (int i = 0; i < system.n_interfaces(); ++i) {
-        if (!fields.interfaces[i].bonded) continue;
-        fields.interfaces[i].normal_traction = bonds[i].normal;
-        fields.interfaces[i].shear_traction = bonds[i].shear;
-    }
-    std::vector<double> lengths(system.interfaces.size(), 0.0);
-    for (int i = 0; i < static_cast<int>(body.contacts.size()); ++i) {
-        const ContactPoint& point = body.contacts[i];
-        if (point.interface < 0) continue;
-        const auto traction = contact_traction(body, i, q);
-        auto& record = fields.interfaces[point.interface];
-        if (severity(traction.state) > severity(record.state)) record.state = traction.state;
-        record.normal_traction += point.weight * traction.normal;
-        record.shear_traction += point.weight * traction.shear;
-        lengths[point.interface] += point.weight;
-    }
-    for (int i = 0; i < system.n_interfaces(); ++i) {
-        if (lengths[i] == 0.0) continue;
-        fields.interfaces[i].normal_traction /= lengths[i];
-        fields.interfaces[i].shear_traction /= lengths[i];
-    }
-    return fields;
 }
 
 } // namespace kluft

@@ -9,6 +9,8 @@
 #include "kluft/blocks/block_search.hpp"
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/kinematics/affine.hpp"
+#include "kluft/loading/boundary_geometry.hpp"
+#include "kluft/simulation/strength_reduction.hpp"
 
 namespace kluft {
 
@@ -16,21 +18,14 @@ namespace {
 
 constexpr int no_boundary = -1; ///< of the prescribed displacements of a fixed block
 
-template <typename Visit> void for_each_edge(const BlockSystem& system, int boundary, Visit visit) {
-    for (const auto& [b, e] : system.boundaries[boundary].edges) {
-        const Edge& edge = system.blocks[b].edges[e];
-        visit(b, edge_start(system, edge), edge_end(system, edge));
-    }
-}
-
-/// At the end of a stage; -1: before the first one.
+/// The gravity at the end of a stage; -1: before the first one.
 Vec2 gravity_after(const Model& model, int stage) {
     for (int s = stage; s >= 0; --s)
         if (model.loads.stages[s].gravity) return *model.loads.stages[s].gravity;
     return stage < 0 ? Vec2(Vec2::Zero()) : model.gravity;
 }
 
-/// The same of a point force.
+/// A point force at the end of a stage.
 Vec2 force_after(const Model& model, int force, int stage) {
     for (int s = stage; s >= 0; --s) {
         const auto& forces = model.loads.stages[s].forces;
@@ -60,174 +55,120 @@ std::optional<std::pair<int, int>> middle_vertex(const BlockSystem& system, int 
     return nearest;
 }
 
-} // namespace
+/// The platen that a stage moves, and what all boundaries are held by meanwhile.
+struct MovedPlaten {
+    std::vector<Support> supports;    ///< one per boundary
+    int boundary = -1;                ///< -1 without one
+    Vec2 velocity = Vec2::Zero();     ///< per unit of load factor (m), or per unit of a travel that is unknown
+    std::optional<PlatenForce> force; ///< of a platen under stress
+    [[nodiscard]] Vec2 velocity_of(int i) const { return i == boundary ? velocity : Vec2(Vec2::Zero()); }
+};
 
-BoundaryFrame boundary_frame(const BlockSystem& system, int boundary) {
-    BoundaryFrame frame;
-    Vec2 sum = Vec2::Zero();
-    for_each_edge(system, boundary, [&](int, const Vec2& start, const Vec2& end) {
-        sum += right_normal(end - start);
-        frame.length += (end - start).norm();
-    });
-    if (frame.length == 0.0) return frame;
-    if (sum.norm() > 0.0) frame.normal = sum.normalized();
-    for (int i = 0; i < 2; ++i) { // a side along an axis has exactly that normal
-        if (std::abs(frame.normal[i]) < 1e-12)
-            frame.normal = Vec2::Unit(1 - i) * (frame.normal[1 - i] < 0.0 ? -1.0 : 1.0);
-    }
-    return frame;
-}
-
-int opposite_boundary(const BlockSystem& system, int boundary) {
-    const Vec2 normal = boundary_frame(system, boundary).normal;
-    int best = -1;
-    double most_opposite = -0.5;
-    for (int i = 0; i < static_cast<int>(system.boundaries.size()); ++i) {
-        const double cosine = normal.dot(boundary_frame(system, i).normal);
-        if (cosine < most_opposite) {
-            most_opposite = cosine;
-            best = i;
-        }
-    }
-    return best;
-}
-
-Vec2 mean_position(const BlockSystem& system, int boundary) {
-    Vec2 sum = Vec2::Zero();
-    double length = 0.0;
-    for_each_edge(system, boundary, [&](int, const Vec2& start, const Vec2& end) {
-        sum += 0.5 * (end - start).norm() * (start + end);
-        length += (end - start).norm();
-    });
-    return length > 0.0 ? Vec2(sum / length) : sum;
-}
-
-Vec2 mean_displacement(const BlockSystem& system, const Eigen::VectorXd& q, int boundary) {
-    Vec2 sum = Vec2::Zero();
-    double length = 0.0;
-    for_each_edge(system, boundary, [&](int b, const Vec2& start, const Vec2& end) {
-        const Vec2 xi = block_coordinates(system.blocks[b], 0.5 * (start + end));
-        sum += (end - start).norm() * displacement_at(q, b, xi);
-        length += (end - start).norm();
-    });
-    return length > 0.0 ? Vec2(sum / length) : sum;
-}
-
-std::vector<int> lateral_boundaries(const BlockSystem& system, int boundary) {
-    const Vec2 normal = boundary_frame(system, boundary).normal;
-    const Vec2 lateral(normal.y(), -normal.x());
-    std::vector<int> result;
-    for (const double side : {1.0, -1.0}) {
-        int best = -1;
-        double most_lateral = 0.7;
-        for (int i = 0; i < static_cast<int>(system.boundaries.size()); ++i) {
-            const double cosine = side * lateral.dot(boundary_frame(system, i).normal);
-            if (cosine > most_lateral) {
-                most_lateral = cosine;
-                best = i;
-            }
-        }
-        if (best >= 0) result.push_back(best);
-    }
-    if (result.size() < 2) result.clear();
-    return result;
-}
-
-PlatenForce width_across(const BlockSystem& system, int boundary) {
-    PlatenForce force;
-    force.widening.setZero(n_block_unknowns * system.n_blocks());
-    force.width = boundary_frame(system, boundary).length;
-    const auto sides = lateral_boundaries(system, boundary);
-    if (sides.empty()) return force;
-    const Vec2 normal = boundary_frame(system, boundary).normal;
-    const Vec2 lateral(normal.y(), -normal.x());
-    force.width = std::abs(lateral.dot(mean_position(system, sides[0]) - mean_position(system, sides[1])));
-    for (const int i : sides) {
-        const double side = i == sides.front() ? 1.0 : -1.0;
-        const double length = boundary_frame(system, i).length;
-        for_each_edge(system, i, [&](int b, const Vec2& start, const Vec2& end) {
-            const Vec2 xi = block_coordinates(system.blocks[b], 0.5 * (start + end));
-            const double share = side * (end - start).norm() / length;
-            force.widening.segment<n_block_unknowns>(n_block_unknowns * b) += share * displacement_row(lateral, xi);
-        });
-    }
-    return force;
-}
-
-StageLoads::StageLoads(const Model& model, const State& stage_start, const Stage& stage) {
+MovedPlaten platen_of(const Model& model, const Stage& stage) {
+    MovedPlaten platen;
+    platen.supports = model.loads.supports;
+    if (!stage.motion) return platen;
     const BlockSystem& system = model.system;
-    const int n = static_cast<int>(system.boundaries.size());
-    held_.assign(n, 0);
-    start_pressure_ = stage_start.boundary_pressure;
-    end_pressure_ = start_pressure_;
-    for (const auto& [boundary, pressure] : stage.pressure) end_pressure_[boundary] = pressure;
-
-    std::vector<Support> supports = model.loads.supports;
-    Vec2 velocity = Vec2::Zero(); // of the moved platen per unit of load factor
-    int moved = -1;
-    if (stage.motion) {
-        moved = stage.motion->boundary;
-        const int fixed = opposite_boundary(system, moved);
-        const Support kind = stage.platens == Platens::rough ? Support::fixed : Support::smooth;
-        supports[moved] = kind;
-        if (fixed >= 0 && kind == Support::fixed) supports[fixed] = Support::fixed;
-        if (fixed >= 0 && supports[fixed] == Support::none) supports[fixed] = Support::pinned;
-        const Vec2 inward = -boundary_frame(system, moved).normal;
-        double distance = stage.motion->value;
-        if (stage.motion->control == PlatenControl::strain) {
-            const Vec2 base = fixed >= 0 ? mean_position(system, fixed) : system.lower;
-            distance *= std::abs(inward.dot(base - mean_position(system, moved)));
-        }
-        velocity = distance * inward;
-        if (stage.motion->control == PlatenControl::stress) {
-            velocity = inward; // per unit of its unknown travel
-            start_platen_stress_ = start_pressure_[moved];
-            end_platen_stress_ = stage.motion->value;
-            platen_force_ = width_across(system, moved);
-        }
+    const int moved = platen.boundary = stage.motion->boundary;
+    const int fixed = opposite_boundary(system, moved);
+    const Support kind = stage.platens == Platens::rough ? Support::fixed : Support::smooth;
+    platen.supports[moved] = kind;
+    if (fixed >= 0 && kind == Support::fixed) platen.supports[fixed] = Support::fixed;
+    if (fixed >= 0 && platen.supports[fixed] == Support::none) platen.supports[fixed] = Support::pinned;
+    const Vec2 inward = -boundary_frame(system, moved).normal;
+    double distance = stage.motion->value;
+    if (stage.motion->control == PlatenControl::strain) distance *= distance_across(system, moved);
+    platen.velocity = distance * inward;
+    if (stage.motion->control == PlatenControl::stress) {
+        platen.velocity = inward;
+        platen.force = width_across(system, moved);
     }
+    return platen;
+}
 
+/// Prescribed displacements with their targets at load factor 0 and the rates of these per unit of load factor.
+struct PrescribedRows {
     std::vector<PrescribedDisplacement> rows;
-    for (int boundary = 0; boundary < n; ++boundary) {
-        if (supports[boundary] == Support::none) continue;
-        held_[boundary] = 1;
-        start_pressure_[boundary] = end_pressure_[boundary] = 0.0;
-        const Vec2 normal = boundary_frame(system, boundary).normal;
-        const Vec2 motion = boundary == moved ? velocity : Vec2::Zero();
-        const Vec2 along(-normal.y(), normal.x());
-        const auto pin = supports[boundary] == Support::pinned ? middle_vertex(system, boundary) : std::nullopt;
-        std::set<std::pair<int, int>> done; // (block, vertex)
-        for (const auto& [b, e] : system.boundaries[boundary].edges) {
-            if (system.blocks[b].fixed) continue;
-            const Edge& edge = system.blocks[b].edges[e];
-            for (const int vertex : {edge.start, edge.end}) {
-                if (!done.emplace(b, vertex).second) continue;
-                const Vec2 xi = block_coordinates(system.blocks[b], system.vertices[vertex]);
-                const Vec2 start = displacement_at(stage_start.displacement, b, xi);
-                const auto prescribe = [&, b = b](const Vec2& direction) {
-                    const double rate = direction.dot(motion);
-                    rows.push_back({b, xi, direction, boundary, direction.dot(start), platen_force_ ? rate : 0.0});
-                    start_targets_.push_back(direction.dot(start));
-                    target_rates_.push_back(platen_force_ ? 0.0 : rate);
-                };
-                prescribe(normal);
-                if (supports[boundary] == Support::fixed || pin == std::pair(b, vertex)) prescribe(along);
-            }
+    std::vector<double> start_targets; ///< m
+    std::vector<double> target_rates;  ///< m
+
+    void add(const PrescribedDisplacement& row, double rate) {
+        rows.push_back(row);
+        start_targets.push_back(row.target);
+        target_rates.push_back(rate);
+    }
+};
+
+/// A vertex of a held boundary follows its support: along the normal, and along the boundary too if it `sticks`.
+void add_vertex(const MovedPlaten& platen, int boundary, int block, const Vec2& xi, const Vec2& start,
+                const Vec2& normal, bool sticks, PrescribedRows& prescribed) {
+    const auto prescribe = [&](const Vec2& direction) {
+        const double rate = direction.dot(platen.velocity_of(boundary));
+        prescribed.add({block, xi, direction, boundary, direction.dot(start), platen.force ? rate : 0.0},
+                       platen.force ? 0.0 : rate);
+    };
+    prescribe(normal);
+    if (sticks) prescribe(Vec2(-normal.y(), normal.x()));
+}
+
+/// The rows of the support of one boundary, each vertex of a block once.
+void add_support(const BlockSystem& system, const MovedPlaten& platen, int boundary, const Eigen::VectorXd& start,
+                 PrescribedRows& prescribed) {
+    const Vec2 normal = boundary_frame(system, boundary).normal;
+    const Support support = platen.supports[boundary];
+    const auto pin = support == Support::pinned ? middle_vertex(system, boundary) : std::nullopt;
+    std::set<std::pair<int, int>> done; // (block, vertex)
+    for (const auto& [b, e] : system.boundaries[boundary].edges) {
+        if (system.blocks[b].fixed) continue;
+        const Edge& edge = system.blocks[b].edges[e];
+        for (const int vertex : {edge.start, edge.end}) {
+            if (!done.emplace(b, vertex).second) continue;
+            const Vec2 xi = block_coordinates(system.blocks[b], system.vertices[vertex]);
+            const bool sticks = support == Support::fixed || pin == std::pair(b, vertex);
+            add_vertex(platen, boundary, b, xi, displacement_at(start, b, xi), normal, sticks, prescribed);
         }
     }
+}
+
+/// Three points of a fixed block do not move.
+void add_fixed_blocks(const BlockSystem& system, PrescribedRows& prescribed) {
     for (int b = 0; b < system.n_blocks(); ++b) {
         if (!system.blocks[b].fixed) continue;
         for (const Vec2& xi : {Vec2(0.0, 0.0), Vec2(1.0, 0.0), Vec2(0.0, 1.0)}) {
-            for (const Vec2& direction : {Vec2(1.0, 0.0), Vec2(0.0, 1.0)}) {
-                rows.push_back({b, xi, direction, no_boundary});
-                start_targets_.push_back(0.0);
-                target_rates_.push_back(0.0);
-            }
+            for (const Vec2& direction : {Vec2(1.0, 0.0), Vec2(0.0, 1.0)})
+                prescribed.add({b, xi, direction, no_boundary}, 0.0);
         }
     }
+}
+
+} // namespace
+
+StageLoads::StageLoads(const Model& model, const StageStart& start, const Stage& stage)
+    : start_pressure_(start.boundary_pressure), end_pressure_(start.boundary_pressure) {
+    const BlockSystem& system = model.system;
+    const int n = static_cast<int>(system.boundaries.size());
+    for (const auto& [boundary, pressure] : stage.pressure) end_pressure_[boundary] = pressure;
+    const MovedPlaten platen = platen_of(model, stage);
+    platen_force_ = platen.force;
+    if (platen_force_) {
+        start_platen_stress_ = start_pressure_[platen.boundary];
+        end_platen_stress_ = stage.motion->value;
+    }
+
+    PrescribedRows prescribed;
+    held_.assign(n, 0);
+    for (int boundary = 0; boundary < n; ++boundary) {
+        if (platen.supports[boundary] == Support::none) continue;
+        held_[boundary] = 1;
+        start_pressure_[boundary] = end_pressure_[boundary] = 0.0;
+        add_support(system, platen, boundary, start.displacement, prescribed);
+    }
+    add_fixed_blocks(system, prescribed);
+    start_targets_ = std::move(prescribed.start_targets);
+    target_rates_ = std::move(prescribed.target_rates);
     constraints_ = model.kinematics == Kinematics::rigid
-                       ? Constraints(std::move(rows), system, stage_start.displacement)
-                       : Constraints(std::move(rows));
+                       ? Constraints(std::move(prescribed.rows), system, start.displacement)
+                       : Constraints(std::move(prescribed.rows));
     for (int boundary = 0; boundary < n; ++boundary) {
         if (start_pressure_[boundary] == 0.0 && end_pressure_[boundary] == 0.0) continue;
         const auto more = pressure_edges(system, boundary);
@@ -265,9 +206,8 @@ const PrescribedDisplacement* StageLoads::contradicting_row() const {
 
 void refuse_contradicting_supports(const Model& model) {
     const BlockSystem& system = model.system;
-    State rest;
-    rest.displacement = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n_block_unknowns) * system.n_blocks());
-    rest.boundary_pressure.assign(system.boundaries.size(), 0.0);
+    const StageStart rest{Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n_block_unknowns) * system.n_blocks()),
+                          std::vector<double>(system.boundaries.size(), 0.0)};
     for (const Stage& stage : model.loads.stages) {
         if (!stage.motion) continue;
         const StageLoads loads(model, rest, stage);
@@ -288,51 +228,56 @@ void refuse_contradicting_supports(const Model& model) {
     }
 }
 
-StageLoads enter_stage(const Model& model, State& state) {
-    const Stage& stage = model.loads.stages[state.stage];
-    if (state.step_in_stage == 0) {
-        state.stage_start_displacement = state.displacement;
-        if (stage.motion && !state.reference_set) {
-            state.reference_displacement = state.displacement;
-            state.reference_set = true;
-        }
-    }
-    State start;
-    start.displacement = state.stage_start_displacement;
-    start.boundary_pressure = state.boundary_pressure;
-    return {model, start, stage};
+LoadsAt loads_at(const Model& model, const StageLoads& stage_loads, int stage, double load_factor) {
+    LoadsAt at;
+    at.loads.constraints = stage_loads.constraints();
+    at.loads.pressure_edges = stage_loads.edges();
+    move_loads(model, stage_loads, stage, load_factor, at.loads);
+    at.load_factor = load_factor;
+    at.strength_factor = strength_factor(model.loads, stage, load_factor);
+    at.laws = reduced_laws(model, stage, at.strength_factor);
+    return at;
 }
 
-void leave_stage(const Model& model, const StageLoads& loads, const LoadedBody& body, const Eigen::VectorXd& forces,
-                 State& state) {
-    const auto end = loads.pressures(1.0);
-    for (int i = 0; i < static_cast<int>(end.size()); ++i) {
-        const auto frame = boundary_frame(model.system, i);
-        state.boundary_pressure[i] =
-            loads.is_held(i) ? boundary_stress(body, forces, i, true, frame.length, frame.normal) : end[i];
-    }
-    ++state.stage;
-    state.step_in_stage = 0;
-    state.load_factor = 0.0;
-}
-
-void apply_load(const Model& model, const StageLoads& loads, int stage, double load_factor, LoadedBody& body) {
-    body.pressures = loads.pressures(load_factor);
-    body.platen_force = loads.platen_force(load_factor);
-    loads.set_targets(body.constraints, load_factor);
-    body.gravity = between(gravity_after(model, stage - 1), gravity_after(model, stage), load_factor);
-    body.point_loads.clear();
+void move_loads(const Model& model, const StageLoads& stage_loads, int stage, double load_factor, Loads& loads) {
+    loads.pressures = stage_loads.pressures(load_factor);
+    loads.platen_force = stage_loads.platen_force(load_factor);
+    stage_loads.set_targets(loads.constraints, load_factor);
+    loads.gravity = between(gravity_after(model, stage - 1), gravity_after(model, stage), load_factor);
+    loads.point_loads.clear();
     for (int i = 0; i < static_cast<int>(model.force_points.size()); ++i) {
         const auto [block, xi] = model.force_points[i];
         const Vec2 force = between(force_after(model, i, stage - 1), force_after(model, i, stage), load_factor);
-        if (force != Vec2::Zero()) body.point_loads.push_back({block, xi, force});
+        if (force != Vec2::Zero()) loads.point_loads.push_back({block, xi, force});
     }
 }
 
-double boundary_stress(const LoadedBody& body, const Eigen::VectorXd& forces, int boundary, bool held,
+StageLoads enter_stage(const Model& model, State& state) {
+    const Stage& stage = model.loads.stages[state.at.stage];
+    if (state.at.step_in_stage == 0) {
+        state.stage_start.displacement = state.body.displacement;
+        if (stage.motion && state.strain_zero.size() == 0) state.strain_zero = state.body.displacement;
+    }
+    return {model, state.stage_start, stage};
+}
+
+void leave_stage(const Model& model, const StageLoads& stage_loads, const Loads& loads, const Eigen::VectorXd& forces,
+                 State& state) {
+    const auto end = stage_loads.pressures(1.0);
+    for (int i = 0; i < static_cast<int>(end.size()); ++i) {
+        const auto frame = boundary_frame(model.system, i);
+        state.stage_start.boundary_pressure[i] =
+            stage_loads.is_held(i) ? boundary_stress(loads, forces, i, true, frame.length, frame.normal) : end[i];
+    }
+    ++state.at.stage;
+    state.at.step_in_stage = 0;
+    state.at.load_factor = 0.0;
+}
+
+double boundary_stress(const Loads& loads, const Eigen::VectorXd& forces, int boundary, bool held,
                        double current_length, const Vec2& normal) {
-    if (!held) return body.pressures[boundary];
-    return -normal.dot(body.constraints.reaction(forces, boundary)) / current_length;
+    if (!held) return loads.pressures[boundary];
+    return -normal.dot(loads.constraints.reaction(forces, boundary)) / current_length;
 }
 
 } // namespace kluft

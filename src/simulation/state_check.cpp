@@ -41,7 +41,7 @@ bool ends_a_run(const BlockSystem& system, const ContactPoint& point) {
 /// The first contact that is too deep, of those that end a run or of the others; "" if there is none.
 std::string deep_contact(const LoadedBody& body, const Eigen::VectorXd& q, bool ending) {
     const BlockSystem& system = *body.system;
-    for (const ContactPoint& point : body.contacts) {
+    for (const ContactPoint& point : body.placement->contacts) {
         if (ends_a_run(system, point) != ending) continue;
         const bool own = is_own(point);
         const Block& a = system.blocks[point.block_a];

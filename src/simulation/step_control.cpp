@@ -42,7 +42,7 @@ Eigen::VectorXd weighted_stresses(const LoadedBody& body, const Eigen::VectorXd&
 
 std::vector<double> slip_indices(const Model& model, const LoadedBody& body, const Eigen::VectorXd& q) {
     std::vector<double> indices;
-    for (const ContactPoint& point : body.contacts) {
+    for (const ContactPoint& point : body.placement->contacts) {
         const int fracture = point.interface >= 0 ? model.system.interfaces[point.interface].fracture : -1;
         if (fracture < 0) continue;
         if (fracture >= static_cast<int>(indices.size())) indices.resize(static_cast<std::size_t>(fracture) + 1, 0.0);

@@ -27,25 +27,31 @@ double strength_factor(const LoadProgram& loads, int stage, double load_factor) 
     return loads.stages[stage].strength_reduction ? reduction->factor_at(load_factor) : reduction->from;
 }
 
-ReducedStrengths reduced_strengths(const Model& model, int stage, double load_factor) {
-    ReducedStrengths result{model.laws, model.strengths};
-    const double factor = strength_factor(model.loads, stage, load_factor);
-    if (factor == 1.0) return result;
+std::vector<InterfaceLaw> reduced_laws(const Model& model, int stage, double factor) {
+    std::vector<InterfaceLaw> laws = model.laws;
+    if (factor == 1.0) return laws;
     const StrengthReduction& reduction = *reduction_of(model.loads, stage);
-    for (int t = 0; t < static_cast<int>(result.laws.size()); ++t) {
+    for (int t = 0; t < static_cast<int>(laws.size()); ++t) {
         if (!is_reduced(reduction, model.law_types[t])) continue;
-        InterfaceLaw& law = result.laws[t];
+        InterfaceLaw& law = laws[t];
         law.tan_friction /= factor;
         law.cohesion /= factor;
         law.tan_dilation = std::min(law.tan_dilation, law.tan_friction);
     }
+    return laws;
+}
+
+std::vector<Strength> reduced_strengths(const Model& model, int stage, double factor) {
+    std::vector<Strength> strengths = model.strengths;
+    if (factor == 1.0) return strengths;
+    const StrengthReduction& reduction = *reduction_of(model.loads, stage);
     for (int i = 0; i < model.system.n_interfaces(); ++i) {
         if (!is_reduced(reduction, model.system.interfaces[i].interface_type)) continue;
-        Strength& strength = result.strengths[i];
+        Strength& strength = strengths[i];
         strength.cohesion /= factor;
         strength.friction_angle = std::atan(std::tan(strength.friction_angle) / factor);
     }
-    return result;
+    return strengths;
 }
 
 } // namespace kluft

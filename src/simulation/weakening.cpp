@@ -4,6 +4,9 @@
 
 #include "kluft/contact/bonds.hpp"
 #include "kluft/contact/contact.hpp"
+#include "kluft/simulation/measurements.hpp"
+#include "kluft/simulation/placement.hpp"
+#include "kluft/simulation/strength_reduction.hpp"
 
 namespace kluft {
 
@@ -27,6 +30,19 @@ double failure_threshold(const CrackOptions& options, double largest) {
 
 } // namespace
 
+std::vector<CrackCandidate> check_cracks(const Model& model, CrackCriterion criterion, const State& state,
+                                         double strength_factor, const LoadedBody& body, const Eigen::VectorXd& q) {
+    const auto bonded = bonded_interfaces(state.body);
+    const auto stresses = block_stresses(body, q);
+    const auto check = [&](const std::vector<Strength>& strengths) {
+        if (criterion == CrackCriterion::principal_stress)
+            return crack_check(model.system, bonded, strengths, stresses);
+        return crack_check(model.system, bonded, strengths, stresses, bond_tractions(model, body, q));
+    };
+    if (strength_factor == 1.0) return check(model.strengths);
+    return check(reduced_strengths(model, state.at.stage, strength_factor));
+}
+
 std::vector<CrackCandidate> chosen_to_fail(const CrackOptions& options, const std::vector<CrackCandidate>& candidates) {
     const double largest = largest_index(candidates);
     if (largest < 1.0) return {};
@@ -39,20 +55,20 @@ CrackRecord weaken(const Model& model, const CrackCandidate& candidate, State& s
     const int i = candidate.interface;
     const Interface& interface = model.system.interfaces[i];
     const bool tension = candidate.index.tension_governs;
-    state.interfaces[i] = tension ? InterfaceStatus::tension_crack : InterfaceStatus::shear_crack;
+    state.body.interfaces[i] = tension ? InterfaceStatus::tension_crack : InterfaceStatus::shear_crack;
     const bool ordered = interface.block_a < interface.block_b;
     for (int point = 0; point < static_cast<int>(overlap_positions.size()); ++point) {
         const double along_a = overlap_positions[point];
         ContactMemory memory;
         memory.key = key_of_own_edges(interface, point);
         memory.history.shear_trial =
-            bond_shear_at(&state.bond_shear[n_bond_points * i], ordered ? along_a : 1.0 - along_a);
-        state.contacts.push_back(memory);
+            bond_shear_at(&state.body.bond_shear[n_bond_points * i], ordered ? along_a : 1.0 - along_a);
+        state.body.contacts.push_back(memory);
     }
     const Edge& edge = model.system.blocks[interface.block_a].edges[interface.edge_a];
     const Vec2 middle = model.system.origin + 0.5 * (edge_start(model.system, edge) + edge_end(model.system, edge));
     CrackRecord record;
-    record.step = state.step + 1;
+    record.step = state.at.step + 1;
     record.interface = i;
     record.x = middle.x();
     record.y = middle.y();
@@ -60,6 +76,17 @@ CrackRecord weaken(const Model& model, const CrackCandidate& candidate, State& s
     record.p1 = candidate.stress.p1;
     record.p3 = candidate.stress.p3;
     return record;
+}
+
+void weaken_together(const Model& model, const std::vector<CrackCandidate>& broken, double axial_strain, Step& step) {
+    ++step.crack_passes;
+    for (const CrackCandidate& candidate : broken) {
+        CrackRecord record = weaken(model, candidate, step.end);
+        record.pass = step.crack_passes;
+        record.axial_strain = axial_strain;
+        step.cracks.push_back(record);
+    }
+    std::ranges::sort(step.end.body.contacts, {}, &ContactMemory::key);
 }
 
 } // namespace kluft

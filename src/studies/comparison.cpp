@@ -194,11 +194,14 @@ std::optional<double> time_steps(const FinishedRun& run) {
 /// Linear solves, of which an explicit run has none.
 std::optional<double> solves(const FinishedRun& run) {
     if (run.summary && run.summary->motion) return std::nullopt;
-    return run.numbers.open_close_iterations;
+    if (run.summary) return run.summary->costs.open_close_iterations;
+    double sum = 0.0;
+    for (const StepRecord& row : run.history) sum += row.open_close_iterations;
+    return sum;
 }
 
 std::optional<double> elapsed(const FinishedRun& run) {
-    if (run.summary) return run.summary->elapsed_s;
+    if (run.summary) return run.summary->costs.elapsed_s;
     return run.history.back().elapsed_s > 0.0 ? std::optional(run.history.back().elapsed_s) : std::nullopt;
 }
 
@@ -370,8 +373,8 @@ Comparison compare_runs(const FinishedRun& a, const FinishedRun& b, double toler
     if (curves) table.curve_end = curves->end;
     TableWriter writer(table);
     add_mechanics(a.numbers, b.numbers, a.platen_stage || b.platen_stage, writer);
-    const auto factor_a = a.summary ? a.summary->factor_of_safety : std::nullopt;
-    const auto factor_b = b.summary ? b.summary->factor_of_safety : std::nullopt;
+    const auto factor_a = a.summary ? a.summary->results.factor_of_safety : std::nullopt;
+    const auto factor_b = b.summary ? b.summary->results.factor_of_safety : std::nullopt;
     if (factor_a || factor_b)
         writer.judge(writer.add("factor_of_safety", "factor of safety", "", 1.0, factor_a, factor_b));
     add_cracks(a, b, comparison, writer);

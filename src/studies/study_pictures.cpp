@@ -95,8 +95,8 @@ std::optional<CaseRun> read_case_run(const fs::path& directory) {
         const RunSummary summary = read_summary(directory / "summary.json");
         CaseRun run;
         run.unbalanced_steps = summary.numbers.unbalanced_steps;
-        if (!summary.motion && summary.numbers.open_close_iterations > 0)
-            run.solves = summary.numbers.open_close_iterations;
+        if (!summary.motion && summary.costs.open_close_iterations > 0)
+            run.solves = summary.costs.open_close_iterations;
         if (!summary.platen_stage) return run;
         const auto rows = read_history(directory / "history.csv", needed_columns);
         for (const StepRecord& row : platen_rows(rows, *summary.platen_stage))

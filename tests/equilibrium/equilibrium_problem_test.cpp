@@ -9,6 +9,7 @@
 
 #include "kluft/constitutive/lattice_stiffness.hpp"
 #include "support/lattice_body.hpp"
+#include "support/owned_problem.hpp"
 
 namespace kluft {
 namespace {
@@ -28,21 +29,21 @@ struct Body {
         cut_scenes::add_trace(spec, {{0.3, -0.1}, {0.23, 0.5}}, joint);
         system = cut_blocks(spec).system;
         q = random_motion(system, 3e-4, uniform);
-        problem.system = &system;
-        problem.moduli = &moduli;
-        problem.laws = &laws;
-        problem.bonds = bonds_at(system, {1, 0}, at_rest(system));
-        for (auto& each : problem.bonds) each.shear_start = {uniform(-1e6, 1e6), uniform(-1e6, 1e6)};
+        problem.body.system = &system;
+        problem.body.moduli = &moduli;
+        problem.body.laws = &laws;
+        problem.placement.bonds = bonds_at(system, {1, 0}, at_rest(system));
+        for (auto& each : problem.placement.bonds) each.shear_start = {uniform(-1e6, 1e6), uniform(-1e6, 1e6)};
         problem.start = random_motion(system, 3e-4, uniform);
         problem.eta.assign(system.blocks.size(), 0.0);
         for (double& eta : problem.eta) eta = uniform(1e9, 1e11);
-        problem.densities = {2500.0};
-        problem.gravity = {1.5, -9.0};
+        problem.set_density(2500.0);
+        problem.loads.gravity = {1.5, -9.0};
     }
     void add_contacts() {
         const auto state = random_motion(system, 3e-4, uniform);
-        problem.contacts = detect_contacts(system, surfaces_of(system, {1, 0}, laws), state, 0.01, {}).points;
-        for (auto& point : problem.contacts) {
+        problem.placement.contacts = detect_contacts(system, surfaces_of(system, {1, 0}, laws), state, 0.01, {}).points;
+        for (auto& point : problem.placement.contacts) {
             point.history.shear_trial = uniform(-2e6, 2e6);
             point.history.dilation = uniform(0.0, 1e-5);
         }
@@ -50,9 +51,9 @@ struct Body {
     void add_pressures() {
         for (int boundary = 0; boundary < 4; ++boundary) {
             const auto more = pressure_edges(system, boundary);
-            problem.pressure_edges.insert(problem.pressure_edges.end(), more.begin(), more.end());
+            problem.loads.pressure_edges.insert(problem.loads.pressure_edges.end(), more.begin(), more.end());
         }
-        problem.pressures = {1e8, 2e8, 3e8, 4e8};
+        problem.loads.pressures = {1e8, 2e8, 3e8, 4e8};
     }
 
     Uniform uniform;
@@ -68,7 +69,7 @@ struct Body {
     std::vector<ElasticModuli> moduli{plane_moduli(10e9, 0.25, Plane::strain)};
     BlockSystem system;
     Eigen::VectorXd q;
-    EquilibriumProblem problem;
+    OwnedProblem problem;
 };
 
 Eigen::MatrixXd tangent_of(const EquilibriumProblem& problem, const Eigen::VectorXd& q, TangentKind kind) {
@@ -111,8 +112,8 @@ TEST(EquilibriumProblem, ExactTangentIsTheDerivativeOfTheResidualInEveryContactS
         Body body(seed);
         body.add_contacts();
         body.add_pressures();
-        for (int i = 0; i < static_cast<int>(body.problem.contacts.size()); ++i) {
-            ++seen[static_cast<std::size_t>(contact_traction(body.problem, i, body.q).state)];
+        for (int i = 0; i < static_cast<int>(body.problem.placement.contacts.size()); ++i) {
+            ++seen[static_cast<std::size_t>(contact_traction(body.problem.body, i, body.q).state)];
         }
         const Eigen::MatrixXd exact = tangent_of(body.problem, body.q, TangentKind::exact);
         const Eigen::MatrixXd expected = differences_of(body.problem, body.q, 1e-9);
@@ -132,7 +133,7 @@ TEST(EquilibriumProblem, SlidingPointsAndFollowerPressuresMakeTheExactTangentUns
     EXPECT_LT(skew(), 1e-14); // elastic and bonded
     body.add_pressures();
     EXPECT_GT(skew(), 1e-4);
-    body.problem.pressures.assign(4, 0.0);
+    body.problem.loads.pressures.assign(4, 0.0);
     EXPECT_LT(skew(), 1e-14);
     body.add_contacts();
     EXPECT_GT(skew(), 1e-4);
@@ -164,13 +165,13 @@ TEST(EquilibriumProblem, SymmetricTangentIsSymmetricAndHasNoNegativeEigenvalue) 
 TEST(EquilibriumProblem, TouchingTangentOfABodyAtRestIsThatOfBondsOfTheSameStiffness) {
     Body body(1);
     const auto rest = at_rest(body.system);
-    body.problem.contacts =
+    body.problem.placement.contacts =
         detect_contacts(body.system, surfaces_of(body.system, {1, 0}, body.laws), rest, 1e-3, {}).points;
-    ASSERT_FALSE(body.problem.contacts.empty());
+    ASSERT_FALSE(body.problem.placement.contacts.empty());
     const Eigen::MatrixXd touching = tangent_of(body.problem, rest, TangentKind::touching);
     EXPECT_GT((touching - tangent_of(body.problem, rest, TangentKind::exact)).norm(), 0.01 * touching.norm());
-    body.problem.contacts.clear();
-    body.problem.bonds = bonds_at(body.system, {1, 1}, rest);
+    body.problem.placement.contacts.clear();
+    body.problem.placement.bonds = bonds_at(body.system, {1, 1}, rest);
     const Eigen::MatrixXd bonded = tangent_of(body.problem, rest, TangentKind::exact);
     EXPECT_LT((touching - bonded).cwiseAbs().maxCoeff(), 1e-12 * bonded.cwiseAbs().maxCoeff());
 }
@@ -199,7 +200,7 @@ double energy(const Body& body, const Eigen::VectorXd& q) {
         const Mat2 f = deformation_gradient(q, b, block.size);
         const Vec2 stretch = Eigen::JacobiSVD<Mat2>(f).singularValues() - Vec2::Ones();
         sum += block.area * (m.mu * stretch.squaredNorm() + 0.5 * m.lambda * stretch.sum() * stretch.sum());
-        sum -= 2500.0 * block.area * body.problem.gravity.dot(displacement_at(q, b, Vec2::Zero()));
+        sum -= 2500.0 * block.area * body.problem.loads.gravity.dot(displacement_at(q, b, Vec2::Zero()));
         sum += 0.5 * body.problem.eta[b] * integral(system, b, [&](const Vec2& x) {
                    const Vec2 xi = (x - block.centroid) / block.size;
                    return (displacement_at(q, b, xi) - displacement_at(body.problem.start, b, xi)).squaredNorm();
@@ -219,7 +220,7 @@ double energy(const Body& body, const Eigen::VectorXd& q) {
             };
             const Vec2 opening = moved(interface.block_b) - moved(interface.block_a);
             const double gap = n.dot(opening), slip = t.dot(opening);
-            const double shear = body.problem.bonds[bonds].shear_start[k];
+            const double shear = body.problem.placement.bonds[bonds].shear_start[k];
             sum += 0.5 * extent.norm() * (0.5 * 1e11 * gap * gap + shear * slip + 0.5 * 4e10 * slip * slip);
         }
         ++bonds;
@@ -259,7 +260,7 @@ TEST(EquilibriumProblem, SparseTangentAgreesWithTheDenseSumOfItsParts) {
     body.add_contacts();
     body.add_pressures();
     const BlockSystem& system = body.system;
-    const EquilibriumProblem& problem = body.problem;
+    const OwnedProblem& problem = body.problem;
     Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(body.q.size(), body.q.size());
     const auto opening_at = [&](const auto& pair, const Vec2& xi_a, const Vec2& xi_b) -> Shape {
         const Block& a = system.blocks[pair.block_a];
@@ -274,17 +275,17 @@ TEST(EquilibriumProblem, SparseTangentAgreesWithTheDenseSumOfItsParts) {
         frame.col(1) = along;
         sum += weight * opening.transpose() * frame * tangent * frame.transpose() * opening;
     };
-    for (int i = 0; i < static_cast<int>(problem.bonds.size()); ++i) {
-        const Bond& each = problem.bonds[i];
+    for (int i = 0; i < static_cast<int>(problem.placement.bonds.size()); ++i) {
+        const Bond& each = problem.placement.bonds[i];
         for (int k = 0; k < n_bond_points; ++k) {
             add_point(each.weight, opening_at(each, each.xi_a[k], each.xi_b[k]), each.normal(), each.tangent,
-                      bond_traction(problem, i, k, body.q).tangent);
+                      bond_traction(problem.body, i, k, body.q).tangent);
         }
     }
-    for (int i = 0; i < static_cast<int>(problem.contacts.size()); ++i) {
-        const ContactPoint& point = problem.contacts[i];
+    for (int i = 0; i < static_cast<int>(problem.placement.contacts.size()); ++i) {
+        const ContactPoint& point = problem.placement.contacts[i];
         add_point(point.weight, opening_at(point, point.xi_a, point.xi_b), point.normal, point.tangent,
-                  contact_traction(problem, i, body.q).tangent);
+                  contact_traction(problem.body, i, body.q).tangent);
     }
     for (int b = 0; b < system.n_blocks(); ++b) {
         const Block& block = system.blocks[b];
@@ -306,7 +307,7 @@ TEST(EquilibriumProblem, SparseTangentAgreesWithTheDenseSumOfItsParts) {
             const Edge& edge = system.blocks[b].edges[e];
             const Vec2& start = edge_start(system, edge);
             const Vec2& end = edge_end(system, edge);
-            sum += problem.pressures[boundary] * shape_at(system, b, 0.5 * (start + end)).transpose() * turn *
+            sum += problem.loads.pressures[boundary] * shape_at(system, b, 0.5 * (start + end)).transpose() * turn *
                    (shape_at(system, b, end) - shape_at(system, b, start));
         }
     }
@@ -320,12 +321,12 @@ TEST(EquilibriumProblem, ForcesBetweenBlocksCancelInTheSumOverTheBody) {
     Body body(9);
     body.add_contacts();
     body.add_pressures();
-    body.problem.pressures = {1e8, 0.0, 0.0, 0.0};
+    body.problem.loads.pressures = {1e8, 0.0, 0.0, 0.0};
     body.problem.eta.clear();
     const Eigen::VectorXd forces = forces_of(body.problem, at_rest(body.system));
     Vec2 sum = Vec2::Zero();
     for (int b = 0; b < body.system.n_blocks(); ++b) sum += forces.segment<2>(6 * b);
-    const Vec2 loads = 2500.0 * 0.5 * 0.4 * body.problem.gravity + Vec2(0.0, 1e8 * 0.5);
+    const Vec2 loads = 2500.0 * 0.5 * 0.4 * body.problem.loads.gravity + Vec2(0.0, 1e8 * 0.5);
     EXPECT_LT((sum + loads).norm(), 1e-10 * forces.norm());
 }
 
@@ -333,8 +334,8 @@ TEST(EquilibriumProblem, ForcesBetweenBlocksCancelInTheSumOverTheBody) {
 TEST(EquilibriumProblem, SmallBlockCountsWithTheLeastAreaInTheMassLikeTerm) {
     GeometrySpec spec = cut_scenes::rectangle(1.0, 1.0);
     const BlockSystem system = cut_blocks(spec).system;
-    EquilibriumProblem problem;
-    problem.system = &system;
+    OwnedProblem problem;
+    problem.body.system = &system;
     problem.eta = {3e6};
     problem.start = at_rest(system);
     Eigen::VectorXd q = at_rest(system);

@@ -6,8 +6,10 @@
 #include <gtest/gtest.h>
 
 #include "kluft/constitutive/lattice_stiffness.hpp"
+#include "kluft/loading/boundary_geometry.hpp"
 #include "kluft/simulation/stage_loads.hpp"
 #include "support/lattice_body.hpp"
+#include "support/owned_problem.hpp"
 
 namespace kluft {
 namespace {
@@ -21,25 +23,25 @@ struct PressedBody {
         GeometrySpec spec = hexagon_spec(0.5, 0.6, 0.1, {0.03, 0.04}, bond);
         cut_scenes::add_trace(spec, {{-0.1, 0.25}, {0.6, 0.4}}, joint);
         system = cut_blocks(spec).system;
-        problem.system = &system;
-        problem.moduli = &moduli;
-        problem.laws = &laws;
-        problem.bonds = bonds_at(system, is_bond, at_rest(system));
+        problem.body.system = &system;
+        problem.body.moduli = &moduli;
+        problem.body.laws = &laws;
+        problem.placement.bonds = bonds_at(system, is_bond, at_rest(system));
         if (!is_bond[joint]) {
-            problem.contacts =
+            problem.placement.contacts =
                 detect_contacts(system, surfaces_of(system, is_bond, laws), at_rest(system), 0.01, {}).points;
         }
-        problem.pressure_edges = pressure_edges(system, 1);
-        problem.pressures = {0.0, 2e6, 0.0, 0.0};
+        problem.loads.pressure_edges = pressure_edges(system, 1);
+        problem.loads.pressures = {0.0, 2e6, 0.0, 0.0};
         std::vector<PrescribedDisplacement> rows;
         add_rows(0, 0.0, 0.0, rows);
         rows.push_back({rows.front().block, rows.front().xi, Vec2::UnitX(), 0, 0.0});
         rows.push_back({rows[2].block, rows[2].xi, Vec2::UnitX(), 0, 0.0});
         add_rows(2, travelling ? 0.0 : -4e-4, travelling ? -1.0 : 0.0, rows);
-        problem.constraints = Constraints(rows);
+        problem.loads.constraints = Constraints(rows);
         if (travelling) {
-            problem.platen_force = width_across(system, 2);
-            problem.platen_force->stress = 5e6;
+            problem.loads.platen_force = width_across(system, 2);
+            problem.loads.platen_force->stress = 5e6;
         }
     }
 
@@ -58,7 +60,7 @@ struct PressedBody {
                                     .friction_rounding = 0.1}};
     std::vector<ElasticModuli> moduli{plane_moduli(10e9, 0.25, Plane::strain)};
     BlockSystem system;
-    EquilibriumProblem problem;
+    OwnedProblem problem;
 
 private:
     void add_rows(int boundary, double target, double rate, std::vector<PrescribedDisplacement>& rows) const {
@@ -73,12 +75,12 @@ private:
 
 /// The same equilibrium by another method: Newton on the dense system with a Lagrange multiplier for every row and the
 /// travel of the platen as an unknown, without projection, limits or search. The start is near enough.
-Eigen::VectorXd dense_equilibrium(const EquilibriumProblem& problem, Eigen::VectorXd q) {
+Eigen::VectorXd dense_equilibrium(const OwnedProblem& problem, Eigen::VectorXd q) {
     const BlockPattern pattern = pattern_of(problem);
     EquilibriumEvaluator evaluator(problem, pattern);
-    const auto& rows = problem.constraints.rows();
+    const auto& rows = problem.loads.constraints.rows();
     const Eigen::Index n = q.size(), m = static_cast<Eigen::Index>(rows.size());
-    const bool travels = problem.platen_force.has_value();
+    const bool travels = problem.loads.platen_force.has_value();
     Eigen::MatrixXd c = Eigen::MatrixXd::Zero(m, n);
     Eigen::VectorXd rate(m), target(m);
     for (Eigen::Index i = 0; i < m; ++i) {
@@ -102,7 +104,7 @@ Eigen::VectorXd dense_equilibrium(const EquilibriumProblem& problem, Eigen::Vect
         right.head(n) = -(residual.forces + c.transpose() * multipliers);
         right.segment(n, m) = target + rate * travel - c * q;
         if (travels) { // the platen is in balance: -rate . multipliers = stress (width + widening . q)
-            const PlatenForce& force = *problem.platen_force;
+            const PlatenForce& force = *problem.loads.platen_force;
             system.block(n + m, n, 1, m) = -rate.transpose();
             system.block(n + m, 0, 1, n) = -force.stress * force.widening.transpose();
             right[n + m] = force.at(q) + rate.dot(multipliers);
@@ -165,17 +167,17 @@ TEST(OpenCloseSolver, ReactionOfATravellingPlatenIsItsForce) {
     EquilibriumEvaluator(body.problem, pattern).residual(q, residual);
     const double width = 0.5 + mean_displacement(body.system, q, 1).x() - mean_displacement(body.system, q, 3).x();
     EXPECT_NE(width, 0.5);
-    EXPECT_NEAR(body.problem.constraints.reaction(residual.forces, 2).y(), -5e6 * width, 1e-6 * 5e6);
+    EXPECT_NEAR(body.problem.loads.constraints.reaction(residual.forces, 2).y(), -5e6 * width, 1e-6 * 5e6);
     // Statics of the whole body: the bottom carries the platen's force and the pressure on the right side.
     Vec2 loads(0.0, -5e6 * width);
-    for (const PressureEdge& edge : body.problem.pressure_edges) loads += pressure_force(edge, 2e6, q);
-    EXPECT_LT((body.problem.constraints.reaction(residual.forces, 0) + loads).norm(), 1e-6 * 5e6);
+    for (const PressureEdge& edge : body.problem.loads.pressure_edges) loads += pressure_force(edge, 2e6, q);
+    EXPECT_LT((body.problem.loads.constraints.reaction(residual.forces, 0) + loads).norm(), 1e-6 * 5e6);
 }
 
 // A linear problem (bonded, without rotation or pressure) takes one solution.
 TEST(OpenCloseSolver, BondedColumnIsSolvedAtOnce) {
     PressedBody body(false, {1, 1});
-    body.problem.pressures.assign(4, 0.0);
+    body.problem.loads.pressures.assign(4, 0.0);
     Eigen::VectorXd q = at_rest(body.system);
     const auto summary = body.solve(q);
     EXPECT_TRUE(summary.converged());
@@ -185,7 +187,7 @@ TEST(OpenCloseSolver, BondedColumnIsSolvedAtOnce) {
 // Newton with an exact tangent, that of the platen's force by the width included: each iteration squares the error.
 TEST(OpenCloseSolver, BondedBodyUnderATravellingPlatenConvergesQuadratically) {
     PressedBody body(true, {1, 1});
-    body.problem.platen_force->stress = 5e7; // 0.5 % of E: an error of the tangent shows
+    body.problem.loads.platen_force->stress = 5e7; // 0.5 % of E: an error of the tangent shows
     const auto ratio_after = [&](int iterations) {
         OpenCloseOptions options;
         options.reuse = false; // linear solves to round-off
@@ -202,7 +204,7 @@ TEST(OpenCloseSolver, BondedBodyUnderATravellingPlatenConvergesQuadratically) {
 
 TEST(OpenCloseSolver, NoBlockMovesByMoreThanTheLimitInOneIteration) {
     PressedBody body(false, {1, 1});
-    body.problem.pressures[1] = 2e9;
+    body.problem.loads.pressures[1] = 2e9;
     OpenCloseOptions options;
     options.max_iterations = 1;
     options.motion_limit = 0.02;
@@ -218,7 +220,7 @@ TEST(OpenCloseSolver, NoBlockMovesByMoreThanTheLimitInOneIteration) {
 
 TEST(OpenCloseSolver, BodyThatNothingHoldsHasNoEquilibrium) {
     PressedBody body(false, {1, 1});
-    body.problem.constraints = Constraints();
+    body.problem.loads.constraints = Constraints();
     Eigen::VectorXd q = at_rest(body.system);
     EXPECT_FALSE(body.solve(q).converged());
 }

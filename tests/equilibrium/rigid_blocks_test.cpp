@@ -8,6 +8,7 @@
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/equilibrium/open_close_solver.hpp"
 #include "support/lattice_body.hpp"
+#include "support/owned_problem.hpp"
 
 namespace kluft {
 namespace {
@@ -27,23 +28,23 @@ struct RigidBody {
         for (double& value : motion) value = uniform(-3e-4, 3e-4);
         const Eigen::VectorXd frames = q;
         move_rigid(system, motion, 1.0, q);
-        problem.kinematics = Kinematics::rigid;
-        problem.system = &system;
-        problem.moduli = &moduli;
-        problem.laws = &laws;
-        problem.bonds = bonds_at(system, {1, 0}, frames);
-        problem.contacts = detect_contacts(system, surfaces_of(system, {1, 0}, laws), q, 0.01, {}).points;
-        for (auto& point : problem.contacts) point.history.shear_trial = uniform(-2e6, 2e6);
+        problem.body.kinematics = Kinematics::rigid;
+        problem.body.system = &system;
+        problem.body.moduli = &moduli;
+        problem.body.laws = &laws;
+        problem.placement.bonds = bonds_at(system, {1, 0}, frames);
+        problem.placement.contacts = detect_contacts(system, surfaces_of(system, {1, 0}, laws), q, 0.01, {}).points;
+        for (auto& point : problem.placement.contacts) point.history.shear_trial = uniform(-2e6, 2e6);
         problem.start = frames;
         problem.eta.assign(system.blocks.size(), 0.0);
         for (double& eta : problem.eta) eta = uniform(1e9, 1e11);
-        problem.densities = {2500.0};
-        problem.gravity = {1.5, -9.0};
+        problem.set_density(2500.0);
+        problem.loads.gravity = {1.5, -9.0};
         for (int boundary = 0; boundary < 4; ++boundary) {
             const auto more = pressure_edges(system, boundary);
-            problem.pressure_edges.insert(problem.pressure_edges.end(), more.begin(), more.end());
+            problem.loads.pressure_edges.insert(problem.loads.pressure_edges.end(), more.begin(), more.end());
         }
-        problem.pressures = {1e8, 2e8, 3e8, 4e8};
+        problem.loads.pressures = {1e8, 2e8, 3e8, 4e8};
     }
 
     Uniform uniform;
@@ -56,7 +57,7 @@ struct RigidBody {
     std::vector<ElasticModuli> moduli{plane_moduli(10e9, 0.2, Plane::strain)};
     BlockSystem system;
     Eigen::VectorXd q;
-    EquilibriumProblem problem;
+    OwnedProblem problem;
 };
 
 // Central differences of T' R along the motions of the blocks, at rotations of any size.
@@ -100,14 +101,14 @@ TEST(RigidBlocks, BlockTurnedByARightAngleInStepsKeepsItsArea) {
     const double size = system.blocks[0].size;
     const std::vector<InterfaceLaw> laws(1);
     const std::vector<ElasticModuli> moduli{plane_moduli(1e9, 0.2, Plane::strain)};
-    EquilibriumProblem problem;
-    problem.kinematics = Kinematics::rigid;
-    problem.system = &system;
-    problem.moduli = &moduli;
-    problem.laws = &laws;
+    OwnedProblem problem;
+    problem.body.kinematics = Kinematics::rigid;
+    problem.body.system = &system;
+    problem.body.moduli = &moduli;
+    problem.body.laws = &laws;
     problem.eta = {1e6};
-    problem.densities = {2500.0};
-    problem.gravity = {0.0, -10.0};
+    problem.set_density(2500.0);
+    problem.loads.gravity = {0.0, -10.0};
     const BlockPattern pattern = pattern_of(problem);
     LinearSolver linear;
     linear.analyze(pattern);
@@ -125,7 +126,7 @@ TEST(RigidBlocks, BlockTurnedByARightAngleInStepsKeepsItsArea) {
             rows.push_back({0, xi, Vec2::UnitX(), 0, u.x()});
             rows.push_back({0, xi, Vec2::UnitY(), 0, u.y()});
         }
-        problem.constraints = Constraints(rows, system, q);
+        problem.loads.constraints = Constraints(rows, system, q);
         problem.start = q;
         const auto summary = solver.solve(problem, pattern, q);
         ASSERT_TRUE(summary.converged()) << step;
@@ -143,11 +144,11 @@ struct RigidPatch {
         laws = {{.normal_stiffness = stiffness.normal, .shear_stiffness = stiffness.shear}};
         moduli = {plane_moduli(e, nu, plane)};
         system = cut_blocks(hexagon_spec(10.3 * d, 9.7 * d, d)).system;
-        problem.kinematics = Kinematics::rigid;
-        problem.system = &system;
-        problem.moduli = &moduli;
-        problem.laws = &laws;
-        problem.bonds = bonds_at(system, {1}, at_rest(system));
+        problem.body.kinematics = Kinematics::rigid;
+        problem.body.system = &system;
+        problem.body.moduli = &moduli;
+        problem.body.laws = &laws;
+        problem.placement.bonds = bonds_at(system, {1}, at_rest(system));
         std::vector<int> whole_neighbours(system.blocks.size(), 0);
         const auto whole = [&](int b) {
             return system.blocks[b].edges.size() == 6 &&
@@ -169,13 +170,13 @@ struct RigidPatch {
             rows.push_back({b, {1, 0}, Vec2::UnitY(), 0, u.y()});
         }
         q = at_rest(system);
-        problem.constraints = Constraints(rows, system, q);
+        problem.loads.constraints = Constraints(rows, system, q);
     }
 
     std::vector<InterfaceLaw> laws;
     std::vector<ElasticModuli> moduli;
     BlockSystem system;
-    EquilibriumProblem problem;
+    OwnedProblem problem;
     std::vector<int> free_blocks;
     Eigen::VectorXd q;
 };
@@ -199,7 +200,7 @@ TEST(RigidBlocks, LatticeOfRigidHexagonsHasTheModuliOfTheRock) {
             ASSERT_TRUE(OpenCloseSolver(linear, options).solve(patch.problem, pattern, q).converged());
             const ElasticModuli& rock = patch.moduli.front();
             const Mat2 expected = 2 * rock.mu * strain + rock.lambda * strain.trace() * Mat2::Identity();
-            const auto stresses = block_stresses(patch.problem, q);
+            const auto stresses = block_stresses(patch.problem.body, q);
             for (const int b : patch.free_blocks) {
                 EXPECT_LT((stresses[b] - expected).norm(), 1e-6 * expected.norm());
                 EXPECT_NEAR(rotation_of(q, b, patch.system.blocks[b].size), 0.0, 1e-6 * strain.norm());

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "support/lattice_body.hpp"
+#include "support/owned_problem.hpp"
 
 namespace kluft {
 namespace {
@@ -22,11 +23,11 @@ struct CutBody {
 
     /// Which interface types are bonds; the others are fractures, detected in the body as it was cut.
     void set_bonds(const std::vector<char>& is_bond) {
-        problem.system = &system;
-        problem.moduli = &moduli;
-        problem.laws = &laws;
-        problem.bonds = bonds_at(system, is_bond, at_rest(system));
-        problem.contacts =
+        problem.body.system = &system;
+        problem.body.moduli = &moduli;
+        problem.body.laws = &laws;
+        problem.placement.bonds = bonds_at(system, is_bond, at_rest(system));
+        problem.placement.contacts =
             detect_contacts(system, surfaces_of(system, is_bond, laws), at_rest(system), 0.01, {}).points;
     }
 
@@ -38,9 +39,9 @@ struct CutBody {
             EquilibriumEvaluator(p, pairs).tangent(q, TangentKind::symmetric, stiffness);
             return dense(stiffness);
         };
-        EquilibriumProblem without = problem;
-        without.bonds.clear();
-        without.contacts.clear();
+        OwnedProblem without = problem;
+        without.placement.bonds.clear();
+        without.placement.contacts.clear();
         return tangent(problem) - tangent(without);
     }
 
@@ -65,7 +66,7 @@ struct CutBody {
                                    {.normal_stiffness = 5e10, .shear_stiffness = 2e10, .tan_friction = 0.6}};
     std::vector<ElasticModuli> moduli{plane_moduli(10e9, 0.25, Plane::strain)};
     BlockSystem system;
-    EquilibriumProblem problem;
+    OwnedProblem problem;
     mutable BlockPattern pattern;
     mutable BlockMatrix matrix;
 };

@@ -157,12 +157,12 @@ struct Comparison {
 };
 
 Comparison compare(const PosedStep& step, const Eigen::VectorXd& q, const OracleSolution& oracle) {
-    const LoadedBody& body = step.problem();
+    const LoadedBody& body = step.body();
     Comparison result;
     double largest_force = 0.0;
-    for (std::size_t i = 0; i < body.contacts.size(); ++i) {
+    for (std::size_t i = 0; i < body.placement->contacts.size(); ++i) {
         const auto traction = contact_traction(body, static_cast<int>(i), q);
-        const double weight = body.contacts[i].weight;
+        const double weight = body.placement->contacts[i].weight;
         largest_force = std::max(largest_force, -weight * traction.normal);
         result.normal_forces =
             std::max(result.normal_forces, std::abs(-weight * traction.normal - oracle.normal_forces[i]));
@@ -185,9 +185,9 @@ void report(const std::string& name, const PosedStep& step, const OracleSolution
     testing::Test::RecordProperty("displacements", fmt::format("{:.2e}", c.displacements));
     if (std::getenv("KLUFT_ORACLE_TABLE") == nullptr) return;
     fmt::print("| {} | {} | {} | {} | {} / {} / {} | {:.0e} | {:.0e} | {:.0e} | {:.0e} | {} | {} |\n", name,
-               step.problem().system->n_blocks(), oracle.n_unknowns, step.problem().contacts.size(), c.open, c.sliding,
-               c.locked, c.normal_forces, c.shear_forces, c.displacements, c.other_guess, oracle.ipopt_iterations,
-               oracle.outer_iterations);
+               step.body().system->n_blocks(), oracle.n_unknowns, step.body().placement->contacts.size(), c.open,
+               c.sliding, c.locked, c.normal_forces, c.shear_forces, c.displacements, c.other_guess,
+               oracle.ipopt_iterations, oracle.outer_iterations);
 }
 
 /// Difference of the displacements where the iteration starts beyond the solution, with noise as large as the step.
@@ -207,9 +207,9 @@ Comparison expect_agreement(const std::string& name, const Scene& scene, int loa
     EXPECT_TRUE(step.run_is_balanced());
     const auto kluft = step.solve_by_open_close(tolerance, balance, step.start());
     EXPECT_TRUE(kluft.converged) << kluft.residual_ratio << " " << kluft.viscous_share;
-    const OracleSolution oracle = solve_by_minimisation(step.problem(), step.start());
+    const OracleSolution oracle = solve_by_minimisation(step.body(), step.start());
     EXPECT_TRUE(oracle.converged) << oracle.diagnosis << " " << oracle.last_change;
-    if (oracle.normal_forces.empty() && !step.problem().contacts.empty()) return {};
+    if (oracle.normal_forces.empty() && !step.body().placement->contacts.empty()) return {};
     Comparison result = compare(step, kluft.q, oracle);
     result.other_guess = other_guess(step, kluft.q);
     report(name, step, oracle, result);
@@ -231,7 +231,7 @@ Lagged lagged_at(const LoadedBody& body, const Eigen::VectorXd& q) {
 // Central differences with step h: error h^2/6 f''' and round-off of the energy over h, together below 1e-6.
 TEST(OraclePotential, HasTheGradientAndTheHessianOfItsEnergy) {
     PosedStep step(hexagons("joint"), 4);
-    const LoadedBody& body = step.problem();
+    const LoadedBody& body = step.body();
     const Potential potential = pose_minimum(body, step.start(), lagged_at(body, step.start())).potential;
     const Eigen::VectorXd x = random_vector(potential.n_unknowns, 0.01, 1);
     const Eigen::VectorXd direction = random_vector(potential.n_unknowns, 1.0, 2);
@@ -250,7 +250,7 @@ TEST(OraclePotential, HasTheGradientAndTheHessianOfItsEnergy) {
 // forces of the law: the derivatives of the energy less the pressure of the contacts. To round-off.
 TEST(OraclePotential, HasTheForcesOfTheLibraryAsItsDerivatives) {
     PosedStep step(hexagons("joint"), 4);
-    const LoadedBody& body = step.problem();
+    const LoadedBody& body = step.body();
     unsigned seed = 0;
     for (const double amplitude : {3e-4, 3e-3, 3e-2}) { // m; the last turns hexagons of 0.1 m by some 20 degrees
         const Eigen::VectorXd q = step.start() + random_vector(step.start().size(), amplitude, ++seed);
@@ -259,7 +259,7 @@ TEST(OraclePotential, HasTheForcesOfTheLibraryAsItsDerivatives) {
         const PosedMinimum posed = pose_minimum(body, step.start(), lagged);
         const Eigen::VectorXd x = closest_unknowns(posed, body, lagged, step.start(), q);
         Eigen::VectorXd forces = posed.potential.gradient(x).head(q.size());
-        for (std::size_t i = 0; i < body.contacts.size(); ++i) {
+        for (std::size_t i = 0; i < body.placement->contacts.size(); ++i) {
             for (const auto& term : posed.potential.inequalities[i].terms) {
                 if (term.unknown < q.size()) forces[term.unknown] -= normal_forces[i] * term.factor;
             }
@@ -330,7 +330,7 @@ TEST(Oracle, NoticesAShearStiffnessThatIsWrongByAThousandth) {
     set_blas_threads(1);
     PosedStep step(hexagons("joint"), 8);
     const auto kluft = step.solve_by_open_close(tolerance, balance, step.start());
-    LoadedBody body = step.problem();
+    LoadedBody body = step.body();
     std::vector<InterfaceLaw> laws = *body.laws;
     for (InterfaceLaw& law : laws) law.shear_stiffness *= 1.001;
     body.laws = &laws;

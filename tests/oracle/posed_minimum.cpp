@@ -60,8 +60,9 @@ LinearForm slip_form(const ContactPoint& point, double stiffness, const Eigen::V
 }
 
 void refuse_what_is_missing(const LoadedBody& body) {
-    if (body.platen_force) throw std::invalid_argument("a platen loaded by stress is not part of the formulation");
-    for (const ContactPoint& point : body.contacts) {
+    if (body.loads->platen_force)
+        throw std::invalid_argument("a platen loaded by stress is not part of the formulation");
+    for (const ContactPoint& point : body.placement->contacts) {
         const InterfaceLaw& law = (*body.laws)[point.law];
         if (law.contact_rounding != 0.0 || law.friction_rounding != 0.0)
             throw std::invalid_argument("rounded laws are not part of the formulation");
@@ -75,14 +76,14 @@ void add_blocks(const LoadedBody& body, const Eigen::VectorXd& start, Potential&
         const ElasticModuli& moduli = (*body.moduli)[block.material];
         const int first = unknowns_per_block * b + 2;
         potential.blocks.push_back({first, std::sqrt(block.area), moduli.mu, moduli.lambda, start.segment<4>(first)});
-        if (body.densities.empty()) continue;
+        if (body.densities == nullptr) continue;
         potential.linear.segment<2>(unknowns_per_block * b) -=
-            body.densities[block.material] * block.area * body.gravity;
+            (*body.densities)[block.material] * block.area * body.loads->gravity;
     }
 }
 
 void add_bonds(const LoadedBody& body, const Eigen::VectorXd& start, Potential& potential) {
-    for (const Bond& bond : body.bonds) {
+    for (const Bond& bond : body.placement->bonds) {
         const InterfaceLaw& law = (*body.laws)[bond.law];
         const Vec2 normal(bond.tangent.y(), -bond.tangent.x());
         for (std::size_t k = 0; k < bond.xi_a.size(); ++k) {
@@ -99,8 +100,8 @@ void add_bonds(const LoadedBody& body, const Eigen::VectorXd& start, Potential& 
 }
 
 void add_pressures(const LoadedBody& body, const std::vector<Vec2>& forces, Potential& potential) {
-    for (std::size_t i = 0; i < body.pressure_edges.size(); ++i) {
-        const PressureEdge& edge = body.pressure_edges[i];
+    for (std::size_t i = 0; i < body.loads->pressure_edges.size(); ++i) {
+        const PressureEdge& edge = body.loads->pressure_edges[i];
         const double weights[] = {1.0, edge.xi_middle.x(), edge.xi_middle.y()};
         for (int k = 0; k < 3; ++k)
             potential.linear.segment<2>(unknowns_per_block * edge.block + 2 * k) -= weights[k] * forces[i];
@@ -110,7 +111,7 @@ void add_pressures(const LoadedBody& body, const std::vector<Vec2>& forces, Pote
 /// Of each block as many prescribed displacements as are independent: the others follow.
 void add_conditions(const LoadedBody& body, const Eigen::VectorXd& start, Potential& potential) {
     std::map<int, std::vector<LinearForm>> forms_of_block;
-    for (const PrescribedDisplacement& row : body.constraints.rows()) {
+    for (const PrescribedDisplacement& row : body.loads->constraints.rows()) {
         LinearForm form;
         add_displacement(form, row.block, row.xi, row.direction, 1.0, start);
         form.constant -= row.target;
@@ -139,16 +140,16 @@ double largest(const std::vector<double>& values) {
 Scales first_scales(const LoadedBody& body, const Eigen::VectorXd& start, const Lagged& lagged) {
     double stiffness = 0.0;
     for (const auto& moduli : *body.moduli) stiffness = std::max(stiffness, moduli.mu);
-    for (const ContactPoint& point : body.contacts)
+    for (const ContactPoint& point : body.placement->contacts)
         stiffness = std::max(stiffness, point.weight * (*body.laws)[point.law].normal_stiffness);
     double force = largest(normal_forces_at(body, start));
     for (const Block& block : body.system->blocks) {
-        if (!body.densities.empty())
-            force = std::max(force, body.densities[block.material] * block.area * body.gravity.norm());
+        if (body.densities != nullptr)
+            force = std::max(force, (*body.densities)[block.material] * block.area * body.loads->gravity.norm());
     }
     for (const Vec2& pressure : lagged.pressure_forces) force = std::max(force, pressure.norm());
     double motion = 0.0;
-    for (const PrescribedDisplacement& row : body.constraints.rows()) {
+    for (const PrescribedDisplacement& row : body.loads->constraints.rows()) {
         LinearForm form;
         add_displacement(form, row.block, row.xi, row.direction, 1.0, start);
         motion = std::max(motion, std::abs(row.target - form.constant));
@@ -173,8 +174,8 @@ double change_of(const std::vector<double>& before, const std::vector<double>& n
 std::vector<double> shear_forces_at(const LoadedBody& body, const Eigen::VectorXd& start, const PosedMinimum& posed,
                                     const Lagged& lagged, const Eigen::VectorXd& x) {
     std::vector<double> forces;
-    for (std::size_t i = 0; i < body.contacts.size(); ++i) {
-        const ContactPoint& point = body.contacts[i];
+    for (std::size_t i = 0; i < body.placement->contacts.size(); ++i) {
+        const ContactPoint& point = body.placement->contacts[i];
         const double stiffness = (*body.laws)[point.law].shear_stiffness;
         double elastic = slip_form(point, stiffness, start).at(x);
         if (posed.slips[i] >= 0) elastic += x[posed.slips[i] + 1] - x[posed.slips[i]];
@@ -185,7 +186,7 @@ std::vector<double> shear_forces_at(const LoadedBody& body, const Eigen::VectorX
 
 double missed_condition(const LoadedBody& body, const Eigen::VectorXd& q) {
     double most = 0.0;
-    for (const PrescribedDisplacement& row : body.constraints.rows()) {
+    for (const PrescribedDisplacement& row : body.loads->constraints.rows()) {
         LinearForm form;
         add_displacement(form, row.block, row.xi, row.direction, 1.0, q);
         most = std::max(most, std::abs(row.target - form.constant));
@@ -197,7 +198,7 @@ double missed_condition(const LoadedBody& body, const Eigen::VectorXd& q) {
 
 std::vector<double> normal_forces_at(const LoadedBody& body, const Eigen::VectorXd& q) {
     std::vector<double> forces;
-    for (const ContactPoint& point : body.contacts) {
+    for (const ContactPoint& point : body.placement->contacts) {
         const double gap = gap_form(point, q).constant;
         forces.push_back((*body.laws)[point.law].normal_stiffness * point.weight * std::max(0.0, -gap));
     }
@@ -206,11 +207,12 @@ std::vector<double> normal_forces_at(const LoadedBody& body, const Eigen::Vector
 
 std::vector<Vec2> pressure_forces_at(const LoadedBody& body, const Eigen::VectorXd& q) {
     std::vector<Vec2> forces;
-    for (const PressureEdge& edge : body.pressure_edges) {
+    for (const PressureEdge& edge : body.loads->pressure_edges) {
         const double* d = q.data() + unknowns_per_block * edge.block + 2;
         const double along_x = edge.extent.x() + d[0] * edge.xi_extent.x() + d[2] * edge.xi_extent.y();
         const double along_y = edge.extent.y() + d[1] * edge.xi_extent.x() + d[3] * edge.xi_extent.y();
-        forces.push_back(body.pressures[edge.boundary] * Vec2(-along_y, along_x)); // inward: the body is on the left
+        forces.push_back(body.loads->pressures[edge.boundary] *
+                         Vec2(-along_y, along_x)); // inward: the body is on the left
     }
     return forces;
 }
@@ -218,9 +220,9 @@ std::vector<Vec2> pressure_forces_at(const LoadedBody& body, const Eigen::Vector
 std::vector<double> coulomb_limits(const LoadedBody& body, const std::vector<double>& normal_forces) {
     const double least = least_force * largest(normal_forces);
     std::vector<double> limits;
-    for (std::size_t i = 0; i < body.contacts.size(); ++i) {
-        const InterfaceLaw& law = (*body.laws)[body.contacts[i].law];
-        const double weight = body.contacts[i].weight;
+    for (std::size_t i = 0; i < body.placement->contacts.size(); ++i) {
+        const InterfaceLaw& law = (*body.laws)[body.placement->contacts[i].law];
+        const double weight = body.placement->contacts[i].weight;
         const double onset = weight * law.cohesion_onset;
         if (normal_forces[i] <= least) {
             limits.push_back(0.0);
@@ -237,7 +239,7 @@ PosedMinimum pose_minimum(const LoadedBody& body, const Eigen::VectorXd& start, 
     PosedMinimum posed;
     Potential& potential = posed.potential;
     int n = unknowns_per_block * body.system->n_blocks();
-    const int n_contacts = static_cast<int>(body.contacts.size());
+    const int n_contacts = static_cast<int>(body.placement->contacts.size());
     for (int i = 0; i < n_contacts; ++i) posed.closures.push_back(n++);
     for (int i = 0; i < n_contacts; ++i) {
         const bool can_slide = lagged.slip_limits[i] > 0.0 && lagged.slip_limits[i] < infinity;
@@ -252,7 +254,7 @@ PosedMinimum pose_minimum(const LoadedBody& body, const Eigen::VectorXd& start, 
     add_pressures(body, lagged.pressure_forces, potential);
     add_conditions(body, start, potential);
     for (int i = 0; i < n_contacts; ++i) {
-        const ContactPoint& point = body.contacts[i];
+        const ContactPoint& point = body.placement->contacts[i];
         const InterfaceLaw& law = (*body.laws)[point.law];
         LinearForm closure; // eq. (6)
         closure.add(posed.closures[i], 1.0);
@@ -280,8 +282,8 @@ Eigen::VectorXd closest_unknowns(const PosedMinimum& posed, const LoadedBody& bo
                                  const Eigen::VectorXd& start, const Eigen::VectorXd& q) {
     Eigen::VectorXd x = Eigen::VectorXd::Zero(posed.potential.n_unknowns);
     x.head(q.size()) = q - start;
-    for (std::size_t i = 0; i < body.contacts.size(); ++i) {
-        const ContactPoint& point = body.contacts[i];
+    for (std::size_t i = 0; i < body.placement->contacts.size(); ++i) {
+        const ContactPoint& point = body.placement->contacts[i];
         const InterfaceLaw& law = (*body.laws)[point.law];
         x[posed.closures[i]] = std::max(0.0, -gap_form(point, start).at(x));
         if (posed.slips[i] < 0) continue;
@@ -299,8 +301,8 @@ OracleSolution solve_by_minimisation(const LoadedBody& body, const Eigen::Vector
     std::vector<double> normal_forces = normal_forces_at(body, start);
     Lagged lagged{coulomb_limits(body, normal_forces), pressure_forces_at(body, start)};
     // At first what has friction sticks: limits of the start may be too small to hold the body under larger loads.
-    for (std::size_t i = 0; i < body.contacts.size(); ++i) {
-        const InterfaceLaw& law = (*body.laws)[body.contacts[i].law];
+    for (std::size_t i = 0; i < body.placement->contacts.size(); ++i) {
+        const InterfaceLaw& law = (*body.laws)[body.placement->contacts[i].law];
         if (law.tan_friction > 0.0 || law.cohesion > 0.0) lagged.slip_limits[i] = infinity;
     }
     Scales scales = first_scales(body, start, lagged);

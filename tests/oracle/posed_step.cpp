@@ -8,9 +8,9 @@
 
 #include "kluft/equilibrium/open_close_solver.hpp"
 #include "kluft/scene/scene_model.hpp"
+#include "kluft/simulation/placement.hpp"
 #include "kluft/simulation/simulation.hpp"
 #include "kluft/simulation/stage_loads.hpp"
-#include "kluft/simulation/state_points.hpp"
 
 namespace kluft::oracle {
 
@@ -51,23 +51,18 @@ PosedStep::PosedStep(const Scene& scene, int step) : model_(build_scene_model(sc
     State state = initial_state(model_);
     const RunReport report = run_simulation(model_, scene.cracks, scene.solver, state, keeper, stop);
     if (!keeper.reached) throw std::runtime_error("the run did not reach the load step: " + report.diagnosis);
-    if (before_.stage != after_.stage) throw std::invalid_argument("the load step is the first one of a stage");
+    if (before_.at.stage != after_.at.stage) throw std::invalid_argument("the load step is the first one of a stage");
     run_is_balanced_ = keeper.balanced;
     pose(scene);
 }
 
 void PosedStep::pose(const Scene& scene) {
-    problem_.system = &model_.system;
-    problem_.moduli = &model_.moduli;
-    problem_.laws = &model_.laws;
-    if (model_.gravity != Vec2::Zero()) problem_.densities = model_.densities;
     const StageLoads loads = enter_stage(model_, before_);
-    place_bonds(model_, before_, problem_.bonds);
-    auto contacts = state_contacts(model_, before_);
-    problem_.contacts = std::move(contacts.points);
-    problem_.constraints = loads.constraints();
-    problem_.pressure_edges = loads.edges();
-    apply_load(model_, loads, before_.stage, after_.load_factor, problem_);
+    placement_.bonds = placed_bonds(model_, before_.body);
+    auto contacts = detected_contacts(model_, before_.body);
+    placement_.contacts = std::move(contacts.points);
+    at_ = loads_at(model_, loads, before_.at.stage, after_.at.load_factor);
+    problem_.body = loaded_body(model_, placement_, at_);
 
     const double height = (model_.system.upper - model_.system.lower).maxCoeff();
     problem_.eta.assign(model_.system.blocks.size(),
@@ -87,7 +82,7 @@ PosedStep::Solution PosedStep::solve_by_open_close(double tolerance, double bala
     OpenCloseSolver solver(linear, options);
     Solution solution;
     solution.q = guess;
-    const bool unloaded = before_.contacts.empty();
+    const bool unloaded = before_.body.contacts.empty();
     do {
         problem_.start = solution.q;
         const auto summary =

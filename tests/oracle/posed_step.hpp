@@ -8,6 +8,7 @@
 #include "kluft/equilibrium/equilibrium_problem.hpp"
 #include "kluft/scene/scene.hpp"
 #include "kluft/simulation/model.hpp"
+#include "kluft/simulation/stage_loads.hpp"
 #include "kluft/simulation/state.hpp"
 
 namespace kluft::oracle {
@@ -17,17 +18,17 @@ namespace kluft::oracle {
 class PosedStep {
 public:
     PosedStep(const Scene& scene, int step);
-    PosedStep(const PosedStep&) = delete; // the problem points into the model
+    PosedStep(const PosedStep&) = delete; // the problem points into the model, the placement and the loads
     PosedStep& operator=(const PosedStep&) = delete;
     PosedStep(PosedStep&&) = delete;
     PosedStep& operator=(PosedStep&&) = delete;
     ~PosedStep() = default;
 
-    [[nodiscard]] const EquilibriumProblem& problem() const { return problem_; }
+    [[nodiscard]] const LoadedBody& body() const { return problem_.body; }
     /// The state that the step starts from (m).
-    [[nodiscard]] const Eigen::VectorXd& start() const { return before_.displacement; }
+    [[nodiscard]] const Eigen::VectorXd& start() const { return before_.body.displacement; }
     /// Where the run itself got to in this step (m).
-    [[nodiscard]] const Eigen::VectorXd& end_of_run() const { return after_.displacement; }
+    [[nodiscard]] const Eigen::VectorXd& end_of_run() const { return after_.body.displacement; }
     /// Every load step of the run was balanced.
     [[nodiscard]] bool run_is_balanced() const { return run_is_balanced_; }
 
@@ -49,6 +50,8 @@ private:
     State before_;
     State after_;
     bool run_is_balanced_ = false;
+    Placement placement_;
+    LoadsAt at_;
     EquilibriumProblem problem_;
     BlockPattern pattern_;
 };

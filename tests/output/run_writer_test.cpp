@@ -34,13 +34,13 @@ public:
               options.material_names = {"rock"};
               return options;
           }()) {
-        if (options.resumed_step) state_.step = *options.resumed_step;
+        if (options.resumed_step) state_.at.step = *options.resumed_step;
     }
 
     /// Steps up to and with `last`.
     void go_to(int last, bool from_zero = true) {
-        for (int step = from_zero ? 0 : state_.step + 1; step <= last; ++step) {
-            state_.step = step;
+        for (int step = from_zero ? 0 : state_.at.step + 1; step <= last; ++step) {
+            state_.at.step = step;
             const StepRecord record = record_of(step);
             writer_.equilibrium(record);
             if (step == 9) writer_.crack({step, 1, 2, 0.1, 0.2, CrackMode::tension, 1e6, -1e4, 0.005});
@@ -53,8 +53,8 @@ public:
 
     RunSummary finish(RunStatus status = RunStatus::done) {
         RunOutcome outcome;
-        outcome.status = status;
-        outcome.counts["factorizations"] = 17;
+        outcome.report.status = status;
+        outcome.report.costs.factorizations = 17;
         outcome.version = "0.1.0";
         outcome.unknowns = 6 * system_.n_blocks();
         return writer_.finish(outcome, state_, fields());
@@ -98,7 +98,7 @@ TEST(RunWriter, LeavesEverythingOfTheContract) {
         EXPECT_TRUE(fs::is_regular_file(directory / name)) << name;
     EXPECT_EQ(steps_in(directory / "history.csv").size(), 15U);
     EXPECT_EQ(read_cracks(directory / "cracks.csv").size(), 1U);
-    EXPECT_EQ(read_state(directory / "state.h5", "scene").step, 14);
+    EXPECT_EQ(read_state(directory / "state.h5", "scene").at.step, 14);
     EXPECT_THAT(read_file(directory / "fields.pvd"), HasSubstr("timestep=\"14\""));
     EXPECT_NEAR(*summary.numbers.peak_stress, 1.2e6, 1e-6);
     const auto json = nlohmann::json::parse(read_file(directory / "summary.json"));
@@ -126,13 +126,13 @@ TEST(RunWriter, WritesFieldsAndStatesAsOftenAsAsked) {
     options.pictures = false;
     SmallRun run(directory.path(), options);
     run.go_to(7);
-    EXPECT_EQ(read_state(directory / "state.h5", "scene").step, 6);
+    EXPECT_EQ(read_state(directory / "state.h5", "scene").at.step, 6);
     const std::string pvd = read_file(directory / "fields.pvd");
     for (const int step : {0, 3, 4, 6}) EXPECT_THAT(pvd, HasSubstr("timestep=\"" + std::to_string(step) + "\""));
     EXPECT_THAT(pvd, ::testing::Not(HasSubstr("timestep=\"7\"")));
     run.finish(RunStatus::interrupted);
     EXPECT_THAT(read_file(directory / "fields.pvd"), HasSubstr("timestep=\"7\""));
-    EXPECT_EQ(read_state(directory / "state.h5", "scene").step, 7);
+    EXPECT_EQ(read_state(directory / "state.h5", "scene").at.step, 7);
 }
 
 TEST(RunWriter, WritesNeitherFieldsNorPicturesWhenNotAsked) {
@@ -165,7 +165,7 @@ TEST(RunWriter, LeavesTheSameTablesAfterAResumedRun) {
         killed.go_to(11);
         killed.try_step(12);
     }
-    options.resumed_step = read_state(broken / "state.h5", "scene").step;
+    options.resumed_step = read_state(broken / "state.h5", "scene").at.step;
     EXPECT_EQ(options.resumed_step, 8);
     SmallRun resumed(broken.path(), options);
     EXPECT_EQ(steps_in(broken / "history.csv").back(), 8);
@@ -189,7 +189,7 @@ TEST(RunWriter, WritesHistoriesWhereTheSceneFollowsSomething) {
                 ::testing::StartsWith("step,stage,load_factor,top.displacement_y,foot.normal_force\n0,0,0,0,-1000\n"
                                       "1,0,0,0.5,-1000\n"));
     { SmallRun(broken.path(), options).go_to(11); }
-    options.resumed_step = read_state(broken / "state.h5", "scene").step;
+    options.resumed_step = read_state(broken / "state.h5", "scene").at.step;
     { SmallRun(broken.path(), options).go_to(14, false); }
     EXPECT_EQ(read_file(broken / "histories.csv"), read_file(whole / "histories.csv"));
     options.history_columns = {"top.displacement_x"};
@@ -261,7 +261,7 @@ TEST(RunWriter, SavesWhatItCanWhenTheDiskIsFull) {
     EXPECT_FALSE(fs::exists(directory / "blocks.png"));
     EXPECT_FALSE(fs::exists(directory / "blocks.png.part"));
     EXPECT_EQ(nlohmann::json::parse(read_file(directory / "summary.json"))["status"], "out_of_resources");
-    EXPECT_EQ(read_state(directory / "state.h5", "scene").step, 14);
+    EXPECT_EQ(read_state(directory / "state.h5", "scene").at.step, 14);
 }
 
 // A row that does not fit is written as soon as there is room; a state that the history does not reach is not saved.
@@ -281,7 +281,7 @@ TEST(RunWriter, WritesTheRowsThatWaitedForRoomOnTheDisk) {
     run.finish(RunStatus::out_of_resources);
     EXPECT_EQ(steps_in(directory / "equilibria.csv").back(), 6);
     EXPECT_EQ(steps_in(directory / "history.csv").back(), 5);
-    EXPECT_EQ(read_state(directory / "state.h5", "scene").step, 5);
+    EXPECT_EQ(read_state(directory / "state.h5", "scene").at.step, 5);
 }
 
 } // namespace

@@ -18,54 +18,53 @@ using ::testing::ThrowsMessage;
 
 State state_of(int n_blocks) {
     State state;
-    state.stage = 1;
-    state.step_in_stage = 4;
-    state.step = 24;
-    state.load_factor = 0.1;
-    state.displacement = Eigen::VectorXd::LinSpaced(6 * n_blocks, -1.0 / 3.0, std::numeric_limits<double>::min());
-    state.stage_start_displacement = 0.5 * state.displacement;
-    state.reference_displacement = 0.25 * state.displacement;
-    state.displacement_rate = 0.1 * state.displacement;
-    state.reference_set = true;
-    state.interfaces = {InterfaceStatus::potential_crack, InterfaceStatus::fracture, InterfaceStatus::tension_crack,
-                        InterfaceStatus::shear_crack};
-    state.bond_shear = {1.0, -2.0, 3.0, 0.1};
-    state.contacts = {{{0, 1, 2, 3, -1}, {1.25e5, 1e-7}}, {{4, 5, 6, 7, 2}, {-0.1, 0.0}}};
-    state.boundary_pressure = {2e5, 0.0, 1.0 / 7.0};
-    state.unbalanced_ratio = 3e-4;
+    state.at.stage = 1;
+    state.at.step_in_stage = 4;
+    state.at.step = 24;
+    state.at.load_factor = 0.1;
+    state.body.displacement = Eigen::VectorXd::LinSpaced(6 * n_blocks, -1.0 / 3.0, std::numeric_limits<double>::min());
+    state.stage_start.displacement = 0.5 * state.body.displacement;
+    state.strain_zero = 0.25 * state.body.displacement;
+    state.body.interfaces = {InterfaceStatus::potential_crack, InterfaceStatus::fracture,
+                             InterfaceStatus::tension_crack, InterfaceStatus::shear_crack};
+    state.body.bond_shear = {1.0, -2.0, 3.0, 0.1};
+    state.body.contacts = {{{0, 1, 2, 3, -1}, {1.25e5, 1e-7}}, {{4, 5, 6, 7, 2}, {-0.1, 0.0}}};
+    state.stage_start.boundary_pressure = {2e5, 0.0, 1.0 / 7.0};
     state.unbalanced_in_succession = 2;
-    state.displacement_rate = 3.0 * state.displacement;
-    state.viscosity_factor.assign(static_cast<std::size_t>(n_blocks), 16.0);
-    state.near_pairs = {{0, 3}, {2, 1}};
-    state.control = {0.01, 2.0, 0.5, 1.2e6, 1.5e6, 1e6, 1e-3, 2e-3, 3e-3, 1, 2, {2, 0}};
+    state.memory.rate = 3.0 * state.body.displacement;
+    state.memory.viscosity_factor.assign(static_cast<std::size_t>(n_blocks), 16.0);
+    state.memory.near_pairs = {{0, 3}, {2, 1}};
+    state.control = {0.01, 2.0, 0.5, 1e-3, 2e-3, 3e-3, 2, {2, 0}};
+    state.stresses = {1.2e6, 1.5e6, 1e6, 1};
+    state.is_settled = false;
     state.costs = {179, 180, 2, 150, 40, 2000, 3, 5, 4, 12.5, {1, 2, 3, 4, 5, 6, 7, 8, 9}};
     return state;
 }
 
 void expect_same(const State& a, const State& b) {
-    EXPECT_EQ(a.stage, b.stage);
-    EXPECT_EQ(a.step_in_stage, b.step_in_stage);
-    EXPECT_EQ(a.step, b.step);
-    EXPECT_EQ(a.load_factor, b.load_factor);
-    EXPECT_EQ(a.displacement, b.displacement);
-    EXPECT_EQ(a.stage_start_displacement, b.stage_start_displacement);
-    EXPECT_EQ(a.reference_displacement, b.reference_displacement);
-    EXPECT_EQ(a.displacement_rate, b.displacement_rate);
-    EXPECT_EQ(a.reference_set, b.reference_set);
-    EXPECT_EQ(a.interfaces, b.interfaces);
-    EXPECT_EQ(a.bond_shear, b.bond_shear);
-    ASSERT_EQ(a.contacts.size(), b.contacts.size());
-    for (std::size_t i = 0; i < a.contacts.size(); ++i) {
-        EXPECT_EQ(a.contacts[i].key, b.contacts[i].key);
-        EXPECT_EQ(a.contacts[i].history.shear_trial, b.contacts[i].history.shear_trial);
-        EXPECT_EQ(a.contacts[i].history.dilation, b.contacts[i].history.dilation);
+    EXPECT_EQ(a.at.stage, b.at.stage);
+    EXPECT_EQ(a.at.step_in_stage, b.at.step_in_stage);
+    EXPECT_EQ(a.at.step, b.at.step);
+    EXPECT_EQ(a.at.load_factor, b.at.load_factor);
+    EXPECT_EQ(a.body.displacement, b.body.displacement);
+    EXPECT_EQ(a.stage_start.displacement, b.stage_start.displacement);
+    EXPECT_EQ(a.strain_zero, b.strain_zero);
+    EXPECT_EQ(a.memory.rate, b.memory.rate);
+    EXPECT_EQ(a.body.interfaces, b.body.interfaces);
+    EXPECT_EQ(a.body.bond_shear, b.body.bond_shear);
+    ASSERT_EQ(a.body.contacts.size(), b.body.contacts.size());
+    for (std::size_t i = 0; i < a.body.contacts.size(); ++i) {
+        EXPECT_EQ(a.body.contacts[i].key, b.body.contacts[i].key);
+        EXPECT_EQ(a.body.contacts[i].history.shear_trial, b.body.contacts[i].history.shear_trial);
+        EXPECT_EQ(a.body.contacts[i].history.dilation, b.body.contacts[i].history.dilation);
     }
-    EXPECT_EQ(a.boundary_pressure, b.boundary_pressure);
-    EXPECT_EQ(a.unbalanced_ratio, b.unbalanced_ratio);
+    EXPECT_EQ(a.stage_start.boundary_pressure, b.stage_start.boundary_pressure);
+    EXPECT_EQ(a.is_settled, b.is_settled);
+    EXPECT_EQ(a.stresses, b.stresses);
     EXPECT_EQ(a.unbalanced_in_succession, b.unbalanced_in_succession);
-    EXPECT_EQ(a.displacement_rate, b.displacement_rate);
-    EXPECT_EQ(a.viscosity_factor, b.viscosity_factor);
-    EXPECT_EQ(a.near_pairs, b.near_pairs);
+    EXPECT_EQ(a.memory.rate, b.memory.rate);
+    EXPECT_EQ(a.memory.viscosity_factor, b.memory.viscosity_factor);
+    EXPECT_EQ(a.memory.near_pairs, b.memory.near_pairs);
     EXPECT_EQ(a.costs.open_close_iterations, b.costs.open_close_iterations);
     EXPECT_EQ(a.costs.factorizations, b.costs.factorizations);
     EXPECT_EQ(a.costs.analyses, b.costs.analyses);
@@ -129,10 +128,10 @@ TEST(StateFile, IsRefusedWhenTruncatedAnywhere) {
 TEST(StateFile, IsRefusedWhenABitOfTheNumbersIsWrong) {
     const TemporaryDirectory directory;
     State state = state_of(2);
-    state.displacement[5] = 1.2345678901234567e-3;
+    state.body.displacement[5] = 1.2345678901234567e-3;
     write_state(directory / "state.h5", state, "scene");
     std::string bytes = read_file(directory / "state.h5");
-    const std::string pattern(reinterpret_cast<const char*>(&state.displacement[5]), sizeof(double));
+    const std::string pattern(reinterpret_cast<const char*>(&state.body.displacement[5]), sizeof(double));
     const std::size_t at = bytes.find(pattern);
     ASSERT_NE(at, std::string::npos);
     bytes[at] = static_cast<char>(bytes[at] ^ 1);

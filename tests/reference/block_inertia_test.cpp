@@ -15,13 +15,17 @@ struct BondedHexagons {
     std::vector<InterfaceLaw> laws{{.normal_stiffness = 1e11, .shear_stiffness = 4e10}};
     std::vector<ElasticModuli> moduli{plane_moduli(10e9, 0.25, Plane::strain)};
     BlockSystem system = cut_blocks(hexagon_spec(0.5, 0.4, 0.1, {0.03, 0.04})).system;
+    Placement placement;
+    Loads loads;
     LoadedBody body;
 
     BondedHexagons() {
         body.system = &system;
         body.moduli = &moduli;
         body.laws = &laws;
-        body.bonds = bonds_at(system, {1}, at_rest(system));
+        placement.bonds = bonds_at(system, {1}, at_rest(system));
+        body.placement = &placement;
+        body.loads = &loads;
     }
     [[nodiscard]] Eigen::VectorXd forces(const Eigen::VectorXd& q) const {
         BodyForces result;

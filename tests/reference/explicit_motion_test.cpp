@@ -20,12 +20,14 @@ class BlockOnASpring {
 public:
     static constexpr double kn = 1e8, density = 2500.0, youngs_modulus = 1e12;
 
-    explicit BlockOnASpring(double damping) : motion_(loaded_body(), masses(), damping, at_rest(system_)) {}
+    explicit BlockOnASpring(double damping)
+        : motion_(loaded_body(), {bonds_at(system_, {1}, at_rest(system_)), {}}, loads(), masses(), damping,
+                  at_rest(system_)) {}
 
     ExplicitMotion& motion() { return motion_; }
     [[nodiscard]] double height() const { return displacement_at(motion_.displacement(), upper(), Vec2::Zero()).y(); }
     [[nodiscard]] static double frequency() { return std::sqrt(kn / density); }
-    void set_gravity(double g) { motion_.body().gravity = {0.0, -g}; }
+    void set_gravity(double g) { motion_.loads().gravity = {0.0, -g}; }
 
 private:
     static BlockSystem two_blocks() {
@@ -42,13 +44,16 @@ private:
         body.system = &system_;
         body.moduli = &moduli_;
         body.laws = &laws_;
-        body.densities = {density};
-        body.bonds = bonds_at(system_, {1}, at_rest(system_));
+        body.densities = &densities_;
+        return body;
+    }
+    [[nodiscard]] Loads loads() const {
         std::vector<PrescribedDisplacement> rows;
         for (const Vec2& xi : {Vec2(0, 0), Vec2(1, 0), Vec2(0, 1)})
             for (const Vec2& direction : {Vec2(1, 0), Vec2(0, 1)}) rows.push_back({1 - upper(), xi, direction});
-        body.constraints = Constraints(rows);
-        return body;
+        Loads loads;
+        loads.constraints = Constraints(rows);
+        return loads;
     }
     [[nodiscard]] std::vector<Mat6> masses() const {
         std::vector<Mat6> result;
@@ -57,6 +62,7 @@ private:
     }
 
     std::vector<InterfaceLaw> laws_{{.normal_stiffness = kn, .shear_stiffness = kn}};
+    std::vector<double> densities_{density};
     std::vector<ElasticModuli> moduli_{plane_moduli(youngs_modulus, 0.0, Plane::strain)};
     BlockSystem system_ = two_blocks();
     ExplicitMotion motion_;

@@ -173,7 +173,7 @@ TEST(ExplicitSimulation, BodyUnderAGivenStressCollapsesAtTheStepThatPassesJaeger
     const double step = (1.1e6 - 0.2e6) / 10;
     EXPECT_LT(run.history.back().differential_stress, 1.001 * jaegers_stress);
     EXPECT_GT(run.history.back().differential_stress, jaegers_stress - 1.5 * step);
-    EXPECT_TRUE(run.state.displacement.allFinite());
+    EXPECT_TRUE(run.state.body.displacement.allFinite());
 }
 
 // A platen at constant velocity: slower and slower runs meet the quasi-static one; the waves of a fast one are seen.
@@ -207,7 +207,7 @@ stages: [{name: weight, steps: 2}]
 )");
     EXPECT_EQ(run.report.status, RunStatus::no_equilibrium);
     EXPECT_THAT(run.report.diagnosis, testing::HasSubstr("falls"));
-    EXPECT_TRUE(run.state.displacement.allFinite());
+    EXPECT_TRUE(run.state.body.displacement.allFinite());
     for (const StepRecord& record : run.history) EXPECT_TRUE(std::isfinite(record.axial_stress));
 }
 
@@ -220,14 +220,14 @@ TEST(ExplicitSimulation, InterruptedRunKeepsTheLastCommittedStep) {
     const std::atomic<bool> stop{true};
     const auto report = run_explicit(model, scene.cracks, scene.solver, scene.explicit_options, state, observer, stop);
     EXPECT_EQ(report.status, RunStatus::interrupted);
-    EXPECT_EQ(state.step, 0);
-    EXPECT_EQ(state.displacement.norm(), 0.0);
+    EXPECT_EQ(state.at.step, 0);
+    EXPECT_EQ(state.body.displacement.norm(), 0.0);
 }
 
 TEST(ExplicitSimulation, SameSceneTwiceGivesTheSameBits) {
     const auto first = run_scene(hexagons, {by_steps});
     const auto second = run_scene(hexagons, {by_steps});
-    EXPECT_EQ((first.state.displacement - second.state.displacement).norm(), 0.0);
+    EXPECT_EQ((first.state.body.displacement - second.state.body.displacement).norm(), 0.0);
     EXPECT_EQ(first.report.motion->time_steps, second.report.motion->time_steps);
 }
 

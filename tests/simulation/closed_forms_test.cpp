@@ -11,6 +11,7 @@
 #include "kluft/equilibrium/open_close_solver.hpp"
 #include "kluft/simulation/simulation.hpp"
 #include "support/lattice_body.hpp"
+#include "support/owned_problem.hpp"
 #include "support/scene_run.hpp"
 #include "support/slope_scene.hpp"
 
@@ -68,11 +69,11 @@ public:
 
     void solve() {
         const Neighbourhood hexagons(system);
-        EquilibriumProblem problem;
-        problem.system = &system;
-        problem.moduli = &moduli;
-        problem.laws = &laws;
-        problem.bonds = bonds_at(system, {1}, at_rest(system));
+        OwnedProblem problem;
+        problem.body.system = &system;
+        problem.body.moduli = &moduli;
+        problem.body.laws = &laws;
+        problem.placement.bonds = bonds_at(system, {1}, at_rest(system));
         expected = at_rest(system);
         std::vector<PrescribedDisplacement> rows;
         for (int b = 0; b < system.n_blocks(); ++b) {
@@ -87,7 +88,7 @@ public:
                 rows.push_back({b, xi, Vec2::UnitY(), 0, target.y()});
             }
         }
-        problem.constraints = Constraints(rows);
+        problem.loads.constraints = Constraints(rows);
         const BlockPattern pattern = pattern_of(problem);
         LinearSolver linear;
         linear.analyze(pattern);
@@ -95,7 +96,7 @@ public:
         options.tolerance = 1e-13;
         q = at_rest(system);
         summary = OpenCloseSolver(linear, options).solve(problem, pattern, q);
-        bonds = problem.bonds;
+        bonds = problem.placement.bonds;
     }
 
     InterfaceLaw law;
@@ -224,11 +225,11 @@ struct TurnedBody {
 
     /// Internal forces at q, bonds in the frames of `frames`.
     [[nodiscard]] Residual forces(const Eigen::VectorXd& q, const Eigen::VectorXd& frames) const {
-        EquilibriumProblem problem;
-        problem.system = &system;
-        problem.moduli = &moduli;
-        problem.laws = &laws;
-        problem.bonds = bonds_at(system, {1}, frames);
+        OwnedProblem problem;
+        problem.body.system = &system;
+        problem.body.moduli = &moduli;
+        problem.body.laws = &laws;
+        problem.placement.bonds = bonds_at(system, {1}, frames);
         const BlockPattern pattern = pattern_of(problem);
         Residual residual;
         EquilibriumEvaluator(problem, pattern).residual(q, residual);

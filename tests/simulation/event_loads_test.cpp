@@ -13,7 +13,7 @@
 namespace kluft {
 namespace {
 
-constexpr double strength = 1e6;        // tensile, Pa
+constexpr double strength = 1e6;         // tensile, Pa
 constexpr double event_tolerance = 2e-2; // default of cracks.event_tolerance
 
 /// A specimen of hexagons that hangs from its top or stands on its bottom, without its stages.

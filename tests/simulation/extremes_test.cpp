@@ -107,7 +107,7 @@ TEST(Extremes, BlockFallsThroughAGapOntoTheBlockBelow) {
         const SceneRun run = run_scene(hovering(gap));
         ASSERT_EQ(run.report.status, RunStatus::done) << gap;
         EXPECT_TRUE(run.history.back().balanced) << gap;
-        const double sunk = -run.state.displacement[n_block_unknowns + 1];
+        const double sunk = -run.state.body.displacement[n_block_unknowns + 1];
         EXPECT_NEAR(sunk, gap + weight / 10e9 + 0.25 * weight / 10e9, 1e-6 * (gap + 1.25 * weight / 10e9)) << gap;
     }
 }

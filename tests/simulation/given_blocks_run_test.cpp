@@ -33,7 +33,7 @@ double followed_last(const SceneRun& run, const std::string& column) {
 void expect_fixed_blocks_at_rest(const SceneRun& run) {
     for (int b = 0; b < run.model.system.n_blocks(); ++b) {
         if (!run.model.system.blocks[b].fixed) continue;
-        EXPECT_EQ(run.state.displacement.segment<n_block_unknowns>(n_block_unknowns * b).norm(), 0.0) << b;
+        EXPECT_EQ(run.state.body.displacement.segment<n_block_unknowns>(n_block_unknowns * b).norm(), 0.0) << b;
     }
 }
 

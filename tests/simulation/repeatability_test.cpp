@@ -34,13 +34,13 @@ void expect_same_runs(const SceneRun& a, const SceneRun& b) {
     expect_same(a.history, b.history);
     expect_same(a.equilibria, b.equilibria);
     expect_same(a.cracks, b.cracks);
-    EXPECT_EQ(a.state.displacement, b.state.displacement);
-    EXPECT_EQ(a.state.bond_shear, b.state.bond_shear);
-    EXPECT_EQ(a.state.interfaces, b.state.interfaces);
-    ASSERT_EQ(a.state.contacts.size(), b.state.contacts.size());
-    for (std::size_t i = 0; i < a.state.contacts.size(); ++i) {
-        EXPECT_EQ(a.state.contacts[i].key, b.state.contacts[i].key);
-        EXPECT_EQ(a.state.contacts[i].history.shear_trial, b.state.contacts[i].history.shear_trial);
+    EXPECT_EQ(a.state.body.displacement, b.state.body.displacement);
+    EXPECT_EQ(a.state.body.bond_shear, b.state.body.bond_shear);
+    EXPECT_EQ(a.state.body.interfaces, b.state.body.interfaces);
+    ASSERT_EQ(a.state.body.contacts.size(), b.state.body.contacts.size());
+    for (std::size_t i = 0; i < a.state.body.contacts.size(); ++i) {
+        EXPECT_EQ(a.state.body.contacts[i].key, b.state.body.contacts[i].key);
+        EXPECT_EQ(a.state.body.contacts[i].history.shear_trial, b.state.body.contacts[i].history.shear_trial);
     }
 }
 
@@ -90,7 +90,7 @@ TEST(Repeatability, RunWithAnAccuracyGoesOnFromASavedStateAsIfItHadNotStopped) {
     (void)run_simulation(model, whole.scene.cracks, whole.scene.solver, resumed.state, rest, stop);
     ASSERT_EQ(resumed.history.size() + 9, whole.history.size());
     EXPECT_EQ(resumed.history.front().load_factor, whole.history[9].load_factor);
-    EXPECT_EQ(resumed.state.displacement, whole.state.displacement);
+    EXPECT_EQ(resumed.state.body.displacement, whole.state.body.displacement);
     EXPECT_EQ(resumed.state.control, whole.state.control);
 }
 
@@ -148,7 +148,8 @@ TEST(Repeatability, RunWithAReusedFactorReachesTheStatesOfOneThatAlwaysFactorize
         EXPECT_EQ(reusing.history[i].cracks_shear, always.history[i].cracks_shear);
         EXPECT_EQ(reusing.history[i].sliding, always.history[i].sliding);
     }
-    EXPECT_LT((reusing.state.displacement - always.state.displacement).norm(), 1e-8 * always.state.displacement.norm());
+    EXPECT_LT((reusing.state.body.displacement - always.state.body.displacement).norm(),
+              1e-8 * always.state.body.displacement.norm());
 }
 
 } // namespace

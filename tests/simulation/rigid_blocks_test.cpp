@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "kluft/core/diagnostics.hpp"
-#include "kluft/simulation/state_points.hpp"
+#include "kluft/simulation/state_fields.hpp"
 #include "support/scene_run.hpp"
 #include "support/slope_scene.hpp"
 
@@ -135,7 +135,7 @@ TEST(RigidBlocksRun, BodyOfRigidHexagonsDeformsAndCracksAboutAsAnAffineOne) {
     EXPECT_FALSE(affine.cracks.empty());
     for (int b = 0; b < rigid.model.system.n_blocks(); ++b) {
         const double size = rigid.model.system.blocks[b].size;
-        EXPECT_NEAR(deformation_gradient(rigid.state.displacement, b, size).determinant(), 1.0, 1e-14);
+        EXPECT_NEAR(deformation_gradient(rigid.state.body.displacement, b, size).determinant(), 1.0, 1e-14);
     }
 }
 
@@ -193,7 +193,7 @@ solver: {{tolerance: 1e-12, balance: 1e-9, viscosity: 0}}
     const int middle = nearest({0.9, 2 * row});
     const Vec2 at = system.origin + system.blocks[middle].centroid;
     const auto motion = [&](const Vec2& place) {
-        return Vec2(run.state.displacement.segment<2>(n_block_unknowns * nearest(place)));
+        return Vec2(run.state.body.displacement.segment<2>(n_block_unknowns * nearest(place)));
     };
     const double strain_x = (motion(at + Vec2(0.03, 0)) - motion(at - Vec2(0.03, 0))).x() / 0.06;
     const double strain_y = (motion(at + Vec2(0, 2 * row)) - motion(at)).y() / (2 * row);

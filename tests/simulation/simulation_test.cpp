@@ -10,7 +10,7 @@
 
 #include "kluft/equilibrium/equilibrium_problem.hpp"
 #include "kluft/kinematics/affine.hpp"
-#include "kluft/simulation/state_points.hpp"
+#include "kluft/simulation/placement.hpp"
 #include "support/scene_run.hpp"
 
 namespace kluft {
@@ -360,15 +360,14 @@ TEST(Simulation, BlockStressIsTheLoveWeberSumOfItsContactForces) {
     auto run = run_scene(small_specimen, {"solver.tolerance=1e-9", "solver.balance=1e-7"});
     ASSERT_EQ(run.report.status, RunStatus::done) << run.report.diagnosis;
     const BlockSystem& system = run.model.system;
-    const Eigen::VectorXd& q = run.state.displacement;
-    std::vector<Bond> bonds;
-    place_bonds(run.model, run.state, bonds);
+    const Eigen::VectorXd& q = run.state.body.displacement;
+    const std::vector<Bond> bonds = placed_bonds(run.model, run.state.body);
     std::vector<Mat2> sums(system.blocks.size(), Mat2::Zero());
     std::vector<char> inside(system.blocks.size(), 1);
     for (int b = 0; b < system.n_blocks(); ++b) {
         for (const Edge& edge : system.blocks[b].edges) {
             const bool free_or_broken =
-                edge.interface < 0 || run.state.interfaces[edge.interface] != InterfaceStatus::potential_crack;
+                edge.interface < 0 || run.state.body.interfaces[edge.interface] != InterfaceStatus::potential_crack;
             if (free_or_broken) inside[b] = 0;
         }
     }
@@ -413,7 +412,7 @@ TEST(Simulation, InterruptedRunKeepsTheLastCommittedStep) {
     } observer(stop);
     const auto report = run_simulation(model, scene.cracks, scene.solver, state, observer, stop);
     EXPECT_EQ(report.status, RunStatus::interrupted);
-    EXPECT_EQ(state.step, 5);
+    EXPECT_EQ(state.at.step, 5);
 }
 
 } // namespace

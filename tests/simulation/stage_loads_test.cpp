@@ -1,3 +1,4 @@
+#include "kluft/loading/boundary_geometry.hpp"
 #include "kluft/simulation/stage_loads.hpp"
 
 #include <algorithm>
@@ -39,7 +40,7 @@ Model model_of(const std::string& boundaries, const std::string& stages) {
 }
 
 StageLoads loads_of(const Model& model, const State& state, int stage = 0) {
-    return {model, state, model.loads.stages[stage]};
+    return {model, {state.body.displacement, state.stage_start.boundary_pressure}, model.loads.stages[stage]};
 }
 
 /// Rows on a boundary along x (0) or y (1), with the reference positions of their vertices.
@@ -156,7 +157,7 @@ TEST(StageLoads, PlatenMovesInwardInProportionToTheLoadFactor) {
           std::tuple("displacement: {boundary: right, value: 3 mm}", right, 0, -0.003)}) {
         const Model model = model_of("{}", fmt::format("[{{{}}}]", motion));
         State state = initial_state(model);
-        for (int b = 0; b < model.system.n_blocks(); ++b) state.displacement[6 * b + axis] = 0.005;
+        for (int b = 0; b < model.system.n_blocks(); ++b) state.body.displacement[6 * b + axis] = 0.005;
         const StageLoads loads = loads_of(model, state);
         Constraints constraints = loads.constraints();
         for (const double factor : {0.0, 0.25, 1.0}) {
@@ -181,7 +182,7 @@ TEST(StageLoads, PlatenUnderAStressTravelsAsARigidBody) {
     for (const double factor : {0.0, 0.5, 1.0}) {
         ASSERT_TRUE(loads.platen_force(factor).has_value());
         EXPECT_DOUBLE_EQ(loads.platen_force(factor)->stress, factor * 3e6);
-        EXPECT_DOUBLE_EQ(loads.platen_force(factor)->at(initial_state(model).displacement), factor * 3e6 * 1.0);
+        EXPECT_DOUBLE_EQ(loads.platen_force(factor)->at(initial_state(model).body.displacement), factor * 3e6 * 1.0);
     }
     EXPECT_FALSE(
         loads_of(model_of("{}", "[{strain: {boundary: top, value: 1 %}}]"), initial_state(model)).platen_force(1));
@@ -192,7 +193,7 @@ TEST(StageLoads, PlatenForceActsOnTheCurrentWidth) {
     const Model model = model_of("{}", pressed);
     const PlatenForce force = width_across(model.system, top);
     EXPECT_NEAR(force.width, 1.0, 1e-12);
-    Eigen::VectorXd q = initial_state(model).displacement;
+    Eigen::VectorXd q = initial_state(model).body.displacement;
     for (int b = 0; b < model.system.n_blocks(); ++b) {
         q[6 * b] = model.system.blocks[b].centroid.x() > 0.4 ? 0.02 : -0.01;
         q[6 * b + 1] = 0.5;
@@ -205,7 +206,7 @@ TEST(StageLoads, PlatenForceActsOnTheCurrentWidth) {
 TEST(StageLoads, PressureGrowsLinearlyFromTheStartOfTheStageAndOthersKeepTheirs) {
     const Model model = model_of("{bottom: {support: smooth}}", "[{pressure: {left: 3 MPa, top: 0}}]");
     State state = initial_state(model);
-    state.boundary_pressure = {7e6, 2e6, 4e6, 1e6}; // at the bottom what its support carried
+    state.stage_start.boundary_pressure = {7e6, 2e6, 4e6, 1e6}; // at the bottom what its support carried
     const StageLoads loads = loads_of(model, state);
     EXPECT_EQ(loads.pressures(0.0), (std::vector<double>{0.0, 2e6, 4e6, 1e6}));
     EXPECT_EQ(loads.pressures(0.25), (std::vector<double>{0.0, 2e6, 3e6, 1.5e6}));
@@ -221,7 +222,7 @@ TEST(StageLoads, PressureGrowsLinearlyFromTheStartOfTheStageAndOthersKeepTheirs)
 TEST(StageLoads, PlatenTakesThePressureOfItsBoundaryOver) {
     const Model model = model_of("{bottom: {support: smooth}}", "[{strain: {boundary: top, value: 1 %}}]");
     State state = initial_state(model);
-    state.boundary_pressure = {0.0, 2e6, 4e6, 2e6};
+    state.stage_start.boundary_pressure = {0.0, 2e6, 4e6, 2e6};
     const StageLoads loads = loads_of(model, state);
     for (const double factor : {0.0, 1.0}) {
         EXPECT_EQ(loads.pressures(factor), (std::vector<double>{0.0, 2e6, 0.0, 2e6}));

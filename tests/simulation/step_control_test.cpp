@@ -110,7 +110,7 @@ TEST(StepControl, PotentialCrackFailsAtItsOwnLoadFromAnyFirstStep) {
         double peak = 0.0;
         for (const StepRecord& row : run.equilibria) peak = std::max(peak, row.axial_stress);
         EXPECT_NEAR(peak, strength, 0.0105 * strength) << steps;
-        EXPECT_LT(*run.report.estimated_error, 0.02);
+        EXPECT_LT(*run.report.results.estimated_error, 0.02);
     }
 }
 
@@ -170,7 +170,7 @@ TEST(StepControl, CycleOfAFrictionalJointIsFollowedToTheAccuracyFromAnyFirstStep
 TEST(StepControl, SlipUnderAnyLoadIsNoErrorAndNoLongSearch) {
     const auto run = run_scene(load_cycle(20, ", accuracy: 0.01"));
     EXPECT_EQ(run.state.control.slipped, std::vector{0});
-    EXPECT_LT(*run.report.estimated_error, 0.01);
+    EXPECT_LT(*run.report.results.estimated_error, 0.01);
     EXPECT_GT(run.history[1].load_factor, 1e-9);
     EXPECT_LT(run.history[1].open_close_iterations, 60);
 }
@@ -184,7 +184,7 @@ TEST(StepControl, LessAccuracyCostsLess) {
 
 TEST(StepControl, WithoutAnAccuracyThereIsNoEstimate) {
     const auto run = run_scene(load_cycle(4, ""));
-    EXPECT_FALSE(run.report.estimated_error.has_value());
+    EXPECT_FALSE(run.report.results.estimated_error.has_value());
     EXPECT_EQ(run.report.costs.rejected_steps, 0);
     EXPECT_EQ(run.history.size(), 9U);
 }

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "kluft/core/diagnostics.hpp"
-#include "kluft/simulation/state_points.hpp"
+#include "kluft/simulation/state_fields.hpp"
 #include "kluft/simulation/strength_reduction.hpp"
 #include "support/scene_run.hpp"
 
@@ -43,10 +43,10 @@ solver: {{tolerance: 1e-10}}
 TEST(StrengthReduction, BlockOnASlopeHasTheRatioOfTheTangentsAsFactorOfSafety) {
     for (const double slope : {12.0, 20.0, 29.0}) {
         const auto run = run_scene(block_on_slope(slope, "{to: 4, tolerance: 1e-6}"));
-        ASSERT_TRUE(run.report.factor_of_safety) << run.report.diagnosis;
+        ASSERT_TRUE(run.report.results.factor_of_safety) << run.report.diagnosis;
         EXPECT_EQ(run.report.status, RunStatus::collapsed);
         const double expected = std::tan(30 * degree) / std::tan(slope * degree);
-        EXPECT_NEAR(*run.report.factor_of_safety, expected, 3e-6 * expected);
+        EXPECT_NEAR(*run.report.results.factor_of_safety, expected, 3e-6 * expected);
         EXPECT_EQ(run.report.unbalanced_steps, 0);
     }
 }
@@ -66,38 +66,38 @@ stages:
   - {name: load, pressure: {top: 0.1 MPa, bottom: 0.1 MPa}}
   - {name: reduction, strength_reduction: {to: 20, interfaces: [bond]}, steps: 20}
 )");
-    ASSERT_TRUE(run.report.factor_of_safety) << run.report.diagnosis;
+    ASSERT_TRUE(run.report.results.factor_of_safety) << run.report.diagnosis;
     EXPECT_EQ(run.report.status, RunStatus::collapsed);
     const auto strength = [](double f) {
         const double phi = std::atan(std::tan(30 * degree) / f);
         return 2 * 0.1e6 / f * std::cos(phi) / (1 - std::sin(phi));
     };
-    EXPECT_NEAR(strength(*run.report.factor_of_safety), 0.1e6, 2e-3 * 0.1e6);
+    EXPECT_NEAR(strength(*run.report.results.factor_of_safety), 0.1e6, 2e-3 * 0.1e6);
 }
 
 // A slope above the friction angle is weak: its factor of safety is less than 1, and its weight is brought up with
 // strengths that are not divided but multiplied.
 TEST(StrengthReduction, SlopeSteeperThanItsFrictionAngleHasAFactorBelowOne) {
     const auto run = run_scene(block_on_slope(40.0, "{from: 0.3, to: 1, tolerance: 1e-6}"));
-    ASSERT_TRUE(run.report.factor_of_safety) << run.report.diagnosis;
+    ASSERT_TRUE(run.report.results.factor_of_safety) << run.report.diagnosis;
     const double expected = std::tan(30 * degree) / std::tan(40 * degree);
-    EXPECT_NEAR(*run.report.factor_of_safety, expected, 3e-6 * expected);
+    EXPECT_NEAR(*run.report.results.factor_of_safety, expected, 3e-6 * expected);
     EXPECT_EQ(run.history.front().strength_factor, 0.3);
-    EXPECT_EQ(run.history.back().strength_factor, run.report.factor_of_safety);
+    EXPECT_EQ(run.history.back().strength_factor, run.report.results.factor_of_safety);
 }
 
 // The default tolerance, and a factor that lies between two steps of the stage.
 TEST(StrengthReduction, FactorOfSafetyIsFoundWithinItsTolerance) {
     const auto run = run_scene(block_on_slope(20.0, "{to: 2}"));
-    ASSERT_TRUE(run.report.factor_of_safety) << run.report.diagnosis;
+    ASSERT_TRUE(run.report.results.factor_of_safety) << run.report.diagnosis;
     const double expected = std::tan(30 * degree) / std::tan(20 * degree);
-    EXPECT_NEAR(*run.report.factor_of_safety, expected, 2e-4 * expected);
+    EXPECT_NEAR(*run.report.results.factor_of_safety, expected, 2e-4 * expected);
 }
 
 TEST(StrengthReduction, BodyThatStandsToTheEndHasNoFactorOfSafetyButAWarning) {
     const auto run = run_scene(block_on_slope(20.0, "{to: 1.5}"));
     EXPECT_EQ(run.report.status, RunStatus::done) << run.report.diagnosis;
-    EXPECT_FALSE(run.report.factor_of_safety);
+    EXPECT_FALSE(run.report.results.factor_of_safety);
     ASSERT_EQ(run.report.warnings.size(), 1U);
     EXPECT_NE(run.report.warnings.front().find("above 1.5"), std::string::npos);
     EXPECT_EQ(run.history.back().strength_factor, 1.5);
@@ -106,7 +106,7 @@ TEST(StrengthReduction, BodyThatStandsToTheEndHasNoFactorOfSafetyButAWarning) {
 TEST(StrengthReduction, BodyThatDoesNotStandAtTheFirstFactorHasNone) {
     const auto run = run_scene(block_on_slope(40.0, "{to: 2}"));
     EXPECT_NE(run.report.status, RunStatus::done);
-    EXPECT_FALSE(run.report.factor_of_safety);
+    EXPECT_FALSE(run.report.results.factor_of_safety);
 }
 
 TEST(StrengthReduction, InterfacesThatAreNotNamedKeepTheirStrength) {
@@ -114,7 +114,7 @@ TEST(StrengthReduction, InterfacesThatAreNotNamedKeepTheirStrength) {
         block_on_slope(20.0, "{to: 2, interfaces: [other]}",
                        "other: {kind: fracture, normal_stiffness: 1e11, shear_stiffness: 1e11, friction_angle: 30}"));
     EXPECT_EQ(run.report.status, RunStatus::done) << run.report.diagnosis;
-    EXPECT_FALSE(run.report.factor_of_safety);
+    EXPECT_FALSE(run.report.results.factor_of_safety);
 }
 
 // A bond on a slope that nothing holds once it is broken: it breaks where c L/F + W cos tan(phi)/F = W sin.
@@ -124,18 +124,18 @@ TEST(StrengthReduction, StrengthOfAPotentialCrackIsDividedToo) {
                                               "1e11, fails_to: joint, cohesion: 20 kPa, "
                                               "friction_angle: 30, tensile_strength: 30 kPa}",
                                               "bond"));
-    ASSERT_TRUE(run.report.factor_of_safety) << run.report.diagnosis;
+    ASSERT_TRUE(run.report.results.factor_of_safety) << run.report.diagnosis;
     const double weight = 2500.0 * 10.0 * 4.0;
     const double expected =
         (20e3 * 4.0 + weight * std::cos(50 * degree) * std::tan(30 * degree)) / (weight * std::sin(50 * degree));
-    EXPECT_NEAR(*run.report.factor_of_safety, expected, 1e-5 * expected);
+    EXPECT_NEAR(*run.report.results.factor_of_safety, expected, 1e-5 * expected);
     EXPECT_TRUE(run.cracks.empty()); // of the steps that failed nothing is told
 }
 
 // What pictures show of the last state is computed with the strengths that it stood with.
 TEST(StrengthReduction, FieldsOfASavedStateHaveTheReducedStrengths) {
     const auto run = run_scene(block_on_slope(20.0, "{to: 2, tolerance: 1e-6}"));
-    ASSERT_TRUE(run.report.factor_of_safety);
+    ASSERT_TRUE(run.report.results.factor_of_safety);
     const auto& shown = run.fields.back().interfaces.front();
     const auto saved = fields_of_state(run.model, run.state).interfaces.front();
     EXPECT_NEAR(saved.shear_traction, shown.shear_traction, 1e-6 * std::abs(shown.shear_traction));
@@ -155,12 +155,12 @@ TEST(StrengthReduction, RunThatIsResumedInTheStageFindsTheSameFactor) {
     State state = initial_state(model);
     EXPECT_EQ(run_simulation(model, scene.cracks, scene.solver, state, observer, observer.stop).status,
               RunStatus::interrupted);
-    EXPECT_EQ(state.step_in_stage, 1);
+    EXPECT_EQ(state.at.step_in_stage, 1);
     observer.stop = false;
     const auto resumed = run_simulation(model, scene.cracks, scene.solver, state, observer, observer.stop);
-    ASSERT_TRUE(resumed.factor_of_safety) << resumed.diagnosis;
+    ASSERT_TRUE(resumed.results.factor_of_safety) << resumed.diagnosis;
     const double expected = std::tan(30 * degree) / std::tan(20 * degree);
-    EXPECT_NEAR(*resumed.factor_of_safety, expected, 2e-5 * expected);
+    EXPECT_NEAR(*resumed.results.factor_of_safety, expected, 2e-5 * expected);
 }
 
 /// A vertical face of 10 m over a plane that dips 45 degrees out of it; c 20 kPa, phi 30 degrees, 25 kN/m3.
@@ -194,9 +194,9 @@ TEST(StrengthReduction, PlanarSlopeHasTheFactorOfSafetyOfLimitEquilibrium) {
     };
     EXPECT_NEAR(factor(length), 0.8974, 5e-5);
     const auto run = run_scene(planar_slope("[[0, 0], [9.99, 9.990001], [10, 10]]", 20.0));
-    ASSERT_TRUE(run.report.factor_of_safety) << run.report.diagnosis;
-    EXPECT_NEAR(*run.report.factor_of_safety, factor(length), 1e-4);
-    EXPECT_NEAR(*run.report.factor_of_safety, factor(length * (1.0 - 0.001 / 6.0)), 3e-5);
+    ASSERT_TRUE(run.report.results.factor_of_safety) << run.report.diagnosis;
+    EXPECT_NEAR(*run.report.results.factor_of_safety, factor(length), 1e-4);
+    EXPECT_NEAR(*run.report.results.factor_of_safety, factor(length * (1.0 - 0.001 / 6.0)), 3e-5);
 }
 
 } // namespace

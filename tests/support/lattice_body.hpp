@@ -97,9 +97,9 @@ inline ContactSurfaces surfaces_of(const BlockSystem& system, const std::vector<
 /// Every pair that has a point.
 inline BlockPattern pattern_of(const EquilibriumProblem& problem) {
     std::vector<std::pair<int, int>> pairs;
-    for (const auto& bond : problem.bonds) pairs.emplace_back(bond.block_a, bond.block_b);
-    for (const auto& point : problem.contacts) pairs.emplace_back(point.block_a, point.block_b);
-    return {problem.system->n_blocks(), pairs, problem.kinematics};
+    for (const auto& bond : problem.body.placement->bonds) pairs.emplace_back(bond.block_a, bond.block_b);
+    for (const auto& point : problem.body.placement->contacts) pairs.emplace_back(point.block_a, point.block_b);
+    return {problem.body.system->n_blocks(), pairs, problem.body.kinematics};
 }
 
 } // namespace kluft

@@ -14,7 +14,8 @@
 namespace kluft {
 
 /// A loaded body with the mass-like term that leads to its equilibrium.
-struct EquilibriumProblem : LoadedBody {
+struct EquilibriumProblem {
+    LoadedBody body;
     std::vector<double> eta;      ///< per block, of the mass-like term (Pa/m2); empty switches it off
     double least_mass_area = 0.0; ///< a block counts with at least this area in M (m2)
     Eigen::VectorXd start;        ///< q_start of the mass-like term

@@ -55,6 +55,18 @@ struct Stage {
     int steps = 1;
 };
 
+[[nodiscard]] inline bool is_platen_loaded_by_stress(const Stage& stage) {
+    return stage.motion && stage.motion->control == PlatenControl::stress;
+}
+/// By pressures, weight or a platen under stress: past its strength the body has nothing to stop it.
+[[nodiscard]] inline bool is_loaded_by_stress(const Stage& stage) {
+    return !stage.motion || is_platen_loaded_by_stress(stage);
+}
+/// By a platen whose travel is given.
+[[nodiscard]] inline bool prescribes_strain(const Stage& stage) {
+    return stage.motion && stage.motion->control != PlatenControl::stress;
+}
+
 enum class Support {
     none,
     smooth, ///< no motion normal to the boundary

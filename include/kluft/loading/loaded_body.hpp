@@ -24,20 +24,32 @@ struct PointLoad {
     Vec2 force = Vec2::Zero();
 };
 
+/// Where the blocks of a body meet, in frames that stay fixed during a solve.
+struct Placement {
+    std::vector<Bond> bonds;
+    std::vector<ContactPoint> contacts;
+};
+
+/// What acts on a body and what holds it, at one load level.
+struct Loads {
+    Constraints constraints;
+    std::vector<PressureEdge> pressure_edges;
+    std::vector<double> pressures; ///< per boundary (Pa)
+    std::vector<PointLoad> point_loads;
+    Vec2 gravity = Vec2::Zero();             ///< m/s2; fixed blocks have no weight
+    std::optional<PlatenForce> platen_force; ///< on the platen whose travel is unknown
+};
+
+/// A body in one placement under one load. It refers to its parts, which must outlive it: bodies under different loads
+/// share a placement at no cost.
 struct LoadedBody {
     Kinematics kinematics = Kinematics::affine; ///< rigid blocks have no elastic forces
     const BlockSystem* system = nullptr;
     const std::vector<ElasticModuli>* moduli = nullptr; ///< per material
+    const std::vector<double>* densities = nullptr;     ///< per material (kg/m3); null without gravity
     const std::vector<InterfaceLaw>* laws = nullptr;
-    std::vector<Bond> bonds;
-    std::vector<ContactPoint> contacts;
-    std::vector<PressureEdge> pressure_edges;
-    std::vector<double> pressures; ///< per boundary (Pa)
-    std::vector<double> densities; ///< per material (kg/m3); empty without gravity
-    Vec2 gravity = Vec2::Zero();   ///< m/s2; fixed blocks have no weight
-    std::vector<PointLoad> point_loads;
-    Constraints constraints;
-    std::optional<PlatenForce> platen_force; ///< on the platen whose travel is unknown
+    const Placement* placement = nullptr;
+    const Loads* loads = nullptr;
 };
 
 struct BodyForces {

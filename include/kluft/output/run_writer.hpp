@@ -13,6 +13,7 @@
 #include "kluft/blocks/block_system.hpp"
 #include "kluft/constitutive/material.hpp"
 #include "kluft/output/summary.hpp"
+#include "kluft/simulation/run_report.hpp"
 #include "kluft/simulation/step_observer.hpp"
 
 namespace kluft {
@@ -36,18 +37,10 @@ struct RunWriterOptions {
 
 /// How a run ended and what it cost.
 struct RunOutcome {
-    RunStatus status = RunStatus::done;
-    std::string message;                        ///< the diagnosis, if not done
-    std::map<std::string, std::int64_t> counts; ///< of what was computed, by name
-    std::optional<int> open_close_iterations;   ///< all linear solves; none: the sum over the rows of history.csv
+    RunReport report;
     int unknowns = 0;
-    double elapsed_s = 0.0;
-    double cpu_s = 0.0;
-    std::map<std::string, double> seconds; ///< by stage of the computation
+    double cpu_s = 0.0; ///< processor time, also of the runs that it goes on from
     std::string version;
-    std::optional<double> factor_of_safety;
-    std::optional<double> estimated_error; ///< where an accuracy was asked for
-    std::optional<MotionReport> motion;    ///< of an explicit run
 };
 
 /// Writes history.csv, equilibria.csv, cracks.csv and histories.csv row by row, field files, state.h5 at checkpoints, and at the end

@@ -3,13 +3,12 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "kluft/constitutive/material.hpp"
-#include "kluft/simulation/run_costs.hpp"
+#include "kluft/simulation/run_report.hpp"
 #include "kluft/simulation/run_status.hpp"
 #include "kluft/simulation/step_record.hpp"
 
@@ -29,7 +28,6 @@ struct CurveNumbers {
     int cracks_shear = 0;
     int steps = 0;
     int unbalanced_steps = 0;
-    int open_close_iterations = 0;
 };
 
 /// Rows of the stages from `platen_stage` on, and the last row before them (the state in which the platen starts).
@@ -60,18 +58,13 @@ struct RunSummary {
     int blocks = 0;
     int interfaces = 0;
     int unknowns = 0;
-    std::map<std::string, std::int64_t> counts; ///< of what was computed: factorizations, analyses, updates,
-                                                ///< rank, refinements, relaxations, events,
-                                                ///< rejected_steps
-    double elapsed_s = 0.0;
+    RunCosts costs;
     double cpu_s = 0.0; ///< processor time of all threads, in the system included
     std::int64_t peak_memory_bytes = 0;
     std::string version;
-    std::map<std::string, double> seconds;  ///< by stage of the computation
-    std::string message;                    ///< why the run ended, if not done
-    std::optional<double> factor_of_safety; ///< of a strength reduction that went past it
-    std::optional<double> estimated_error;  ///< of the history up to its peak, where an accuracy was asked for
-    std::optional<MotionReport> motion;     ///< of an explicit run
+    std::string message; ///< why the run ended, if not done
+    RunResults results;
+    std::optional<MotionReport> motion; ///< of an explicit run
 };
 
 /// The text of summary.json. What is not known or not a finite number is null.

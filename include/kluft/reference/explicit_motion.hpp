@@ -31,12 +31,17 @@ struct EnergyBalance {
 /// space of their rows, with inertia. A contact keeps its history at every time step.
 class ExplicitMotion {
 public:
-    /// At rest at q. `masses`: one per block (kg/m).
-    ExplicitMotion(LoadedBody body, std::vector<Mat6> masses, double damping, Eigen::VectorXd q);
+    /// At rest at q. `masses`: one per block (kg/m). Placement and loads of `body` itself are not looked at.
+    ExplicitMotion(const LoadedBody& body, Placement placement, Loads loads, std::vector<Mat6> masses, double damping,
+                   Eigen::VectorXd q);
+    ExplicitMotion(const ExplicitMotion&) = delete; // the body refers to the placement and the loads
+    ExplicitMotion& operator=(const ExplicitMotion&) = delete;
+    ~ExplicitMotion() = default;
 
-    /// Pressures, weight, point loads, platen force and targets of the constraints may be set between time steps.
-    [[nodiscard]] LoadedBody& body() { return body_; }
     [[nodiscard]] const LoadedBody& body() const { return body_; }
+    /// All but the rows of the constraints may be changed between time steps.
+    [[nodiscard]] Loads& loads() { return loads_; }
+    [[nodiscard]] Placement& placement() { return placement_; }
     /// To be called after the rows of the constraints or the points of bonds and contacts were replaced.
     void restart();
     /// A bond broke: `energy` is what its springs lost (J/m).
@@ -79,6 +84,8 @@ private:
     void accelerate_free_blocks(double interval);
     void accelerate_held_blocks(double interval);
 
+    Placement placement_; ///< with the histories of the last time step
+    Loads loads_;
     LoadedBody body_;
     std::vector<Mat6> masses_, inverse_masses_;
     double damping_;

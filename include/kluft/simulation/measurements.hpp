@@ -33,6 +33,9 @@ struct Strains {
 [[nodiscard]] Strains measure_strains(const Model& model, const Gauges& gauges, const Eigen::VectorXd& q,
                                       const Eigen::VectorXd& reference);
 
+/// Severity of a contact state, to name an interface by its worst point: open 0, locked 1, sliding 2.
+[[nodiscard]] int severity(ContactState state);
+
 /// Contact states by interface and further touching pairs, each counted once by its worst point.
 struct ContactCounts {
     int open = 0;
@@ -51,7 +54,5 @@ struct ContactCounts {
 [[nodiscard]] StepRecord measure_step(const Model& model, const Gauges& gauges, const State& state,
                                       const LoadedBody& body, const StageLoads& loads, const Eigen::VectorXd& q,
                                       const Eigen::VectorXd& forces);
-
-[[nodiscard]] FieldRecord field_record(const Model& model, const State& state, const LoadedBody& body);
 
 } // namespace kluft

@@ -32,6 +32,33 @@ struct RunCosts {
     RunSeconds seconds;
 };
 
+/// Calls visit(name, member) for each counter, by the name that it has in state.h5, in summary.json and in the tables of a
+/// study. `costs`: RunCosts, const or not.
+template <class Costs, class Visit> void visit_counts(Costs& costs, Visit&& visit) {
+    visit("open_close_iterations", costs.open_close_iterations);
+    visit("factorizations", costs.factorizations);
+    visit("analyses", costs.analyses);
+    visit("updates", costs.updates);
+    visit("rank", costs.largest_rank);
+    visit("refinements", costs.refinements);
+    visit("relaxations", costs.relaxations);
+    visit("events", costs.events);
+    visit("rejected_steps", costs.rejected_steps);
+}
+
+/// The same for the times (s). `seconds`: RunSeconds, const or not.
+template <class Seconds, class Visit> void visit_seconds(Seconds& seconds, Visit&& visit) {
+    visit("detection", seconds.detection);
+    visit("set_up", seconds.set_up);
+    visit("assembly", seconds.assembly);
+    visit("analysis", seconds.analysis);
+    visit("factorization", seconds.factorization);
+    visit("update", seconds.update);
+    visit("solution", seconds.solution);
+    visit("crack_check", seconds.crack_check);
+    visit("output", seconds.observers);
+}
+
 /// What an explicit run did.
 struct MotionReport {
     long time_steps = 0;

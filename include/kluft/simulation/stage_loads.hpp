@@ -1,9 +1,10 @@
-// What a stage does to the outline: pressures, and platens that prescribe displacements.
+// What a stage does to the body as a function of the load factor: pressures, weight, forces, platens, strengths.
 #pragma once
 
 #include <optional>
 #include <vector>
 
+#include "kluft/constitutive/interface_law.hpp"
 #include "kluft/loading/boundary_loads.hpp"
 #include "kluft/loading/loaded_body.hpp"
 #include "kluft/simulation/model.hpp"
@@ -11,32 +12,10 @@
 
 namespace kluft {
 
-/// Mean outward normal of a boundary before loading (unit), and its length (m).
-struct BoundaryFrame {
-    Vec2 normal = Vec2::Zero();
-    double length = 0.0;
-};
-[[nodiscard]] BoundaryFrame boundary_frame(const BlockSystem& system, int boundary);
-
-/// The boundary whose normal is most opposite to that of `boundary`; -1 if none faces the other way.
-[[nodiscard]] int opposite_boundary(const BlockSystem& system, int boundary);
-
-/// Mean position of a boundary before loading, local coordinates (m).
-[[nodiscard]] Vec2 mean_position(const BlockSystem& system, int boundary);
-
-/// Mean displacement of a boundary, weighted by length (m).
-[[nodiscard]] Vec2 mean_displacement(const BlockSystem& system, const Eigen::VectorXd& q, int boundary);
-
-/// The two boundaries across `boundary`, on the side of its normal turned clockwise first; empty if there are not two.
-[[nodiscard]] std::vector<int> lateral_boundaries(const BlockSystem& system, int boundary);
-
-/// The mean width between the lateral boundaries, for a platen on `boundary`: its length where there are none.
-[[nodiscard]] PlatenForce width_across(const BlockSystem& system, int boundary);
-
 /// The loads of one stage as functions of the load factor.
 class StageLoads {
 public:
-    StageLoads(const Model& model, const State& stage_start, const Stage& stage);
+    StageLoads(const Model& model, const StageStart& start, const Stage& stage);
 
     /// Pressure per boundary at a load factor (Pa); 0 on boundaries that platens hold.
     [[nodiscard]] std::vector<double> pressures(double load_factor) const;
@@ -67,21 +46,30 @@ private:
 /// it can follow. Supports that only hold cannot contradict each other.
 void refuse_contradicting_supports(const Model& model);
 
+/// The loads at a load factor, and the strengths of the interfaces under them. A LoadedBody refers to `loads` and `laws`.
+struct LoadsAt {
+    Loads loads;
+    std::vector<InterfaceLaw> laws; ///< per interface type and kind of broken edge, reduced by `strength_factor`
+    double load_factor = 0.0;
+    double strength_factor = 1.0; ///< F that strengths are divided by
+};
+[[nodiscard]] LoadsAt loads_at(const Model& model, const StageLoads& stage_loads, int stage, double load_factor);
+
+/// Sets all loads of a load factor but the rows of the constraints and the edges under pressure, which are the stage's.
+/// The weight grows in the first stage and in those that have a gravity.
+void move_loads(const Model& model, const StageLoads& stage_loads, int stage, double load_factor, Loads& loads);
+
 /// The loads of the state's stage. At its start the state remembers the displacements that it started from.
 [[nodiscard]] StageLoads enter_stage(const Model& model, State& state);
 
 /// Goes on to the next stage, with the pressures of the end of this one; on a boundary that was held it is the mean
-/// normal stress. `forces` = internal - external forces without the supports'.
-void leave_stage(const Model& model, const StageLoads& loads, const LoadedBody& body, const Eigen::VectorXd& forces,
+/// normal stress. `loads` are those at the end of the stage, `forces` = internal - external forces without the supports'.
+void leave_stage(const Model& model, const StageLoads& stage_loads, const Loads& loads, const Eigen::VectorXd& forces,
                  State& state);
-
-/// Sets pressures, platens, point forces and weight of a load factor. The weight grows in the first stage and in those
-/// that have a gravity.
-void apply_load(const Model& model, const StageLoads& loads, int stage, double load_factor, LoadedBody& body);
 
 /// Mean normal stress on a boundary: its pressure, or the support's reaction over the current length (Pa).
 /// `forces` = internal - external forces without the supports'.
-[[nodiscard]] double boundary_stress(const LoadedBody& body, const Eigen::VectorXd& forces, int boundary, bool held,
+[[nodiscard]] double boundary_stress(const Loads& loads, const Eigen::VectorXd& forces, int boundary, bool held,
                                      double current_length, const Vec2& normal);
 
 } // namespace kluft

@@ -1,7 +1,6 @@
 // The state of a body: all that changes during a run, and only at commit. A checkpoint is a State.
 #pragma once
 
-#include <compare>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -21,47 +20,111 @@ enum class InterfaceStatus : std::uint8_t {
     shear_crack      ///< a potential crack broken in shear, now a fracture
 };
 
-/// Of runs whose load steps follow from an accuracy.
+/// Where a run stands in its loads.
+struct LoadPlace {
+    int stage = 0;            ///< stage in progress, from 0
+    int step_in_stage = 0;    ///< load steps of the stage committed
+    int step = 0;             ///< load steps committed in all
+    double load_factor = 0.0; ///< of the stage, 0..1
+};
+
+/// The physics: what the next equilibrium follows from.
+struct BodyState {
+    Eigen::VectorXd displacement;            ///< (u, D) per block, size 6 n_blocks, m; see kinematics/affine.hpp
+    std::vector<InterfaceStatus> interfaces; ///< one per interface
+    std::vector<double> bond_shear; ///< shear traction at the two Gauss points of each bond, size 2 n_interfaces, Pa
+    std::vector<ContactMemory> contacts; ///< of touching contact points, sorted by key
+};
+
+/// What the loads of a stage are counted from.
+struct StageStart {
+    Eigen::VectorXd displacement;          ///< size 6 n_blocks, m
+    std::vector<double> boundary_pressure; ///< one per boundary, Pa
+};
+
+/// What makes the next solve cheaper. Without it a run takes longer and its path changes within the tolerances.
+struct SolverMemory {
+    Eigen::VectorXd
+        rate; ///< displacement per unit of load factor of a smooth last step: the predictor; empty without one
+    std::vector<double> viscosity_factor; ///< of the mass-like term per block since the last relaxation; empty: 1
+    std::vector<std::pair<int, int>> near_pairs; ///< blocks the matrix was ordered for, besides those at interfaces
+    /// Contact points that the next load step may keep, and the load steps taken with them: only where contacts are not
+    /// detected in each step. Not saved: a resumed run detects anew.
+    std::vector<ContactPoint> kept_points;
+    int steps_since_detection = 0;
+};
+
+/// The size of load steps that follow from an accuracy, and the errors made so far.
 struct StepControl {
-    double size = 0.0;           ///< of the next step, load factor
-    double curvature = 0.0;      ///< path error of the last step that was judged, over the square of its size
-    double lag = 0.0;            ///< part of the error in proportion to the size, over the size: it does not add up
-    double axial_stress = 0.0;   ///< of the last equilibrium (Pa)
-    double largest_stress = 0.0; ///< axial, of all equilibria so far (Pa)
-    double largest_mean_stress = 0.0; ///< root of the mean square over the body, where loads are prescribed (Pa)
-    double path_error = 0.0;          ///< sum over the steps so far, relative
-    double event_error = 0.0;         ///< largest |f - 1| at an event so far
-    double estimated_error = 0.0;     ///< both, at the largest stress (so far, where loads are prescribed)
-    int stage_of_largest = -1;        ///< in which the largest stress was reached
-    int missed_events = 0;            ///< in succession: the last steps ended where an event was expected, in vain
-    std::vector<int> slipped;         ///< mapped fractures that have slipped, in the order in which they did
+    double size = 0.0;            ///< of the next step, load factor
+    double curvature = 0.0;       ///< path error of the last step that was judged, over the square of its size
+    double lag = 0.0;             ///< part of the error in proportion to the size, over the size: it does not add up
+    double path_error = 0.0;      ///< sum over the steps so far, relative
+    double event_error = 0.0;     ///< largest |f - 1| at an event so far
+    double estimated_error = 0.0; ///< both, at the largest stress (so far, where loads are prescribed)
+    int missed_events = 0;        ///< in succession: the last steps ended where an event was expected, in vain
+    std::vector<int> slipped;     ///< mapped fractures that have slipped, in the order in which they did
 
     bool operator==(const StepControl&) const = default;
 };
 
-struct State {
-    int stage = 0;                            ///< stage in progress, from 0
-    int step_in_stage = 0;                    ///< load steps accepted in it
-    int step = 0;                             ///< load steps accepted in all
-    double load_factor = 0.0;                 ///< of the stage, 0..1
-    Eigen::VectorXd displacement;             ///< (u, D) per block, size 6 n_blocks, m; see kinematics/affine.hpp
-    Eigen::VectorXd stage_start_displacement; ///< the same at the start of the stage
-    Eigen::VectorXd
-        reference_displacement; ///< at the start of the first stage that moves a platen: zero of the strains
-    bool reference_set = false;
-    std::vector<InterfaceStatus> interfaces; ///< one per interface
-    std::vector<double> bond_shear; ///< shear traction at the two Gauss points of each bond, size 2 n_interfaces, Pa
-    std::vector<ContactMemory> contacts;   ///< of touching contact points, sorted by key
-    std::vector<double> boundary_pressure; ///< at the start of the stage, one per boundary, Pa
-    double unbalanced_ratio = 0.0;
-    int unbalanced_in_succession = 0;
-    Eigen::VectorXd displacement_rate; ///< per unit of load factor, of a smooth last step; empty without one
-    std::vector<double>
-        viscosity_factor; ///< factor of the mass-like term per block since the last relaxation; empty: 1 everywhere
-    std::vector<std::pair<int, int>>
-        near_pairs; ///< blocks that the matrix was ordered for, besides those at interfaces
-    StepControl control;
-    RunCosts costs; ///< so far
+/// The stresses so far that errors of the history are relative to.
+struct StressHistory {
+    double axial = 0.0;         ///< at the last equilibrium (Pa)
+    double largest_axial = 0.0; ///< magnitude, of all balanced equilibria (Pa)
+    double largest_mean = 0.0;  ///< root of the mean square over the body, where loads are prescribed (Pa)
+    int stage_of_largest = -1;  ///< in which the largest axial stress was reached
+
+    bool operator==(const StressHistory&) const = default;
 };
+
+struct State {
+    LoadPlace at;
+    BodyState body;
+    StageStart stage_start;
+    Eigen::VectorXd strain_zero; ///< displacement at the start of the first stage that moves a platen (m); empty before
+    SolverMemory memory;
+    StepControl control;
+    StressHistory stresses;
+    bool is_settled = true; ///< false: bonds failed here, or the load step did, and no equilibrium has been found since
+    int unbalanced_in_succession = 0; ///< load steps
+    RunCosts costs;                   ///< so far
+};
+
+/// Calls visit(name, member) for every member of a state that is saved, by its name in state.h5. `state`: State, const or
+/// not.
+template <class Members, class Visit> void visit_saved(Members& state, Visit&& visit) {
+    visit("stage", state.at.stage);
+    visit("step_in_stage", state.at.step_in_stage);
+    visit("step", state.at.step);
+    visit("load_factor", state.at.load_factor);
+    visit("displacement", state.body.displacement);
+    visit("interfaces", state.body.interfaces);
+    visit("bond_shear", state.body.bond_shear);
+    visit("contacts", state.body.contacts);
+    visit("stage_start_displacement", state.stage_start.displacement);
+    visit("stage_start_pressure", state.stage_start.boundary_pressure);
+    visit("strain_zero", state.strain_zero);
+    visit("rate", state.memory.rate);
+    visit("viscosity_factor", state.memory.viscosity_factor);
+    visit("near_pairs", state.memory.near_pairs);
+    visit("step_size", state.control.size);
+    visit("step_curvature", state.control.curvature);
+    visit("step_lag", state.control.lag);
+    visit("path_error", state.control.path_error);
+    visit("event_error", state.control.event_error);
+    visit("estimated_error", state.control.estimated_error);
+    visit("missed_events", state.control.missed_events);
+    visit("slipped", state.control.slipped);
+    visit("axial_stress", state.stresses.axial);
+    visit("largest_axial_stress", state.stresses.largest_axial);
+    visit("largest_mean_stress", state.stresses.largest_mean);
+    visit("stage_of_largest_stress", state.stresses.stage_of_largest);
+    visit("is_settled", state.is_settled);
+    visit("unbalanced_in_succession", state.unbalanced_in_succession);
+    visit("elapsed_s", state.costs.elapsed_s);
+    visit_counts(state.costs, visit);
+    visit_seconds(state.costs.seconds, visit);
+}
 
 } // namespace kluft

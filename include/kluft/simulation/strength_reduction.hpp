@@ -7,7 +7,6 @@
 #include "kluft/constitutive/interface_law.hpp"
 #include "kluft/constitutive/strength_envelope.hpp"
 #include "kluft/simulation/model.hpp"
-#include "kluft/simulation/state.hpp"
 
 namespace kluft {
 
@@ -18,12 +17,11 @@ namespace kluft {
 /// F at a load factor of a stage.
 [[nodiscard]] double strength_factor(const LoadProgram& loads, int stage, double load_factor);
 
-/// Strengths divided by F, of the interface types that the reduction names. Stiffness and tensile strength stay; a
-/// dilation angle is cut to the friction angle that is left.
-struct ReducedStrengths {
-    std::vector<InterfaceLaw> laws;  ///< per interface type
-    std::vector<Strength> strengths; ///< per interface
-};
-[[nodiscard]] ReducedStrengths reduced_strengths(const Model& model, int stage, double load_factor);
+/// The laws of the model with tan(phi) and c divided by `factor`, of the interface types that the reduction of a stage
+/// names. Stiffness and tensile strength stay; a dilation angle is cut to the friction angle that is left.
+[[nodiscard]] std::vector<InterfaceLaw> reduced_laws(const Model& model, int stage, double factor);
+
+/// The strengths of the potential cracks divided in the same way, one per interface.
+[[nodiscard]] std::vector<Strength> reduced_strengths(const Model& model, int stage, double factor);
 
 } // namespace kluft

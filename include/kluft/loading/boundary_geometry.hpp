@@ -1,0 +1,39 @@
+// The sides of a body before loading: where they lie, which way they face, which lie across.
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "kluft/blocks/block_system.hpp"
+#include "kluft/core/vector.hpp"
+#include "kluft/loading/boundary_loads.hpp"
+
+namespace kluft {
+
+/// Mean outward normal of a boundary before loading (unit), and its length (m).
+struct BoundaryFrame {
+    Vec2 normal = Vec2::Zero();
+    double length = 0.0;
+};
+[[nodiscard]] BoundaryFrame boundary_frame(const BlockSystem& system, int boundary);
+
+/// The boundary whose normal is most opposite to that of `boundary`; -1 if none faces the other way.
+[[nodiscard]] int opposite_boundary(const BlockSystem& system, int boundary);
+
+/// Mean position of a boundary before loading, local coordinates (m).
+[[nodiscard]] Vec2 mean_position(const BlockSystem& system, int boundary);
+
+/// Mean displacement of a boundary, weighted by length (m).
+[[nodiscard]] Vec2 mean_displacement(const BlockSystem& system, const Eigen::VectorXd& q, int boundary);
+
+/// The distance of a boundary from the opposite one along its normal; from the lower corner of the body without one (m).
+[[nodiscard]] double distance_across(const BlockSystem& system, int boundary);
+
+/// The two boundaries across `boundary`, on the side of its normal turned clockwise first; empty if there are not two.
+[[nodiscard]] std::vector<int> lateral_boundaries(const BlockSystem& system, int boundary);
+
+/// The mean width between the lateral boundaries, for a platen on `boundary`: its length where there are none.
+[[nodiscard]] PlatenForce width_across(const BlockSystem& system, int boundary);
+
+} // namespace kluft

@@ -1,0 +1,15 @@
+// Potential cracks that fail at the end of a load step, and the equilibrium after them.
+#pragma once
+
+#include "kluft/simulation/step_in_progress.hpp"
+
+namespace kluft {
+
+/// Makes potential cracks fail at the end of the step and finds equilibrium again at the same load, until none fails.
+void break_bonds(StepInProgress& in_progress);
+
+/// The largest failure index f of the potential cracks at q; at most 10, for a strength of zero makes it infinite.
+[[nodiscard]] double largest_failure_index(const StepInProgress& in_progress, const Placement& placement,
+                                           const LoadsAt& at, const Eigen::VectorXd& q);
+
+} // namespace kluft

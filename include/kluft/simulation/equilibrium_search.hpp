@@ -1,0 +1,82 @@
+// The search for one equilibrium: open-close iteration, repeated until the mass-like term no longer changes the answer.
+#pragma once
+
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "kluft/assembly/block_matrix.hpp"
+#include "kluft/assembly/linear_solver.hpp"
+#include "kluft/equilibrium/equilibrium_problem.hpp"
+#include "kluft/equilibrium/open_close_solver.hpp"
+#include "kluft/simulation/model.hpp"
+#include "kluft/simulation/run_costs.hpp"
+#include "kluft/simulation/simulation_options.hpp"
+
+namespace kluft {
+
+/// How near to balance an equilibrium must come.
+struct Balance {
+    double share = 1e-3; ///< largest share of the mass-like term in F_ref
+    /// A share that does not fall from one solve to the next is the motion of a body that slides, unless it is below this.
+    double rest_share = std::numeric_limits<double>::infinity();
+};
+
+/// What was found at one load level.
+struct Equilibrium {
+    Eigen::VectorXd displacement; ///< size 6 n_blocks (m)
+    Eigen::VectorXd start;        ///< q_start of the mass-like term in the last solve (m)
+    OpenCloseSummary summary;     ///< of the last solve
+    double load_factor = 0.0;     ///< of the stage
+    double strength_factor = 1.0; ///< F that strengths are divided by
+    double viscous_share = 0.0;   ///< of the mass-like term in F_ref
+    int iterations = 0;           ///< linear solves of all solves
+    int worst_block = -1;         ///< with the largest residual in the first solve
+    bool balanced = false;
+    [[nodiscard]] bool converged() const { return summary.converged(); }
+};
+
+/// The linear solver, the open-close iteration and the pattern of the matrix, which holds every pair of blocks of the
+/// problems to be solved. What is found does not depend on what was found before, to within the tolerance; to the bit if
+/// the factor was forgotten.
+class EquilibriumSearch {
+public:
+    EquilibriumSearch(const Model& model, const SolverOptions& options);
+
+    /// Of |R|/F_ref, in the solves to come.
+    void set_tolerance(double tolerance) { open_close_.set_tolerance(tolerance); }
+    /// The next linear solve makes a new factor.
+    void forget_factor() { open_close_.forget_factor(); }
+
+    /// Makes sure that the pattern holds the pairs of all points. Where it does not, the matrix is ordered anew, for
+    /// `near_pairs` besides the pairs at interfaces.
+    void require_pairs(const std::vector<ContactPoint>& points, std::vector<std::pair<int, int>> near_pairs);
+    /// The pairs that the matrix is ordered for: a resumed run starts from those of the saved state.
+    [[nodiscard]] const std::vector<std::pair<int, int>>& near_pairs() const { return near_pairs_; }
+    void order_for(std::vector<std::pair<int, int>> near_pairs);
+
+    /// Solves from `guess`, and again from the result, until the mass-like term is small (docs/theory.md, balance).
+    [[nodiscard]] Equilibrium find(EquilibriumProblem problem, Eigen::VectorXd guess, const Balance& balance,
+                                   bool unloaded);
+    /// One step of a relaxation from the problem's start.
+    [[nodiscard]] Equilibrium move_on(EquilibriumProblem problem, bool unloaded);
+
+    /// Internal - external forces at q, that of the mass-like term included, without the supports' (N/m).
+    [[nodiscard]] Eigen::VectorXd forces(const EquilibriumProblem& problem, const Eigen::VectorXd& q) const;
+
+    /// Adds what the linear solver and the assembly have cost so far.
+    void add_costs(RunCosts& costs) const;
+
+private:
+    void settle(EquilibriumProblem& problem, const Balance& balance, Equilibrium& found);
+
+    const Model& model_;
+    std::vector<std::pair<int, int>> near_pairs_;
+    BlockPattern pattern_;
+    LinearSolver linear_;
+    OpenCloseSolver open_close_;
+};
+
+} // namespace kluft

@@ -1,0 +1,72 @@
+// Where, on the way to a load factor, a failure index reaches one (docs/theory.md, events).
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "kluft/core/bracket.hpp"
+
+namespace kluft {
+
+/// What an event is searched for with.
+struct EventGoal {
+    double last_without = 1.0; ///< up to this index at the end there is no event
+    double index = 1.0;        ///< that the event should have
+    double reach = 0.0;        ///< how far from it is near enough
+    double least_width = 0.0;  ///< load factors between which an event is not searched any further
+};
+
+/// An equilibrium at an event, or at the end where there is none.
+template <class Equilibrium> struct EventCut {
+    Equilibrium found;
+    /// Load factors that enclose the event, where the index jumps there; infinite elsewhere.
+    double width = std::numeric_limits<double>::infinity();
+};
+
+inline constexpr int quick_event_trials = 12; ///< then the interval is halved: a kink of the index may be crept up to
+inline constexpr int max_event_trials = 60;
+
+/// The first event in (from, end.load_factor]. `index_of(equilibrium)` and `index_at_start()` evaluate the index, each
+/// under the loads of its own load factor; `find_at(load_factor, share, end)` searches an equilibrium between the start
+/// (share 0) and `end` (share 1). Illinois on the load factor; a search without a balanced result ends it.
+template <class Equilibrium, class IndexOf, class IndexAtStart, class FindAt>
+EventCut<Equilibrium> first_event(const EventGoal& goal, double from, Equilibrium end, IndexOf index_of,
+                                  IndexAtStart index_at_start, FindAt find_at) {
+    const double at_end = index_of(end);
+    if (at_end <= goal.last_without) return {std::move(end)};
+    Bracket bracket{from, end.load_factor, index_at_start() - goal.index, at_end - goal.index};
+    if (bracket.g_low >= 0.0) return {std::move(end)};
+    for (int i = 0; i < max_event_trials && bracket.width() > goal.least_width; ++i) {
+        const double at = i < quick_event_trials ? bracket.propose(0.01) : bracket.low + 0.5 * bracket.width();
+        Equilibrium next = find_at(at, (at - from) / (bracket.high - from), end);
+        if (!next.balanced) break;
+        const double g = index_of(next) - goal.index;
+        const bool is_event = std::abs(g) <= goal.reach;
+        if (is_event) {
+            bracket.high = at;
+        } else {
+            bracket.take(at, g);
+        }
+        if (bracket.high == at) end = std::move(next);
+        if (is_event) break;
+    }
+    if (bracket.width() <= goal.least_width) return {std::move(end), bracket.width()};
+    return {std::move(end)};
+}
+
+/// The part of the way to its end (0..1) at which an index is expected to reach one. `index_at(share)`; the index at the
+/// end is above one by more than `tolerance`, and that at the start below one, or the answer is 1.
+template <class IndexAt> double expected_event(double tolerance, IndexAt index_at) {
+    Bracket bracket{0.0, 1.0, index_at(0.0) - 1.0, index_at(1.0) - 1.0};
+    if (bracket.g_high <= tolerance || bracket.g_low >= 0.0) return 1.0;
+    double at = bracket.high;
+    for (int i = 0; i < quick_event_trials && std::abs(bracket.g_high) > 0.1 * tolerance; ++i) {
+        at = bracket.propose(0.0);
+        bracket.take(at, index_at(at) - 1.0);
+    }
+    return at;
+}
+
+} // namespace kluft

@@ -1,0 +1,31 @@
+// Why a load step, and with it a run, cannot go on: a result like any other.
+#pragma once
+
+#include <string>
+
+#include "kluft/simulation/model.hpp"
+
+namespace kluft {
+
+enum class FailureKind {
+    no_equilibrium, ///< none was found at the load level
+    falling,        ///< blocks move on at a load that does not change
+    broken_body     ///< displacements that are those of a body no more
+};
+
+struct Failure {
+    FailureKind kind = FailureKind::no_equilibrium;
+    int worst_block = -1;         ///< with the largest residual; -1 where none was computed
+    double residual_ratio = 0.0;  ///< what is left, over F_ref
+    double strength_factor = 1.0; ///< F that strengths were divided by
+    bool nothing_holds = false;   ///< the body, which has neither a support nor a platen
+    std::string what;             ///< in place of all that, of a broken body or a motion
+
+    /// Whether the body may just have reached what it carries, where its load is a stress.
+    [[nodiscard]] bool may_be_collapse() const { return !nothing_holds && kind != FailureKind::broken_body; }
+};
+
+/// In words that follow "no equilibrium in stage 1 at load step 7: ", with the block and its interfaces.
+[[nodiscard]] std::string description(const Model& model, const Failure& failure);
+
+} // namespace kluft

@@ -1,0 +1,55 @@
+// A load step as a value: the state that it leads to and all that is to be told of it. Not using it undoes it.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "kluft/loading/loaded_body.hpp"
+#include "kluft/simulation/failure.hpp"
+#include "kluft/simulation/stage_loads.hpp"
+#include "kluft/simulation/state.hpp"
+#include "kluft/simulation/step_record.hpp"
+
+namespace kluft {
+
+/// What the fields of a committed state are computed from.
+struct LoadedPlacement {
+    Placement placement;
+    LoadsAt at;
+};
+
+struct Step {
+    State end;                          ///< at the last equilibrium; the start where nothing was found
+    StepRecord row;                     ///< of that equilibrium
+    bool smooth = true;                 ///< nothing broke, was cut or relaxed
+    bool balanced = true;               ///< all equilibria
+    double worst_share = 0.0;           ///< of the mass-like term, of all equilibria
+    int crack_passes = 0;               ///< checks that made potential cracks fail
+    int worst_block = -1;               ///< of the last solve
+    std::vector<StepRecord> equilibria; ///< in order
+    std::vector<CrackRecord> cracks;
+    std::optional<Failure> failure; ///< the step did not come to its goal
+    std::string lost_contact;       ///< a warning, "" without reason
+    LoadedPlacement in_place;       ///< at the last equilibrium
+    Eigen::VectorXd forces;         ///< there: internal - external, without the supports' (N/m)
+
+    /// What is left of a step that fails after an unbalanced equilibrium: all up to its last balanced one.
+    struct BalancedPart {
+        BodyState body;
+        double load_factor = 0.0;
+        LoadedPlacement in_place;
+        std::size_t n_equilibria = 0;
+        std::size_t n_cracks = 0;
+    };
+    std::optional<BalancedPart> balanced_part; ///< where the end is not balanced or on the way to an equilibrium
+};
+
+/// Takes back what was computed after the last balanced equilibrium of a step that failed; the potential cracks that were
+/// chosen to fail at it stay. A step without such an equilibrium has no `equilibria` left.
+void keep_balanced_part(Step& step);
+
+} // namespace kluft

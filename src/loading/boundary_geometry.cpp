@@ -1,0 +1,118 @@
+#include "kluft/loading/boundary_geometry.hpp"
+
+#include <cmath>
+
+#include "kluft/kinematics/affine.hpp"
+
+namespace kluft {
+
+namespace {
+
+template <typename Visit> void for_each_edge(const BlockSystem& system, int boundary, Visit visit) {
+    for (const auto& [b, e] : system.boundaries[boundary].edges) {
+        const Edge& edge = system.blocks[b].edges[e];
+        visit(b, edge_start(system, edge), edge_end(system, edge));
+    }
+}
+
+} // namespace
+
+BoundaryFrame boundary_frame(const BlockSystem& system, int boundary) {
+    BoundaryFrame frame;
+    Vec2 sum = Vec2::Zero();
+    for_each_edge(system, boundary, [&](int, const Vec2& start, const Vec2& end) {
+        sum += right_normal(end - start);
+        frame.length += (end - start).norm();
+    });
+    if (frame.length == 0.0) return frame;
+    if (sum.norm() > 0.0) frame.normal = sum.normalized();
+    for (int i = 0; i < 2; ++i) { // a side along an axis has exactly that normal
+        if (std::abs(frame.normal[i]) < 1e-12)
+            frame.normal = Vec2::Unit(1 - i) * (frame.normal[1 - i] < 0.0 ? -1.0 : 1.0);
+    }
+    return frame;
+}
+
+int opposite_boundary(const BlockSystem& system, int boundary) {
+    const Vec2 normal = boundary_frame(system, boundary).normal;
+    int best = -1;
+    double most_opposite = -0.5;
+    for (int i = 0; i < static_cast<int>(system.boundaries.size()); ++i) {
+        const double cosine = normal.dot(boundary_frame(system, i).normal);
+        if (cosine < most_opposite) {
+            most_opposite = cosine;
+            best = i;
+        }
+    }
+    return best;
+}
+
+Vec2 mean_position(const BlockSystem& system, int boundary) {
+    Vec2 sum = Vec2::Zero();
+    double length = 0.0;
+    for_each_edge(system, boundary, [&](int, const Vec2& start, const Vec2& end) {
+        sum += 0.5 * (end - start).norm() * (start + end);
+        length += (end - start).norm();
+    });
+    return length > 0.0 ? Vec2(sum / length) : sum;
+}
+
+Vec2 mean_displacement(const BlockSystem& system, const Eigen::VectorXd& q, int boundary) {
+    Vec2 sum = Vec2::Zero();
+    double length = 0.0;
+    for_each_edge(system, boundary, [&](int b, const Vec2& start, const Vec2& end) {
+        const Vec2 xi = block_coordinates(system.blocks[b], 0.5 * (start + end));
+        sum += (end - start).norm() * displacement_at(q, b, xi);
+        length += (end - start).norm();
+    });
+    return length > 0.0 ? Vec2(sum / length) : sum;
+}
+
+std::vector<int> lateral_boundaries(const BlockSystem& system, int boundary) {
+    const Vec2 normal = boundary_frame(system, boundary).normal;
+    const Vec2 lateral(normal.y(), -normal.x());
+    std::vector<int> result;
+    for (const double side : {1.0, -1.0}) {
+        int best = -1;
+        double most_lateral = 0.7;
+        for (int i = 0; i < static_cast<int>(system.boundaries.size()); ++i) {
+            const double cosine = side * lateral.dot(boundary_frame(system, i).normal);
+            if (cosine > most_lateral) {
+                most_lateral = cosine;
+                best = i;
+            }
+        }
+        if (best >= 0) result.push_back(best);
+    }
+    if (result.size() < 2) result.clear();
+    return result;
+}
+
+PlatenForce width_across(const BlockSystem& system, int boundary) {
+    PlatenForce force;
+    force.widening.setZero(n_block_unknowns * system.n_blocks());
+    force.width = boundary_frame(system, boundary).length;
+    const auto sides = lateral_boundaries(system, boundary);
+    if (sides.empty()) return force;
+    const Vec2 normal = boundary_frame(system, boundary).normal;
+    const Vec2 lateral(normal.y(), -normal.x());
+    force.width = std::abs(lateral.dot(mean_position(system, sides[0]) - mean_position(system, sides[1])));
+    for (const int i : sides) {
+        const double side = i == sides.front() ? 1.0 : -1.0;
+        const double length = boundary_frame(system, i).length;
+        for_each_edge(system, i, [&](int b, const Vec2& start, const Vec2& end) {
+            const Vec2 xi = block_coordinates(system.blocks[b], 0.5 * (start + end));
+            const double share = side * (end - start).norm() / length;
+            force.widening.segment<n_block_unknowns>(n_block_unknowns * b) += share * displacement_row(lateral, xi);
+        });
+    }
+    return force;
+}
+
+double distance_across(const BlockSystem& system, int boundary) {
+    const int opposite = opposite_boundary(system, boundary);
+    const Vec2 base = opposite >= 0 ? mean_position(system, opposite) : system.lower;
+    return std::abs(boundary_frame(system, boundary).normal.dot(mean_position(system, boundary) - base));
+}
+
+} // namespace kluft

@@ -1,0 +1,134 @@
+#include "kluft/simulation/accurate_steps.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "kluft/simulation/step_attempt.hpp"
+
+namespace kluft {
+
+namespace {
+
+constexpr double accurate_balance = 0.03; ///< of the accuracy asked for: largest `balance`
+constexpr double softening_share = 0.2;   ///< of the stress lost since the peak: the accuracy there
+constexpr double least_step_size = 1e-4;  ///< load factor of a step that is accepted as it is
+
+/// The accuracy of one load step.
+struct LocalAccuracy {
+    double accuracy = 0.0;
+    bool past_peak = false; ///< by more than the accuracy asked for
+    /// Up to this size a load step may be relaxed, and a run may end in it: the history misses no more than the accuracy.
+    [[nodiscard]] double small_step() const { return std::max(accuracy, least_step_size); }
+};
+
+/// What has been lost since a peak in this stage, where the platen goes on the same way, makes accuracy pointless: the
+/// path after the peak depends on every detail, and only the straight lines between the rows are judged there.
+LocalAccuracy accuracy_after(const StepBench& bench, const State& state) {
+    const StressHistory& stresses = state.stresses;
+    const bool may_soften = prescribes_strain(bench.stage(state)) && stresses.stage_of_largest == state.at.stage;
+    const double lost = may_soften ? 1.0 - std::abs(stresses.axial) / stresses.largest_axial : 0.0;
+    return {std::max(bench.solver.accuracy, softening_share * lost), lost > bench.solver.accuracy};
+}
+
+// ---- the size of a step --------------------------------------------------------------------------------------------
+
+/// From a step that was rejected and taken again with a smaller size: the part of the error in proportion to the size
+/// is a lag (of the mass-like term, of the tolerance) that does not add up. Nothing where the error does not fall with
+/// the size: a jump or a branch of the path.
+std::optional<double> lag_from(double size, const StepError& error, double rejected_size, const StepError& rejected,
+                               double lag, double accuracy) {
+    if (error.chord > rejected.chord && error.chord > accuracy) return std::nullopt;
+    const double rate = error.path / size;
+    const double rejected_rate = rejected.path / rejected_size;
+    if (rate >= rejected_rate) return error.path <= accuracy * size ? std::optional(lag) : std::nullopt;
+    return std::clamp(rate - size * (rejected_rate - rate) / (rejected_size - size), 0.0, accuracy);
+}
+
+/// The error of a step that ended at an event or was relaxed counts as that of the last one that was judged.
+void charge_unjudged(const State& before, StepControl& control, double load_factor) {
+    const double taken = load_factor - before.at.load_factor;
+    control.path_error += control.curvature * taken * taken;
+}
+
+void keep_judged(double size, const StepError& error, bool branches, double accuracy, StepControl& control) {
+    control.size = branches ? size : std::max(least_step_size, next_step_size(size, error, accuracy));
+    control.curvature = error.path / (size * size);
+    control.path_error += error.path;
+}
+
+StepGoal accurate_goal(const StepBench& bench, const State& before, double target, double accuracy) {
+    StepGoal goal = goal_at(bench, target, is_checked(bench, before, target == 1.0));
+    goal.accuracy = accuracy;
+    goal.cracks.event_tolerance = accuracy;
+    goal.balance.share = std::min(bench.solver.balance, accurate_balance * accuracy);
+    return goal;
+}
+
+/// The estimate of the history's error stays at the largest stress, so far where loads are prescribed.
+Step with_estimate(const StepBench& bench, const State& before, Step step) {
+    StepControl& control = step.end.control;
+    if (step.end.stresses.largest_axial > before.stresses.largest_axial || !prescribes_strain(bench.stage(before)))
+        control.estimated_error = control.path_error + control.event_error;
+    return step;
+}
+
+/// One load step: of the size that the accuracy asks for, or up to the next event.
+Step take_accurate_step(const StepBench& bench, const State& before) {
+    const LocalAccuracy local = accuracy_after(bench, before);
+    const double accuracy = local.accuracy;
+    const double small_step = local.small_step();
+    const double remaining = 1.0 - before.at.load_factor;
+    const int solves_before = bench.journal.report().costs.open_close_iterations;
+    StepControl control = before.control; // its size and its lag learn from attempts that are rejected
+    StepError rejected;
+    double rejected_size = 0.0;
+    for (bool again = false;; again = true) {
+        const double size = fitted_step_size(control.size, remaining);
+        const double target = size < remaining ? before.at.load_factor + size : 1.0;
+        StepGoal goal = accurate_goal(bench, before, target, accuracy);
+        goal.solves_before = solves_before;
+        Attempt attempt = try_step(bench, before, goal, control, small_step, again);
+        StepControl& reached = attempt.step.end.control;
+        if (attempt.step.failure && size <= small_step) return std::move(attempt.step);
+        if (!attempt.error) {
+            charge_unjudged(before, reached, attempt.step.end.at.load_factor);
+            return with_estimate(bench, before, std::move(attempt.step));
+        }
+        const StepError& error = *attempt.error;
+        const bool stands = std::isfinite(error.path);
+        const auto lag = stands && rejected_size > 0.0
+                             ? lag_from(size, error, rejected_size, rejected, control.lag, accuracy)
+                             : std::optional(control.lag);
+        const bool branches = !lag;
+        control.lag = reached.lag = lag.value_or(control.lag);
+        const StepError own{stands && local.past_peak ? 0.0 : std::max(0.0, error.path - control.lag * size),
+                            error.chord};
+        if (branches || (stands && size <= least_step_size) || is_accurate(size, own, accuracy)) {
+            keep_judged(size, own, branches, accuracy, reached);
+            return with_estimate(bench, before, std::move(attempt.step));
+        }
+        ++bench.journal.report().costs.rejected_steps;
+        control.size = next_step_size(size, own, accuracy);
+        rejected = error;
+        rejected_size = stands ? size : 0.0;
+    }
+}
+
+} // namespace
+
+StageEnd run_accurate_steps(const StepBench& bench, State& state) {
+    StageEnd end;
+    while (!end.failure && (state.at.load_factor < 1.0 || !state.is_settled)) {
+        begin_load_step(bench);
+        Step step = state.at.load_factor < 1.0 ? take_accurate_step(bench, state)
+                                               : take_step(bench, state, goal_at(bench, 1.0, true));
+        if (step.failure) return commit_balanced_part(std::move(step), state, bench.journal);
+        const bool last = step.end.at.load_factor >= 1.0;
+        end = commit_regular_step(bench, std::move(step), last, state);
+    }
+    return end;
+}
+
+} // namespace kluft

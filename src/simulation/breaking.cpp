@@ -1,0 +1,56 @@
+#include "kluft/simulation/breaking.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "kluft/core/stopwatch.hpp"
+#include "kluft/fracture/crack_check.hpp"
+#include "kluft/simulation/placement.hpp"
+#include "kluft/simulation/relaxation.hpp"
+#include "kluft/simulation/weakening.hpp"
+
+namespace kluft {
+
+namespace {
+
+constexpr double largest_useful_index = 10.0; ///< of f in the search for an event: a strength of zero gives infinity
+
+std::vector<CrackCandidate> candidates(const StepInProgress& p, const Placement& placement, const LoadsAt& at,
+                                       const Eigen::VectorXd& q) {
+    const Model& model = p.bench.model;
+    RunReport& report = p.bench.journal.report();
+    const Stopwatch watch(report.costs.seconds.crack_check);
+    ++report.crack_checks;
+    return check_cracks(model, p.goal.cracks.criterion, p.step.end, at.strength_factor,
+                        loaded_body(model, placement, at), q);
+}
+
+/// Those that fail together: at an event of a step from an accuracy, the first time, all within its tolerance around 1.
+std::vector<CrackCandidate> breaking(const StepGoal& goal, const std::vector<CrackCandidate>& all, bool first) {
+    const bool around_one = first && goal.accuracy > 0.0 && goal.cracks.update == CrackUpdate::event;
+    if (!around_one || largest_index(all) > 1.0 + goal.accuracy) return chosen_to_fail(goal.cracks, all);
+    return failing(all, 1.0 - goal.accuracy);
+}
+
+} // namespace
+
+void break_bonds(StepInProgress& p) {
+    for (bool first = true; !p.failed(); first = false) {
+        const auto& [placement, at] = p.step.in_place;
+        const auto broken = breaking(p.goal, candidates(p, placement, at, p.displacement()), first);
+        if (broken.empty()) return;
+        p.step.smooth = false;
+        weaken_together(p.bench.model, broken, p.step.row.axial_strain, p.step);
+        PlacedState placed = place(p);
+        Equilibrium found = find_at(p, placed, p.load_factor(), p.displacement());
+        if (!found.balanced) found = recover(p, placed, found, p.load_factor());
+        if (!p.failed()) reach(p, std::move(placed), found);
+    }
+}
+
+double largest_failure_index(const StepInProgress& p, const Placement& placement, const LoadsAt& at,
+                             const Eigen::VectorXd& q) {
+    return std::min(largest_useful_index, largest_index(candidates(p, placement, at, q)));
+}
+
+} // namespace kluft

@@ -1,0 +1,34 @@
+#include "kluft/simulation/failure.hpp"
+
+#include <fmt/format.h>
+
+#include "kluft/blocks/block_search.hpp"
+
+namespace kluft {
+
+namespace {
+
+std::string block_description(const BlockSystem& system, int index) {
+    const Block& block = system.blocks[index];
+    const Vec2 at = system.origin + block.centroid;
+    std::string text = fmt::format("block {} at ({:.6g}, {:.6g}), area {:.3g} m2, interfaces",
+                                   block_label(system, index), at.x(), at.y(), block.area);
+    for (const Edge& edge : block.edges) {
+        if (edge.interface >= 0) text += fmt::format(" {}", edge.interface);
+    }
+    return text;
+}
+
+} // namespace
+
+std::string description(const Model& model, const Failure& failure) {
+    if (!failure.what.empty()) return failure.what;
+    std::string text = fmt::format("residual {:.2g} of the forces", failure.residual_ratio);
+    if (failure.strength_factor != 1.0)
+        text += fmt::format("; with the strengths divided by {:.6g}", failure.strength_factor);
+    if (failure.nothing_holds) text += "; nothing holds the body, which has neither a support nor a platen";
+    if (failure.worst_block >= 0) text += "; worst is " + block_description(model.system, failure.worst_block);
+    return text;
+}
+
+} // namespace kluft

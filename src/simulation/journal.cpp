@@ -1,0 +1,125 @@
+#include "kluft/simulation/journal.hpp"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "kluft/core/stopwatch.hpp"
+#include "kluft/simulation/equilibrium_search.hpp"
+#include "kluft/simulation/placement.hpp"
+#include "kluft/simulation/state_fields.hpp"
+
+namespace kluft {
+
+Journal::Journal(const Model& model, const State& state, StepObserver& observer, int n_steps,
+                 const EquilibriumSearch* search)
+    : model_(model), observer_(observer), search_(search), gauges_(make_gauges(model)), n_steps_(n_steps) {
+    report_.costs = state.costs;
+}
+
+double Journal::elapsed() const {
+    const auto since = std::chrono::steady_clock::now() - started_;
+    return report_.costs.elapsed_s + std::chrono::duration<double>(since).count();
+}
+
+RunCosts Journal::costs() const {
+    RunCosts costs = report_.costs;
+    if (search_ != nullptr) search_->add_costs(costs);
+    costs.elapsed_s = elapsed();
+    return costs;
+}
+
+void Journal::begin(StepRecord row, const State& state, const LoadedPlacement& in_place) {
+    row.step = 0;
+    tell_state(row, state, in_place, false);
+}
+
+void Journal::tell(const Step& step) {
+    const Stopwatch watch(report_.costs.seconds.observers);
+    for (const StepRecord& record : step.equilibria) observer_.equilibrium(record);
+    for (const CrackRecord& crack : step.cracks) observer_.crack(crack);
+}
+
+void Journal::warn(const Step& step, int number) {
+    if (step.lost_contact.empty() || std::exchange(warned_of_lost_contact_, true)) return;
+    report_.warnings.push_back(
+        fmt::format("load step {}: a contact was lost, because {}", number, step.lost_contact));
+}
+
+void Journal::tell_state(const StepRecord& row, const State& state, const LoadedPlacement& in_place,
+                         bool last_of_stage) {
+    last_row_ = row;
+    const Stopwatch watch(report_.costs.seconds.observers);
+    const auto fields = [&] {
+        return field_record(model_, state, loaded_body(model_, in_place.placement, in_place.at));
+    };
+    observer_.step(row, state, fields, last_of_stage);
+}
+
+void Journal::progress(const State& state, const StepRecord& row, double load_factor, int n_solves) {
+    Progress progress;
+    progress.stage = state.at.stage;
+    progress.n_stages = static_cast<int>(model_.loads.stages.size());
+    progress.step = state.at.step;
+    progress.n_steps = n_steps_;
+    progress.load_factor = load_factor;
+    progress.axial_strain = row.axial_strain;
+    progress.axial_stress = row.axial_stress;
+    progress.cracks = row.cracks_tension + row.cracks_shear;
+    progress.open_close_iterations = n_solves;
+    observer_.progress(progress);
+}
+
+RunReport Journal::ended(const State& state, const StageEnd& end) const {
+    if (!end.failure) return cut_short(RunStatus::done, "");
+    const Stage& stage = model_.loads.stages[state.at.stage];
+    const bool past_strength = end.failure->may_be_collapse() && is_loaded_by_stress(stage) && end.step > 1;
+    std::string why = fmt::format("no equilibrium in stage {} at load step {}: {}", state.at.stage, end.step,
+                                  description(model_, *end.failure));
+    if (end.factor_of_safety) why = fmt::format("factor of safety {:.6g}; beyond it {}", *end.factor_of_safety, why);
+    RunReport report = cut_short(
+        end.factor_of_safety || past_strength ? RunStatus::collapsed : RunStatus::no_equilibrium, std::move(why));
+    report.results.factor_of_safety = end.factor_of_safety;
+    return report;
+}
+
+RunReport Journal::cut_short(RunStatus status, std::string why) const {
+    RunReport report = report_;
+    report.status = status;
+    report.diagnosis = std::move(why);
+    report.costs = costs();
+    return report;
+}
+
+void commit(Step step, StepKind kind, State& state, Journal& journal) {
+    State& next = step.end;
+    if (kind.regular) ++next.at.step_in_stage;
+    ++next.at.step;
+    next.unbalanced_in_succession = step.balanced ? 0 : next.unbalanced_in_succession + 1;
+    if (!step.balanced) ++journal.report().unbalanced_steps;
+    journal.report().costs.events += step.crack_passes;
+    next.costs = journal.costs();
+    step.row.step = next.at.step;
+    step.row.load_factor = next.at.load_factor;
+    step.row.crack_passes = step.crack_passes;
+    state = std::move(next);
+    journal.warn(step, state.at.step);
+    journal.tell(step);
+    journal.tell_state(step.row, state, step.in_place, kind.last_of_stage);
+}
+
+StageEnd commit_balanced_part(Step step, State& state, Journal& journal) {
+    StageEnd end{step.failure, state.at.step + 1, {}, {}};
+    journal.warn(step, end.step);
+    keep_balanced_part(step);
+    if (!step.equilibria.empty()) commit(std::move(step), {.regular = false}, state, journal);
+    return end;
+}
+
+int number_of_steps(const Model& model) {
+    int n = 0;
+    for (const Stage& stage : model.loads.stages) n += stage.steps;
+    return n;
+}
+
+} // namespace kluft

@@ -1,0 +1,95 @@
+#include "kluft/simulation/load_step.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "kluft/simulation/breaking.hpp"
+#include "kluft/simulation/relaxation.hpp"
+
+namespace kluft {
+
+namespace {
+
+/// Cuts the step where the first potential crack fails.
+Equilibrium cut_at_failure(StepInProgress& p, const PlacedState& placed, Equilibrium found) {
+    const double tolerance = p.goal.cracks.event_tolerance;
+    const EventGoal event{.last_without = 1.0 + tolerance, .index = 1.0 + 0.5 * tolerance, .reach = 0.5 * tolerance};
+    return cut_at_event(p, placed, std::move(found), event,
+                        [&](const LoadsAt& at, const Eigen::VectorXd& q) {
+                            return largest_failure_index(p, placed.placement, at, q);
+                        })
+        .found;
+}
+
+/// What the search found up to the first event, or after a relaxation; the step fails where there is neither.
+Equilibrium advance(StepInProgress& p, PlacedState& placed) {
+    const double target = p.goal.load_factor;
+    Equilibrium found = find_at(p, placed, target, predicted(p, target));
+    if (!found.balanced) {
+        p.step.smooth = false;
+        found = recover(p, placed, found, target);
+        if (p.failed()) return found;
+        if (!found.balanced && p.bench.loads.constraints().rows().empty())
+            fail(p, found, found.viscous_share, FailureKind::no_equilibrium);
+    }
+    const bool by_events = p.goal.checks_cracks && p.goal.cracks.update == CrackUpdate::event;
+    if (by_events && found.balanced) found = cut_at_failure(p, placed, std::move(found));
+    p.step.smooth = p.step.smooth && found.load_factor == target;
+    return found;
+}
+
+} // namespace
+
+// ---- the load step -------------------------------------------------------------------------------------------------
+
+Step take_step(const StepBench& bench, const State& from, const StepGoal& goal) {
+    StepInProgress p = begin_step(bench, from, goal);
+    const bool by_events = goal.cracks.update == CrackUpdate::event;
+    do {
+        PlacedState placed = place_for_load_step(p);  // 1 detect, 2 transfer
+        const Equilibrium found = advance(p, placed); // 3 pose, 4 iterate, 5 judge
+        if (!p.failed()) reach(p, std::move(placed), found);
+        if (!p.failed() && goal.checks_cracks && (by_events || p.load_factor() >= goal.load_factor))
+            break_bonds(p); // 6 crack, 7 weaken, and back to 1 at the same load
+    } while (!p.failed() && p.load_factor() < goal.load_factor);
+    if (p.step.smooth && !goal.must_rest) {
+        keep_rate(p);
+    } else {
+        p.step.end.memory.rate.resize(0);
+    }
+    return finished(std::move(p)); // 8 commit, 9 notify: the caller's
+}
+
+StepGoal goal_at(const StepBench& bench, double load_factor, bool checks_cracks) {
+    StepGoal goal;
+    goal.load_factor = load_factor;
+    goal.balance.share = bench.solver.balance;
+    goal.checks_cracks = checks_cracks;
+    goal.cracks = bench.cracks;
+    goal.solves_before = bench.journal.report().costs.open_close_iterations;
+    goal.row = bench.journal.last_row();
+    return goal;
+}
+
+void begin_load_step(const StepBench& bench) {
+    if (bench.solver.repeatable) bench.search.forget_factor();
+}
+
+StageEnd commit_regular_step(const StepBench& bench, Step step, bool last_of_stage, State& state) {
+    Failure failure{.worst_block = step.worst_block,
+                    .residual_ratio = step.worst_share,
+                    .strength_factor = step.in_place.at.strength_factor};
+    StageEnd end;
+    end.forces = std::move(step.forces);
+    commit(std::move(step), {.last_of_stage = last_of_stage}, state, bench.journal);
+    end.step = state.at.step + 1;
+    if (state.unbalanced_in_succession >= bench.solver.max_unbalanced_steps) end.failure = std::move(failure);
+    return end;
+}
+
+bool is_checked(const StepBench& bench, const State& state, bool last_of_stage) {
+    return bench.model.has_potential_cracks &&
+           ((state.at.step + 1) % std::max(1, bench.cracks.every) == 0 || last_of_stage);
+}
+
+} // namespace kluft

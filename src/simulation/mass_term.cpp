@@ -1,0 +1,90 @@
+#include "kluft/simulation/mass_term.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <Eigen/Eigenvalues>
+
+namespace kluft {
+
+namespace {
+
+constexpr double growth = 16.0; ///< of eta on the blocks that stop the iteration
+constexpr double decay = 4.0;   ///< after a solve in a few iterations, also of later load steps
+constexpr double largest_factor = 4.0e6;
+
+/// The group of bonded blocks that each block belongs to, named by one of them.
+class BondedGroups {
+public:
+    BondedGroups(const BlockSystem& system, const std::vector<char>& bonded) : parent_(system.blocks.size()) {
+        std::iota(parent_.begin(), parent_.end(), 0);
+        for (int i = 0; i < system.n_interfaces(); ++i) {
+            if (bonded[i]) parent_[of(system.interfaces[i].block_a)] = of(system.interfaces[i].block_b);
+        }
+    }
+    int of(int b) {
+        while (parent_[b] != b) b = parent_[b] = parent_[parent_[b]];
+        return b;
+    }
+
+private:
+    std::vector<int> parent_;
+};
+
+} // namespace
+
+bool is_held(const BlockSystem& system, const std::vector<char>& bonded, const Constraints& constraints) {
+    BondedGroups groups(system, bonded);
+    std::vector<Eigen::Matrix3d> grams(system.blocks.size(), Eigen::Matrix3d::Zero());
+    const Vec2 centre = 0.5 * (system.lower + system.upper);
+    const double size = (system.upper - system.lower).maxCoeff();
+    for (const auto& row : constraints.rows()) {
+        if (row.rate != 0.0) continue; // the platen travels
+        const Block& block = system.blocks[row.block];
+        const Vec2 arm = (block.centroid + block.size * row.xi - centre) / size;
+        const Eigen::Vector3d motion(row.direction.x(), row.direction.y(), cross(arm, row.direction));
+        grams[groups.of(row.block)] += motion * motion.transpose();
+    }
+    for (int b = 0; b < system.n_blocks(); ++b) {
+        if (groups.of(b) != b) continue;
+        const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(grams[b]);
+        if (eigen.eigenvalues()[0] <= 1e-9 * std::max(1e-300, eigen.eigenvalues()[2])) return false;
+    }
+    return true;
+}
+
+double mass_coefficient(const Model& model, double viscosity) {
+    const double height = (model.system.upper - model.system.lower).maxCoeff();
+    return viscosity * model.effective_modulus / (height * height);
+}
+
+std::vector<double> mass_coefficients(const Model& model, double viscosity, const std::vector<double>& factors) {
+    std::vector<double> eta(model.system.blocks.size(), mass_coefficient(model, viscosity));
+    for (std::size_t b = 0; b < factors.size(); ++b) eta[b] *= factors[b];
+    return eta;
+}
+
+double least_mass_area(const BlockSystem& system) { return std::sqrt(0.75) * system.spacing * system.spacing; }
+
+bool grow_mass(const std::vector<int>& blocks, std::vector<double>& factors) {
+    bool grown = false;
+    const auto grow = [&](double& f) {
+        grown = grown || f < largest_factor;
+        f = std::min(largest_factor, growth * f);
+    };
+    for (const int b : blocks) grow(factors[b]);
+    if (blocks.empty()) std::ranges::for_each(factors, grow);
+    return grown;
+}
+
+void decay_mass(std::vector<double>& factors) {
+    bool any = false;
+    for (double& f : factors) {
+        f = std::max(1.0, f / decay);
+        any = any || f > 1.0;
+    }
+    if (!any) factors.clear();
+}
+
+} // namespace kluft

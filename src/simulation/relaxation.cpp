@@ -1,0 +1,146 @@
+#include "kluft/simulation/relaxation.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "kluft/simulation/mass_term.hpp"
+
+namespace kluft {
+
+namespace {
+
+constexpr double relaxed_tolerance = 0.1; ///< of `balance`: a residual on the way that does not matter
+constexpr double relaxed_residual = 2.0;  ///< of the mass-like forces: the same
+constexpr int easy_relaxation = 4;        ///< iterations of a step after which the mass-like term falls
+constexpr int max_relaxation_attempts = 250;
+constexpr int max_moving_attempts = 25;           ///< of a relaxation that must come to rest, whose share does not fall
+constexpr double least_relaxation_progress = 0.9; ///< of the share in as many attempts
+constexpr double collapse_motion = 0.5;           ///< of a block in one load step, in lattice spacings
+
+/// Whether the share of the mass-like term falls, with patience.
+class RelaxationProgress {
+public:
+    bool falls(double share) {
+        if (share < least_relaxation_progress * least_) {
+            least_ = share;
+            attempts_ = 0;
+        }
+        return ++attempts_ <= max_moving_attempts;
+    }
+
+private:
+    double least_ = std::numeric_limits<double>::infinity();
+    int attempts_ = 0; ///< since then
+};
+
+/// A relaxation needs the mass-like term also where ordinary solves do without it.
+double relaxation_viscosity(const SolverOptions& solver) {
+    return solver.viscosity > 0.0 ? solver.viscosity : SolverOptions{}.viscosity;
+}
+
+/// Under a given stress or weight a body that lost its balance may fall for ever.
+bool is_falling(const StepInProgress& p) {
+    const BlockSystem& system = p.bench.model.system;
+    if (!is_loaded_by_stress(p.bench.stage(p.from))) return false;
+    const Eigen::VectorXd moved = p.displacement() - p.from.body.displacement;
+    for (int b = 0; b < system.n_blocks(); ++b) {
+        if (moved.segment<2>(n_block_unknowns * b).norm() > collapse_motion * system.spacing) return true;
+    }
+    return false;
+}
+
+/// One step of pseudo-transient continuation from where the body stands, with the mass-like term times `factors`.
+Equilibrium move_on(StepInProgress& p, PlacedState& placed, const LoadsAt& at, std::vector<double>& factors) {
+    const auto& [model, cracks, solver, loads, search, journal, stop] = p.bench;
+    if (stop) throw Interrupted{};
+    placed = place(p);
+    factors.resize(model.system.blocks.size(), 1.0);
+    placed.eta = factors;
+    for (double& eta : placed.eta) eta *= mass_coefficient(model, relaxation_viscosity(solver));
+    Equilibrium moved = search.move_on(pose(model, placed, at, p.displacement()), p.step.end.body.contacts.empty());
+    moved.load_factor = at.load_factor;
+    moved.strength_factor = at.strength_factor;
+    journal.report().costs.open_close_iterations += moved.iterations;
+    p.step.worst_block = moved.worst_block;
+    journal.progress(p.step.end, p.step.row, at.load_factor, journal.report().costs.open_close_iterations);
+    return moved;
+}
+
+/// Whether a step of the relaxation counts though the iteration did not converge: its residual is small beside the
+/// mass-like forces, or beside what is asked for. The residual then counts as left over.
+bool is_harmless(Equilibrium& moved, const Balance& balance) {
+    if (moved.converged()) return true;
+    const double residual = moved.summary.residual_ratio;
+    if (residual > std::max(relaxed_tolerance * balance.share, relaxed_residual * moved.viscous_share)) return false;
+    moved.viscous_share += residual;
+    return true;
+}
+
+/// The body moves along with the steps, each of which starts where the one before has ended; eta grows on the blocks that
+/// stop the iteration and falls again as they come to rest. A step on the way need not be an equilibrium, the last must.
+Equilibrium relax(StepInProgress& p, PlacedState& placed, const LoadsAt& at, const std::vector<int>& restless) {
+    ++p.bench.journal.report().costs.relaxations;
+    std::vector<double> factors = p.step.end.memory.viscosity_factor;
+    factors.resize(p.bench.model.system.blocks.size(), 1.0);
+    (void)grow_mass(restless, factors);
+    Equilibrium last; // that the body moved to
+    last.load_factor = at.load_factor;
+    last.strength_factor = at.strength_factor;
+    RelaxationProgress progress;
+    for (int attempt = 0; attempt < max_relaxation_attempts; ++attempt) {
+        Equilibrium moved = move_on(p, placed, at, factors);
+        if (!is_harmless(moved, p.goal.balance)) {
+            if (!grow_mass(moved.summary.restless, factors)) {
+                fail(p, moved, moved.summary.residual_ratio, FailureKind::no_equilibrium);
+                return moved;
+            }
+            last.start = moved.start;
+            continue;
+        }
+        moved.balanced = moved.viscous_share <= p.goal.balance.share;
+        if (moved.balanced) {
+            p.step.end.memory.viscosity_factor = factors;
+            return moved;
+        }
+        if (!move_body(p, placed, at, moved.displacement)) return moved;
+        const bool moves_on = p.goal.must_rest && !progress.falls(moved.viscous_share);
+        if (moves_on || is_falling(p)) {
+            fail(p, moved, moved.viscous_share, FailureKind::falling);
+            return moved;
+        }
+        if (moved.summary.iterations <= easy_relaxation) decay_mass(factors);
+        last = std::move(moved);
+    }
+    // A platen under stress keeps moving: past the strength.
+    if (last.displacement.size() == 0 || is_platen_loaded_by_stress(p.bench.stage(p.from)))
+        fail(p, last, last.displacement.size() == 0 ? last.summary.residual_ratio : last.viscous_share,
+             FailureKind::no_equilibrium);
+    return last;
+}
+
+void hold_balanced_part(Step& step) {
+    if (step.balanced_part) return;
+    step.balanced_part = Step::BalancedPart{step.end.body, step.end.at.load_factor, step.in_place,
+                                            step.equilibria.size(), step.cracks.size()};
+}
+
+} // namespace
+
+Equilibrium recover(StepInProgress& p, PlacedState& placed, const Equilibrium& failed, double load_factor) {
+    hold_balanced_part(p.step);
+    const LoadsAt at = p.loads_at(load_factor);
+    if (failed.converged() && !move_body(p, placed, at, failed.displacement)) return failed;
+    Equilibrium found = relax(p, placed, at, failed.summary.restless);
+    if (p.failed() || !p.goal.must_rest) return found;
+    if (found.balanced) { // with the mass-like term of a relaxation: it must stand without it too
+        if (!move_body(p, placed, at, found.displacement)) return found;
+        placed = place(p);
+        found = find_at(p, placed, load_factor, p.displacement());
+    }
+    if (!found.balanced) fail(p, found, found.viscous_share, FailureKind::no_equilibrium);
+    return found;
+}
+
+} // namespace kluft

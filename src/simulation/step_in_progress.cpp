@@ -1,0 +1,191 @@
+#include "kluft/simulation/step_in_progress.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "kluft/core/stopwatch.hpp"
+#include "kluft/kinematics/rigid.hpp"
+#include "kluft/simulation/mass_term.hpp"
+#include "kluft/simulation/measurements.hpp"
+#include "kluft/simulation/placement.hpp"
+#include "kluft/simulation/state_check.hpp"
+#include "kluft/simulation/step_control.hpp"
+#include "kluft/simulation/strength_reduction.hpp"
+
+namespace kluft {
+
+namespace {
+
+constexpr int easy_iterations = 6; ///< of a solve after which the mass-like term of a relaxation falls
+
+/// Detects the contacts of surfaces that may touch.
+DetectedContacts detect(StepInProgress& p) {
+    RunReport& report = p.bench.journal.report();
+    const Stopwatch watch(report.costs.seconds.detection);
+    ++report.detections;
+    return detected_contacts(p.bench.model, p.step.end.body);
+}
+
+/// Bonds in the frames of the state beside the given contacts.
+PlacedState placed_with(StepInProgress& p, DetectedContacts contacts) {
+    const auto& [model, cracks, solver, loads, search, journal, stop] = p.bench;
+    const BodyState& body = p.step.end.body;
+    PlacedState placed;
+    {
+        const Stopwatch watch(journal.report().costs.seconds.set_up);
+        placed.placement.bonds = placed_bonds(model, body);
+    }
+    placed.placement.contacts = std::move(contacts.points);
+    search.require_pairs(placed.placement.contacts, std::move(contacts.near_pairs));
+    const std::vector<char> bonded = bonded_interfaces(body);
+    const bool separated = std::ranges::find(bonded, 0) != bonded.end();
+    const bool needs_mass = separated || !is_held(model.system, bonded, loads.constraints());
+    if (needs_mass && solver.viscosity > 0.0)
+        placed.eta = mass_coefficients(model, solver.viscosity, p.step.end.memory.viscosity_factor);
+    return placed;
+}
+
+bool has_surfaces_to_meet(const Model& model, const BodyState& body) {
+    return may_outlines_meet(model) || std::ranges::any_of(body.interfaces, [](InterfaceStatus status) {
+               return status != InterfaceStatus::potential_crack;
+           });
+}
+
+/// The largest stresses so far, which errors of the history are relative to.
+void note_stresses(StepInProgress& p, const LoadedBody& body) {
+    const StepRecord& row = p.step.row;
+    StressHistory& stresses = p.step.end.stresses;
+    stresses.axial = row.axial_stress;
+    if (row.balanced && std::abs(row.axial_stress) > stresses.largest_axial) {
+        stresses.largest_axial = std::abs(row.axial_stress);
+        stresses.stage_of_largest = p.step.end.at.stage;
+    }
+    if (p.goal.accuracy > 0.0 && !prescribes_strain(p.bench.stage(p.from)))
+        stresses.largest_mean = std::max(stresses.largest_mean, weighted_stresses(body, p.displacement()).norm());
+}
+
+} // namespace
+
+StepInProgress begin_step(const StepBench& bench, const State& from, const StepGoal& goal) {
+    StepInProgress p{bench, from, goal, {}};
+    p.step.end = from;
+    p.step.end.is_settled = true;
+    p.step.row = goal.row;
+    return p;
+}
+
+Step finished(StepInProgress p) {
+    Step& step = p.step;
+    step.end.memory.near_pairs = p.bench.search.near_pairs();
+    step.row.open_close_iterations = p.bench.journal.report().costs.open_close_iterations - p.goal.solves_before;
+    step.row.balanced = step.balanced;
+    step.row.unbalanced_ratio = step.worst_share;
+    return std::move(step);
+}
+
+PlacedState place(StepInProgress& p) {
+    SolverMemory& memory = p.step.end.memory;
+    memory.steps_since_detection = 0;
+    memory.kept_points.clear();
+    const bool meet = has_surfaces_to_meet(p.bench.model, p.step.end.body);
+    return placed_with(p, meet ? detect(p) : DetectedContacts{});
+}
+
+PlacedState place_for_load_step(StepInProgress& p) {
+    SolverMemory& memory = p.step.end.memory;
+    const bool keeps =
+        memory.steps_since_detection > 0 && memory.steps_since_detection < p.bench.solver.detection_every;
+    PlacedState placed =
+        keeps ? placed_with(p, {renewed_contacts(p.step.end.body, std::move(memory.kept_points)), {}}) : place(p);
+    ++memory.steps_since_detection;
+    if (p.bench.solver.detection_every > 1) memory.kept_points = placed.placement.contacts;
+    return placed;
+}
+
+EquilibriumProblem pose(const Model& model, const PlacedState& placed, const LoadsAt& at,
+                        const Eigen::VectorXd& start) {
+    return {loaded_body(model, placed.placement, at), placed.eta, least_mass_area(model.system), start};
+}
+
+Eigen::VectorXd predicted(const StepInProgress& p, double load_factor) {
+    const Eigen::VectorXd& rate = p.step.end.memory.rate;
+    if (rate.size() == 0) return p.displacement();
+    return p.displacement() + (load_factor - p.load_factor()) * rate;
+}
+
+Equilibrium find_at(StepInProgress& p, const PlacedState& placed, double load_factor, Eigen::VectorXd guess) {
+    const auto& [model, cracks, solver, loads, search, journal, stop] = p.bench;
+    if (stop) throw Interrupted{};
+    State& state = p.step.end;
+    const LoadsAt at = p.loads_at(load_factor);
+    if (model.kinematics == Kinematics::rigid) make_rigid(model.system, guess);
+    Equilibrium found = search.find(pose(model, placed, at, p.displacement()), std::move(guess), p.goal.balance,
+                                    state.body.contacts.empty());
+    found.load_factor = load_factor;
+    found.strength_factor = at.strength_factor;
+    journal.report().costs.open_close_iterations += found.iterations;
+    p.step.worst_block = found.worst_block;
+    if (found.balanced && found.summary.iterations <= easy_iterations) decay_mass(state.memory.viscosity_factor);
+    journal.progress(state, p.step.row, load_factor, journal.report().costs.open_close_iterations);
+    return found;
+}
+
+bool move_body(StepInProgress& p, const PlacedState& placed, const LoadsAt& at, const Eigen::VectorXd& q) {
+    Step& step = p.step;
+    const LoadedBody body = loaded_body(p.bench.model, placed.placement, at);
+    if (auto flaw = flaw_of_displacements(body, q); !flaw.empty()) {
+        step.failure = Failure{.kind = FailureKind::broken_body, .what = std::move(flaw)};
+        return false;
+    }
+    if (step.lost_contact.empty()) step.lost_contact = lost_contact(body, q);
+    keep_histories(body, q, step.end.body);
+    step.end.body.displacement = q;
+    return true;
+}
+
+void reach(StepInProgress& p, PlacedState placed, const Equilibrium& found) {
+    Step& step = p.step;
+    LoadsAt at = p.loads_at(found.load_factor);
+    if (!move_body(p, placed, at, found.displacement)) return;
+    step.end.at.load_factor = found.load_factor;
+    Measured measured = measure(p, placed, at, found);
+    step.row = std::move(measured.row);
+    step.forces = std::move(measured.forces);
+    step.balanced = step.balanced && found.balanced;
+    step.worst_share = std::max(step.worst_share, found.viscous_share);
+    note_stresses(p, loaded_body(p.bench.model, placed.placement, at));
+    step.equilibria.push_back(step.row);
+    step.in_place = {std::move(placed.placement), std::move(at)};
+    if (found.balanced) step.balanced_part.reset();
+}
+
+Measured measure(const StepInProgress& p, const PlacedState& placed, const LoadsAt& at, const Equilibrium& found) {
+    const auto& [model, cracks, solver, loads, search, journal, stop] = p.bench;
+    const EquilibriumProblem problem = pose(model, placed, at, found.start);
+    Measured result;
+    result.forces = search.forces(problem, found.displacement);
+    StepRecord& row = result.row;
+    row = measure_step(model, journal.gauges(), p.step.end, problem.body, loads, found.displacement, result.forces);
+    row.open_close_iterations = journal.report().costs.open_close_iterations - p.goal.solves_before;
+    row.crack_passes = p.step.crack_passes;
+    row.unbalanced_ratio = found.viscous_share;
+    row.balanced = found.balanced;
+    row.elapsed_s = journal.elapsed();
+    if (reduction_of(model.loads, 0) != nullptr) row.strength_factor = at.strength_factor;
+    return result;
+}
+
+void fail(StepInProgress& p, const Equilibrium& found, double residual_ratio, FailureKind kind) {
+    p.step.failure = Failure{.kind = kind,
+                             .worst_block = found.worst_block,
+                             .residual_ratio = residual_ratio,
+                             .strength_factor = found.strength_factor,
+                             .nothing_holds = p.bench.loads.constraints().rows().empty()};
+}
+
+void keep_rate(StepInProgress& p) {
+    p.step.end.memory.rate = (p.displacement() - p.from.body.displacement) / (p.load_factor() - p.from.at.load_factor);
+}
+
+} // namespace kluft

@@ -1,0 +1,113 @@
+// Load steps as values: what they leave alone, what they repeat and where they stop. Bodies of two blocks.
+#include "kluft/simulation/load_step.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "kluft/simulation/breaking.hpp"
+#include "support/posed_run.hpp"
+
+namespace kluft {
+namespace {
+
+using posed::same;
+using posed::tensile_strength;
+using posed::Workplace;
+
+TEST(LoadStep, DroppedStepLeavesTheStateBitForBit) {
+    Workplace work(posed::two_bonded_blocks(4e6));
+    const State before = work.state;
+    const Step step = work.take(0.2);
+    EXPECT_FALSE(step.failure.has_value());
+    EXPECT_FALSE(same(step.end.body, before.body));
+    EXPECT_TRUE(same(work.state.body, before.body));
+    EXPECT_EQ(work.state.at.load_factor, 0.0);
+    EXPECT_EQ(work.state.memory.rate.size(), 0);
+    EXPECT_TRUE(work.told.equilibria.empty() && work.told.rows.empty() && work.told.cracks.empty());
+}
+
+TEST(LoadStep, SameStepTwiceIsTheSameAnswer) {
+    Workplace work(posed::two_bonded_blocks(4e6));
+    const Step first = work.take(0.2);
+    (void)work.take(1.0); // another one in between, dropped
+    const Step second = work.take(0.2);
+    EXPECT_TRUE(same(first.end.body, second.end.body));
+    EXPECT_EQ(first.row.axial_stress, second.row.axial_stress);
+}
+
+TEST(LoadStep, SameStepTwiceWithAReusedFactorIsTheSameWithinTheTolerance) {
+    SolverOptions options = Workplace::tight();
+    options.repeatable = false;
+    Workplace work(posed::two_bonded_blocks(4e6), options);
+    const Step first = work.take(0.2);
+    const Step second = work.take(0.2);
+    const auto& q = first.end.body.displacement;
+    EXPECT_LT((second.end.body.displacement - q).norm(), 1e-8 * q.norm());
+}
+
+// The bond carries the pull p alone until p reaches its tensile strength; then nothing holds the upper block.
+TEST(LoadStep, StepPastTheStrengthStopsAtTheEventAndKeepsWhatStood) {
+    Workplace work(posed::two_bonded_blocks(4e6));
+    const Step step = work.take(1.0);
+    ASSERT_TRUE(step.failure.has_value());
+    ASSERT_EQ(step.equilibria.size(), 1U); // the one at the event; none after it
+    EXPECT_TRUE(step.equilibria.front().balanced);
+    ASSERT_EQ(step.cracks.size(), 1U);
+    EXPECT_GE(-step.cracks.front().p3, tensile_strength);
+    EXPECT_LE(-step.cracks.front().p3, 1.02 * tensile_strength);
+    EXPECT_NEAR(step.equilibria.front().load_factor, tensile_strength / 4e6, 0.02 * tensile_strength / 4e6);
+}
+
+TEST(LoadStep, FailedStepIsCommittedUpToItsLastBalancedEquilibrium) {
+    Workplace work(posed::two_bonded_blocks(4e6));
+    const StageEnd end = commit_balanced_part(work.take(1.0), work.state, work.journal);
+    ASSERT_TRUE(end.failure.has_value());
+    EXPECT_EQ(end.step, 1);
+    ASSERT_EQ(work.told.rows.size(), 1U);
+    const StepRecord& row = work.told.rows.front();
+    EXPECT_TRUE(row.balanced);
+    EXPECT_EQ(row.load_factor, work.state.at.load_factor);
+    EXPECT_NEAR(row.load_factor, 0.25, 0.02 * 0.25);
+    EXPECT_EQ(row.cracks_tension, 1);
+    EXPECT_EQ(work.told.cracks.size(), 1U);
+    EXPECT_EQ(work.state.body.interfaces.front(), InterfaceStatus::tension_crack);
+    EXPECT_FALSE(work.state.is_settled);
+    EXPECT_EQ(work.state.at.step, 1);
+    EXPECT_EQ(work.state.at.step_in_stage, 0); // the load step itself is still to be taken
+    // Once more from there: the open joint carries nothing.
+    const StageEnd again = commit_balanced_part(work.take(1.0), work.state, work.journal);
+    EXPECT_TRUE(again.failure.has_value());
+    EXPECT_EQ(work.told.rows.size(), 1U);
+}
+
+TEST(LoadStep, PullIsTheStressOfBothBlocksWhileTheBondHolds) {
+    Workplace work(posed::two_bonded_blocks(0.8 * tensile_strength));
+    const Step step = work.take(1.0);
+    ASSERT_FALSE(step.failure.has_value());
+    EXPECT_TRUE(step.smooth && step.balanced);
+    EXPECT_NEAR(step.row.axial_stress, -0.8 * tensile_strength, 1e-6 * tensile_strength);
+    EXPECT_EQ(step.row.cracks_tension, 0);
+}
+
+// Theory: the failure index belongs to a load. Half the load, half the index, whatever was solved before.
+TEST(LoadStep, FailureIndexIsThatOfTheLoadAskedFor) {
+    Workplace work(posed::two_bonded_blocks(0.8 * tensile_strength));
+    const StepGoal goal = goal_at(work.bench(), 1.0, true);
+    StepInProgress p = begin_step(work.bench(), work.state, goal);
+    const PlacedState placed = place_for_load_step(p);
+    const Equilibrium whole = find_at(p, placed, 1.0, p.displacement());
+    const Equilibrium half = find_at(p, placed, 0.5, p.displacement());
+    EXPECT_NEAR(largest_failure_index(p, placed.placement, p.loads_at(1.0), whole.displacement), 0.8, 1e-6);
+    EXPECT_NEAR(largest_failure_index(p, placed.placement, p.loads_at(0.5), half.displacement), 0.4, 1e-6);
+}
+
+TEST(LoadStep, StopsBetweenTwoSolvesWhenAsked) {
+    Workplace work(posed::two_bonded_blocks(1e5));
+    work.stop = true;
+    EXPECT_THROW((void)work.take(1.0), Interrupted);
+    EXPECT_EQ(work.state.at.load_factor, 0.0);
+}
+
+} // namespace
+} // namespace kluft
