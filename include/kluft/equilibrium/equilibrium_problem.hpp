@@ -7,7 +7,6 @@
 #include <Eigen/Core>
 
 #include "kluft/assembly/block_matrix.hpp"
-#include "kluft/equilibrium/boundary_terms.hpp"
 #include "kluft/equilibrium/coordinates.hpp"
 #include "kluft/loading/loaded_body.hpp"
 
@@ -47,9 +46,6 @@ public:
     void residual(const Eigen::VectorXd& q, Residual& result);
     /// Evaluates the same on the unknowns, T' R(q).
     void reduced_residual(const Eigen::VectorXd& q, Residual& result);
-    void reduce_to_unknowns(const Eigen::VectorXd& forces, Eigen::VectorXd& reduced) const {
-        coordinates_.reduce(forces, reduced);
-    }
     /// Evaluates dR/dq. Of rigid blocks with T = dq/d(u, w): T' dR/dq T and what the forces do on the curve that a
     /// turning block moves on; the pattern must be one of rigid blocks then.
     void tangent(const Eigen::VectorXd& q, TangentKind kind, BlockMatrix& matrix);
