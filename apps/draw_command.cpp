@@ -18,6 +18,7 @@
 #include "kluft/scene/quantity.hpp"
 #include "kluft/scene/scene_model.hpp"
 #include "kluft/scene/scene_reader.hpp"
+#include "kluft/simulation/fingerprint.hpp"
 #include "kluft/simulation/state_fields.hpp"
 #include "kluft/studies/finished_run.hpp"
 

@@ -22,6 +22,7 @@
 #include "kluft/reference/explicit_simulation.hpp"
 #include "kluft/scene/scene_model.hpp"
 #include "kluft/scene/scene_reader.hpp"
+#include "kluft/simulation/fingerprint.hpp"
 #include "kluft/simulation/measurements.hpp"
 #include "kluft/simulation/simulation.hpp"
 #include "kluft/simulation/state_fields.hpp"

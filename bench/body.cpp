@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "kluft/equilibrium/boundary_terms.hpp"
 #include "kluft/kinematics/affine.hpp"
 #include "kluft/scene/scene_model.hpp"
 #include "kluft/scene/scene_reader.hpp"

@@ -44,6 +44,17 @@ void add_at(double s, const Mat2& stiffness, Eigen::Matrix4d& ends) {
     }
 }
 
+/// eta M of a block for a change of its eta; that of a rigid block in the first three places.
+Mat6 mass_on_unknowns(const EquilibriumProblem& problem, const Eigen::VectorXd& q, int b, double eta) {
+    const Block& block = problem.body.system->blocks[b];
+    Mat6 mass = eta * mass_matrix(block, problem.least_mass_area);
+    if (problem.body.kinematics == Kinematics::rigid) {
+        const Mat63 motion = rigid_motion(q, b, block.size);
+        mass.topLeftCorner<n_rigid_unknowns, n_rigid_unknowns>() = (motion.transpose() * mass * motion).eval();
+    }
+    return mass;
+}
+
 } // namespace
 
 StiffnessReference::Key StiffnessReference::key_of(const ContactKey& k) {
@@ -151,34 +162,32 @@ const std::vector<StiffnessChange>& StiffnessReference::changes(const Equilibriu
 
 /// Relaxation changes eta by powers of four on single blocks. A loose block has no other stiffness.
 void StiffnessReference::add_masses(const EquilibriumProblem& problem, const Eigen::VectorXd& q) {
-    const bool rigid = problem.body.kinematics == Kinematics::rigid;
-    const int nu = unknowns_per_block(problem.body.kinematics);
     const auto eta_at = [](const std::vector<double>& eta, int b) { return eta.empty() ? 0.0 : eta[b]; };
     for (int b = 0; b < problem.body.system->n_blocks(); ++b) {
         const double change = eta_at(problem.eta, b) - eta_at(eta_, b);
-        if (change == 0.0) continue;
-        const Block& block = problem.body.system->blocks[b];
-        Mat6 mass = change * mass_matrix(block, problem.least_mass_area);
-        if (rigid) {
-            const Mat63 motion = rigid_motion(q, b, block.size);
-            mass.topLeftCorner<n_rigid_unknowns, n_rigid_unknowns>() = (motion.transpose() * mass * motion).eval();
+        if (change != 0.0) add_mass(problem, b, mass_on_unknowns(problem, q, b, change));
+    }
+}
+
+/// Adds a change of the mass-like stiffness of a block, as far as it counts beside the others; that of a rigid block
+/// stands in the first three places.
+void StiffnessReference::add_mass(const EquilibriumProblem& problem, int b, const Mat6& mass) {
+    const int nu = unknowns_per_block(problem.body.kinematics);
+    const auto diagonal = diagonal_.segment(nu * b, nu);
+    for (const auto& [first, n] : {std::pair{0, 2}, std::pair{2, nu - 2}}) { // u, and D or w
+        const auto stiffness = mass.block(first, first, n, n);
+        const auto share = stiffness.diagonal().cwiseQuotient(diagonal.segment(first, n)).cwiseAbs();
+        if (share.maxCoeff() <= least_mass_change) continue;
+        StiffnessChange& added = changes_.emplace_back();
+        added.patch = number_of({b, -1, b, -1, first});
+        added.block_a = added.block_b = b;
+        added.n_rows = n;
+        for (int i = 0; i < n; ++i) {
+            Vec6 row = Vec6::Unit(first + i);
+            problem.body.loads->constraints.project(b, row);
+            added.rows_a.row(i) = row;
         }
-        const auto diagonal = diagonal_.segment(nu * b, nu);
-        for (const auto& [first, n] : {std::pair{0, 2}, std::pair{2, nu - 2}}) { // u, and D or w
-            const auto stiffness = mass.block(first, first, n, n);
-            const auto share = stiffness.diagonal().cwiseQuotient(diagonal.segment(first, n)).cwiseAbs();
-            if (share.maxCoeff() <= least_mass_change) continue;
-            StiffnessChange& added = changes_.emplace_back();
-            added.patch = number_of({b, -1, b, -1, first});
-            added.block_a = added.block_b = b;
-            added.n_rows = n;
-            for (int i = 0; i < n; ++i) {
-                Vec6 row = Vec6::Unit(first + i);
-                problem.body.loads->constraints.project(b, row);
-                added.rows_a.row(i) = row;
-            }
-            added.stiffness.topLeftCorner(n, n) = stiffness;
-        }
+        added.stiffness.topLeftCorner(n, n) = stiffness;
     }
 }
 

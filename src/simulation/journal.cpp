@@ -42,8 +42,7 @@ void Journal::tell(const Step& step) {
 
 void Journal::warn(const Step& step, int number) {
     if (step.lost_contact.empty() || std::exchange(warned_of_lost_contact_, true)) return;
-    report_.warnings.push_back(
-        fmt::format("load step {}: a contact was lost, because {}", number, step.lost_contact));
+    report_.warnings.push_back(fmt::format("load step {}: a contact was lost, because {}", number, step.lost_contact));
 }
 
 void Journal::tell_state(const StepRecord& row, const State& state, const LoadedPlacement& in_place,

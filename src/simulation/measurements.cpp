@@ -28,6 +28,10 @@ struct PairOfEdges {
     bool operator==(const PairOfEdges&) const = default;
 };
 
+void count(ContactState state, ContactCounts& counts) {
+    ++(state == ContactState::open ? counts.open : state == ContactState::sliding ? counts.sliding : counts.locked);
+}
+
 PairOfEdges edges_of(const ContactKey& key) { return {key.block_a, key.edge_a, key.block_b, key.edge_b}; }
 
 } // namespace
@@ -70,34 +74,26 @@ Strains measure_strains(const Model& model, const Gauges& gauges, const Eigen::V
     return strains;
 }
 
-int severity(ContactState state) {
-    if (state == ContactState::open) return 0;
-    return state == ContactState::locked ? 1 : 2;
+ContactState worse(ContactState a, ContactState b) {
+    const auto severity = [](ContactState state) {
+        if (state == ContactState::open) return 0;
+        return state == ContactState::locked ? 1 : 2;
+    };
+    return severity(b) > severity(a) ? b : a;
 }
 
 ContactCounts count_contacts(const Model& model, const State& state, const LoadedBody& body, const Eigen::VectorXd& q) {
+    const std::vector<ContactPoint>& points = body.placement->contacts;
+    const int n = static_cast<int>(points.size());
     ContactCounts counts;
-    const auto add = [&](ContactState worst) {
-        ++(worst == ContactState::open ? counts.open : worst == ContactState::sliding ? counts.sliding : counts.locked);
-    };
     std::vector<char> seen(model.system.interfaces.size(), 0);
-    for (int first = 0; first < static_cast<int>(body.placement->contacts.size());) {
-        int last = first;
+    for (int first = 0, last = 0; first < n; first = last) {
         ContactState worst = ContactState::open;
-        const ContactPoint& head = body.placement->contacts[first];
-        while (last < static_cast<int>(body.placement->contacts.size()) &&
-               edges_of(body.placement->contacts[last].key) == edges_of(head.key)) {
-            const ContactState s = contact_traction(body, last, q).state;
-            if (severity(s) > severity(worst)) worst = s;
-            ++last;
-        }
-        if (head.interface >= 0) {
-            seen[head.interface] = 1;
-            add(worst);
-        } else if (worst != ContactState::open) {
-            add(worst);
-        }
-        first = last;
+        for (; last < n && edges_of(points[last].key) == edges_of(points[first].key); ++last)
+            worst = worse(worst, contact_traction(body, last, q).state);
+        const int interface = points[first].interface;
+        if (interface >= 0) seen[interface] = 1;
+        if (interface >= 0 || worst != ContactState::open) count(worst, counts);
     }
     for (int i = 0; i < model.system.n_interfaces(); ++i) {
         if (state.body.interfaces[i] == InterfaceStatus::potential_crack) {

@@ -78,6 +78,31 @@ bool is_harmless(Equilibrium& moved, const Balance& balance) {
     return true;
 }
 
+/// What becomes of one step of a relaxation.
+enum class Outcome { stuck, moved, balanced, failed };
+
+/// Judges a step that was taken, and moves the body along if it counts.
+Outcome judge(StepInProgress& p, const PlacedState& placed, const LoadsAt& at, RelaxationProgress& progress,
+              Equilibrium& moved) {
+    if (!is_harmless(moved, p.goal.balance)) return Outcome::stuck;
+    moved.balanced = moved.viscous_share <= p.goal.balance.share;
+    if (moved.balanced) return Outcome::balanced;
+    if (!move_body(p, placed, at, moved.displacement)) return Outcome::failed;
+    const bool moves_on = p.goal.must_rest && !progress.falls(moved.viscous_share);
+    if (!moves_on && !is_falling(p)) return Outcome::moved;
+    fail(p, moved, moved.viscous_share, FailureKind::falling);
+    return Outcome::failed;
+}
+
+/// What the relaxation came to in all its attempts, where none was balanced.
+Equilibrium given_up(StepInProgress& p, Equilibrium last) {
+    const bool never_moved = last.displacement.size() == 0;
+    const bool past_strength = is_platen_loaded_by_stress(p.bench.stage(p.from)); // the platen keeps moving
+    if (never_moved || past_strength)
+        fail(p, last, never_moved ? last.summary.residual_ratio : last.viscous_share, FailureKind::no_equilibrium);
+    return last;
+}
+
 /// The body moves along with the steps, each of which starts where the one before has ended; eta grows on the blocks that
 /// stop the iteration and falls again as they come to rest. A step on the way need not be an equilibrium, the last must.
 Equilibrium relax(StepInProgress& p, PlacedState& placed, const LoadsAt& at, const std::vector<int>& restless) {
@@ -91,33 +116,17 @@ Equilibrium relax(StepInProgress& p, PlacedState& placed, const LoadsAt& at, con
     RelaxationProgress progress;
     for (int attempt = 0; attempt < max_relaxation_attempts; ++attempt) {
         Equilibrium moved = move_on(p, placed, at, factors);
-        if (!is_harmless(moved, p.goal.balance)) {
-            if (!grow_mass(moved.summary.restless, factors)) {
-                fail(p, moved, moved.summary.residual_ratio, FailureKind::no_equilibrium);
-                return moved;
-            }
-            last.start = moved.start;
-            continue;
-        }
-        moved.balanced = moved.viscous_share <= p.goal.balance.share;
-        if (moved.balanced) {
-            p.step.end.memory.viscosity_factor = factors;
-            return moved;
-        }
-        if (!move_body(p, placed, at, moved.displacement)) return moved;
-        const bool moves_on = p.goal.must_rest && !progress.falls(moved.viscous_share);
-        if (moves_on || is_falling(p)) {
-            fail(p, moved, moved.viscous_share, FailureKind::falling);
-            return moved;
-        }
+        const Outcome outcome = judge(p, placed, at, progress, moved);
+        if (outcome == Outcome::balanced) p.step.end.memory.viscosity_factor = factors;
+        if (outcome == Outcome::stuck && !grow_mass(moved.summary.restless, factors))
+            fail(p, moved, moved.summary.residual_ratio, FailureKind::no_equilibrium);
+        if (outcome == Outcome::balanced || p.failed()) return moved;
+        last.start = moved.start;
+        if (outcome == Outcome::stuck) continue;
         if (moved.summary.iterations <= easy_relaxation) decay_mass(factors);
         last = std::move(moved);
     }
-    // A platen under stress keeps moving: past the strength.
-    if (last.displacement.size() == 0 || is_platen_loaded_by_stress(p.bench.stage(p.from)))
-        fail(p, last, last.displacement.size() == 0 ? last.summary.residual_ratio : last.viscous_share,
-             FailureKind::no_equilibrium);
-    return last;
+    return given_up(p, std::move(last));
 }
 
 void hold_balanced_part(Step& step) {

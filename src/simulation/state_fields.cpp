@@ -9,58 +9,78 @@
 
 namespace kluft {
 
-FieldRecord field_record(const Model& model, const State& state, const LoadedBody& body) {
-    const BlockSystem& system = model.system;
-    const Eigen::VectorXd& q = state.body.displacement;
-    FieldRecord fields;
-    fields.stress = block_stresses(body, q);
+namespace {
+
+using InterfaceFields = FieldRecord::InterfaceFields;
+
+std::vector<Vec2> vertex_displacements(const BlockSystem& system, const Eigen::VectorXd& q) {
+    std::vector<Vec2> displacements;
     for (int b = 0; b < system.n_blocks(); ++b) {
         for (const Edge& edge : system.blocks[b].edges) {
             const Vec2 xi = block_coordinates(system.blocks[b], edge_start(system, edge));
-            fields.displacement.push_back(displacement_at(q, b, xi));
+            displacements.push_back(displacement_at(q, b, xi));
         }
     }
-    fields.interfaces.resize(system.interfaces.size());
-    for (int i = 0; i < system.n_interfaces(); ++i) {
-        const Interface& interface = system.interfaces[i];
-        const Edge& edge = system.blocks[interface.block_a].edges[interface.edge_a];
-        auto& record = fields.interfaces[i];
-        record.bonded = state.body.interfaces[i] == InterfaceStatus::potential_crack;
-        record.broken = state.body.interfaces[i] == InterfaceStatus::tension_crack ||
-                        state.body.interfaces[i] == InterfaceStatus::shear_crack;
-        record.mode = state.body.interfaces[i] == InterfaceStatus::shear_crack ? CrackMode::shear : CrackMode::tension;
-        record.state = record.bonded ? ContactState::locked : ContactState::open;
-        const Vec2 middle = 0.5 * (edge_start(system, edge) + edge_end(system, edge));
-        const auto moved = [&](int b) { return displacement_at(q, b, block_coordinates(system.blocks[b], middle)); };
-        const Vec2 relative = moved(interface.block_b) - moved(interface.block_a);
-        const Vec2 along = (current_position(system, q, interface.block_a, edge.end) -
-                            current_position(system, q, interface.block_a, edge.start))
-                               .normalized();
-        record.gap = right_normal(along).dot(relative);
-        record.slip = along.dot(relative);
-    }
-    const auto bonds = bond_tractions(model, body, q);
-    for (int i = 0; i < system.n_interfaces(); ++i) {
-        if (!fields.interfaces[i].bonded) continue;
-        fields.interfaces[i].normal_traction = bonds[i].normal;
-        fields.interfaces[i].shear_traction = bonds[i].shear;
-    }
-    std::vector<double> lengths(system.interfaces.size(), 0.0);
+    return displacements;
+}
+
+/// Status, gap and slip of an interface; its tractions are still zero.
+InterfaceFields interface_fields(const BlockSystem& system, int i, InterfaceStatus status, const Eigen::VectorXd& q) {
+    const Interface& interface = system.interfaces[i];
+    const Edge& edge = system.blocks[interface.block_a].edges[interface.edge_a];
+    InterfaceFields record;
+    record.bonded = status == InterfaceStatus::potential_crack;
+    record.broken = status == InterfaceStatus::tension_crack || status == InterfaceStatus::shear_crack;
+    record.mode = status == InterfaceStatus::shear_crack ? CrackMode::shear : CrackMode::tension;
+    record.state = record.bonded ? ContactState::locked : ContactState::open;
+    const Vec2 middle = 0.5 * (edge_start(system, edge) + edge_end(system, edge));
+    const auto moved = [&](int b) { return displacement_at(q, b, block_coordinates(system.blocks[b], middle)); };
+    const Vec2 relative = moved(interface.block_b) - moved(interface.block_a);
+    const Vec2 along = (current_position(system, q, interface.block_a, edge.end) -
+                        current_position(system, q, interface.block_a, edge.start))
+                           .normalized();
+    record.gap = right_normal(along).dot(relative);
+    record.slip = along.dot(relative);
+    return record;
+}
+
+/// Mean tractions of the contact points on the interfaces' own edges, and their worst states.
+void add_contacts(const LoadedBody& body, const Eigen::VectorXd& q, std::vector<InterfaceFields>& interfaces) {
+    std::vector<double> lengths(interfaces.size(), 0.0);
     for (int i = 0; i < static_cast<int>(body.placement->contacts.size()); ++i) {
         const ContactPoint& point = body.placement->contacts[i];
         if (point.interface < 0) continue;
         const auto traction = contact_traction(body, i, q);
-        auto& record = fields.interfaces[point.interface];
-        if (severity(traction.state) > severity(record.state)) record.state = traction.state;
+        InterfaceFields& record = interfaces[point.interface];
+        record.state = worse(record.state, traction.state);
         record.normal_traction += point.weight * traction.normal;
         record.shear_traction += point.weight * traction.shear;
         lengths[point.interface] += point.weight;
     }
-    for (int i = 0; i < system.n_interfaces(); ++i) {
+    for (std::size_t i = 0; i < interfaces.size(); ++i) {
         if (lengths[i] == 0.0) continue;
-        fields.interfaces[i].normal_traction /= lengths[i];
-        fields.interfaces[i].shear_traction /= lengths[i];
+        interfaces[i].normal_traction /= lengths[i];
+        interfaces[i].shear_traction /= lengths[i];
     }
+}
+
+} // namespace
+
+FieldRecord field_record(const Model& model, const State& state, const LoadedBody& body) {
+    const Eigen::VectorXd& q = state.body.displacement;
+    FieldRecord fields;
+    fields.stress = block_stresses(body, q);
+    fields.displacement = vertex_displacements(model.system, q);
+    const auto bonds = bond_tractions(model, body, q);
+    for (int i = 0; i < model.system.n_interfaces(); ++i) {
+        InterfaceFields record = interface_fields(model.system, i, state.body.interfaces[i], q);
+        if (record.bonded) {
+            record.normal_traction = bonds[i].normal;
+            record.shear_traction = bonds[i].shear;
+        }
+        fields.interfaces.push_back(record);
+    }
+    add_contacts(body, q, fields.interfaces);
     return fields;
 }
 

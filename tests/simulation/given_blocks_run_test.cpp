@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "kluft/core/diagnostics.hpp"
+#include "kluft/simulation/fingerprint.hpp"
 #include "support/scene_run.hpp"
 
 namespace kluft {

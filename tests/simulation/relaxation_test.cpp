@@ -16,8 +16,7 @@ constexpr double weight = posed::density * posed::gravity * 2.0; ///< of the blo
 
 /// What a relaxation comes to from where the block lies, under its whole weight.
 struct Relaxed {
-    explicit Relaxed(Workplace& work, bool must_rest = false)
-        : bench(work.bench()), goal(goal_at(bench, 1.0, false)) {
+    explicit Relaxed(Workplace& work, bool must_rest = false) : bench(work.bench()), goal(goal_at(bench, 1.0, false)) {
         goal.must_rest = must_rest;
         StepInProgress p = begin_step(bench, work.state, goal);
         PlacedState placed = place_for_load_step(p);

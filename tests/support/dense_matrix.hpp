@@ -9,10 +9,16 @@ namespace kluft {
 
 inline Eigen::MatrixXd dense(const BlockMatrix& matrix) {
     const BlockPattern& pattern = *matrix.pattern;
-    Eigen::MatrixXd result = Eigen::MatrixXd::Zero(6 * pattern.n_blocks(), 6 * pattern.n_blocks());
+    const int nu = pattern.block_unknowns();
+    Eigen::MatrixXd result = Eigen::MatrixXd::Zero(nu * pattern.n_blocks(), nu * pattern.n_blocks());
     for (int row = 0; row < pattern.n_blocks(); ++row) {
         for (int entry = pattern.row_start(row); entry < pattern.row_start(row + 1); ++entry) {
-            result.block<6, 6>(6 * row, 6 * pattern.column(entry)) = matrix.values[entry];
+            auto block = result.block(nu * row, nu * pattern.column(entry), nu, nu);
+            if (matrix.is_rigid()) {
+                block = matrix.rigid_values[entry];
+            } else {
+                block = matrix.values[entry];
+            }
         }
     }
     return result;

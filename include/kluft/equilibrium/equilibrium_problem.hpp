@@ -7,8 +7,7 @@
 #include <Eigen/Core>
 
 #include "kluft/assembly/block_matrix.hpp"
-#include "kluft/equilibrium/boundary_terms.hpp"
-#include "kluft/equilibrium/rigid_terms.hpp"
+#include "kluft/equilibrium/coordinates.hpp"
 #include "kluft/loading/loaded_body.hpp"
 
 namespace kluft {
@@ -28,7 +27,7 @@ enum class TangentKind {
 };
 
 struct Residual {
-    Eigen::VectorXd forces;   ///< R, size 6 n_blocks in either kinematics (N/m)
+    Eigen::VectorXd forces;   ///< R, size 6 n_blocks in either kinematics, or T' R on the unknowns (N/m)
     double force_scale = 0.0; ///< F_ref: norm of the sums of magnitudes of contact forces, block forces and loads (N/m)
     double roundoff = 0.0;    ///< size of R that round-off of the displacements alone makes (N/m)
 };
@@ -38,31 +37,30 @@ class EquilibriumEvaluator {
 public:
     /// `pattern` must contain every pair of the problem's points.
     EquilibriumEvaluator(const EquilibriumProblem& problem, const BlockPattern& pattern)
-        : problem_(problem), pattern_(pattern) {}
+        : problem_(problem), pattern_(pattern), coordinates_(*problem.body.system, problem.body.kinematics) {}
 
-    /// R(q).
+    [[nodiscard]] const EquilibriumProblem& problem() const { return problem_; }
+    /// Of the problem; what they reduce is seen from the q of the last residual.
+    [[nodiscard]] const Coordinates& coordinates() const { return coordinates_; }
+
+    /// Evaluates R(q).
     void residual(const Eigen::VectorXd& q, Residual& result);
-    /// Of rigid blocks, T' of forces on the six numbers at the q of the last residual: size 3 n_blocks.
-    void reduce_to_unknowns(const Eigen::VectorXd& forces, Eigen::VectorXd& reduced) const;
-    /// dR/dq. Of rigid blocks with T = dq/d(u, w): T' dR/dq T and what the forces do on the curve that a turning block
-    /// moves on; the pattern must be one of rigid blocks then.
+    /// Evaluates the same on the unknowns, T' R(q).
+    void reduced_residual(const Eigen::VectorXd& q, Residual& result);
+    /// Evaluates dR/dq. Of rigid blocks with T = dq/d(u, w): T' dR/dq T and what the forces do on the curve that a
+    /// turning block moves on; the pattern must be one of rigid blocks then.
     void tangent(const Eigen::VectorXd& q, TangentKind kind, BlockMatrix& matrix);
 
 private:
+    void sum_forces(const Eigen::VectorXd& q, Residual& result);
     void add_mass_forces(const Eigen::VectorXd& q, Eigen::VectorXd& forces) const;
-    void set_bond_tangents(BlockMatrix& matrix) const;
-    void add_block_tangents(const Eigen::VectorXd& q, TangentKind kind, BlockMatrix& matrix) const;
-    void add_contact_tangents(const Eigen::VectorXd& q, TangentKind kind, BlockMatrix& matrix) const;
-    void rigid_tangent(const Eigen::VectorXd& q, TangentKind kind, BlockMatrix& matrix);
-    void set_rigid_bond_tangents(BlockMatrix& matrix) const;
-    void add_rigid_contact_tangents(const Eigen::VectorXd& q, TangentKind kind, BlockMatrix& matrix) const;
-    void add_rigid_block_tangents(TangentKind kind, BlockMatrix& matrix) const;
+    void rigid_tangent_at(const Eigen::VectorXd& q, TangentKind kind, BlockMatrix& matrix);
 
     const EquilibriumProblem& problem_;
     const BlockPattern& pattern_;
+    Coordinates coordinates_;
     BodyForces body_forces_;
-    Eigen::VectorXd turned_to_;      ///< of rigid blocks: the q of what follows
-    RigidTurns turns_;               ///< at that q
+    Eigen::VectorXd turned_to_;      ///< of rigid blocks: the q of the last residual
     std::vector<double> curvatures_; ///< stiffness against w from the forces at that q, per block
 };
 

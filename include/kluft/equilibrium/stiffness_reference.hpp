@@ -40,6 +40,7 @@ private:
     static void collect(const EquilibriumProblem& problem, const Eigen::VectorXd& q, std::vector<Patch>& patches);
     void add_broken_bonds(const EquilibriumProblem& problem);
     void add_masses(const EquilibriumProblem& problem, const Eigen::VectorXd& q);
+    void add_mass(const EquilibriumProblem& problem, int b, const Mat6& mass);
     long number_of(const Key& key) {
         return numbers_.try_emplace(key, static_cast<long>(numbers_.size())).first->second;
     }

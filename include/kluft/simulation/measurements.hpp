@@ -33,8 +33,8 @@ struct Strains {
 [[nodiscard]] Strains measure_strains(const Model& model, const Gauges& gauges, const Eigen::VectorXd& q,
                                       const Eigen::VectorXd& reference);
 
-/// Severity of a contact state, to name an interface by its worst point: open 0, locked 1, sliding 2.
-[[nodiscard]] int severity(ContactState state);
+/// The worse of two contact states, to name an interface by its worst point: open, then locked, then sliding.
+[[nodiscard]] ContactState worse(ContactState a, ContactState b);
 
 /// Contact states by interface and further touching pairs, each counted once by its worst point.
 struct ContactCounts {

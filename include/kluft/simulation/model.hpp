@@ -59,7 +59,4 @@ struct ModelInput {
 /// Whether there is gravity in any stage.
 [[nodiscard]] bool has_gravity(const Model& model);
 
-/// A number of the body, its mechanics and its loads, as text: a saved state belongs to one of them.
-[[nodiscard]] std::string fingerprint(const Model& model);
-
 } // namespace kluft

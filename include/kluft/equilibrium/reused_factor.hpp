@@ -1,0 +1,41 @@
+// One factor for many linear systems (docs/theory.md, "Reuse of the factor"): what has changed since it was made goes
+// on top of it, or is met by refinement.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "kluft/assembly/linear_solver.hpp"
+#include "kluft/equilibrium/stiffness_reference.hpp"
+
+namespace kluft {
+
+/// Keeps the factor of a symmetric tangent for as long as it is worth it.
+class ReusedFactor {
+public:
+    explicit ReusedFactor(LinearSolver& linear_solver) : linear_solver_(linear_solver) {}
+
+    /// The linear solver's factor is not, or should not be, that of a symmetric tangent any more.
+    void forget() { reference_.forget(); }
+
+    /// Puts all changes of the symmetric tangent at q on top of the factor (30). False if there is no factor worth
+    /// keeping.
+    [[nodiscard]] bool update(const EquilibriumProblem& problem, const Eigen::VectorXd& q);
+    /// Makes the factor anew of the symmetric tangent at q with the prescribed motions taken out; its values are gone
+    /// then. False if it is not positive definite.
+    [[nodiscard]] bool renew(const EquilibriumProblem& problem, const Eigen::VectorXd& q, BlockMatrix& tangent);
+
+    /// Solves matrix x = b, refined until no more than `residual` is left of b.
+    SolveReport solve(const BlockMatrix& matrix, const Eigen::VectorXd& b, double residual, Eigen::VectorXd& x);
+    /// Counts the refinements of a solution: the more they exceed those of the first one, the sooner the factor is made
+    /// anew.
+    void count(int refinements);
+
+private:
+    LinearSolver& linear_solver_;
+    StiffnessReference reference_;
+    int analysis_ = 0;           ///< of the linear solver, when the factor was made
+    int fresh_refinements_ = -1; ///< of the first solution with the factor, -1 before
+    int excess_refinements_ = 0; ///< of later solutions beyond it
+};
+
+} // namespace kluft

@@ -1,0 +1,122 @@
+#include "kluft/equilibrium/newton_increment.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "kluft/core/stopwatch.hpp"
+#include "kluft/equilibrium/boundary_terms.hpp"
+
+namespace kluft {
+
+namespace {
+
+constexpr double linear_share = 0.3;            ///< of the tolerated residual, that a linear solve may leave
+constexpr double far_linear_residual = 0.05;    ///< of its right side: as many iterations as with less (measured)
+constexpr double largest_linear_residual = 0.1; ///< of its right side, near equilibrium
+constexpr double travel_residual = 1e-8;        ///< of the border's column
+
+/// Takes the prescribed motions out of a tangent.
+void make_free(const Constraints& constraints, BlockMatrix& matrix) {
+    const BlockPattern& pattern = *matrix.pattern;
+    project(constraints, matrix, matrix.trace() / (pattern.block_unknowns() * pattern.n_blocks()));
+}
+
+/// The second bound of (31): far from equilibrium a linear solve need not be exact, near it it leaves less than what
+/// the iteration tolerates. `right_side`: its norm (N/m).
+double linear_residual(double right_side, double tolerance, double force_scale) {
+    return std::min(largest_linear_residual * right_side,
+                    std::max(far_linear_residual * right_side, linear_share * tolerance * force_scale));
+}
+
+} // namespace
+
+/// Sets up the right side and the tangent at q with the prescribed motions taken out, and the border if there is one.
+void NewtonIncrement::assemble(const NewtonPoint& at, TangentKind kind) {
+    const Stopwatch watch(assembly_seconds_);
+    const EquilibriumProblem& problem = at.evaluator.problem();
+    at.evaluator.tangent(at.q, kind, matrix_);
+    if (at.border.exists()) set_platen_equation(problem, at.evaluator.coordinates(), matrix_, at.border);
+    right_side_ = -at.residual.forces;
+    if (!at.prescribed.isZero(0.0)) {
+        matrix_.multiply(at.prescribed, scratch_);
+        right_side_ -= scratch_;
+    }
+    problem.body.loads->constraints.project(right_side_);
+    make_free(problem.body.loads->constraints, matrix_);
+}
+
+void NewtonIncrement::assemble_symmetric(const NewtonPoint& at) {
+    const Stopwatch watch(assembly_seconds_);
+    at.evaluator.tangent(at.q, TangentKind::symmetric, matrix_);
+    make_free(at.evaluator.problem().body.loads->constraints, matrix_);
+}
+
+/// Solves for increment and response by a factorization of the assembled matrix.
+bool NewtonIncrement::solve_anew(const NewtonPoint& at, TangentKind kind) {
+    factor_.forget();
+    const bool exact = kind == TangentKind::exact;
+    if (!linear_solver_.factorize(std::move(matrix_), exact ? Factorization::lu : Factorization::cholesky))
+        return false;
+    linear_solver_.solve(right_side_, increment_);
+    if (at.border.exists()) linear_solver_.solve(at.border.column, response_);
+    return true;
+}
+
+/// Solves by the factor in use with its changes, by a new one of the symmetric tangent, or by one of the tangent
+/// itself, whichever is the first that works.
+bool NewtonIncrement::solve_with_reuse(const NewtonPoint& at, TangentKind kind) {
+    const EquilibriumProblem& problem = at.evaluator.problem();
+    if (factor_.update(problem, at.q)) {
+        assemble(at, kind);
+        if (solve_refined(at)) return true;
+    }
+    assemble_symmetric(at);
+    const bool renewed = factor_.renew(problem, at.q, matrix_);
+    assemble(at, kind);
+    if (renewed && solve_refined(at)) return true;
+    return solve_anew(at, kind);
+}
+
+bool NewtonIncrement::solve_refined(const NewtonPoint& at) {
+    const double residual = linear_residual(right_side_.norm(), at.tolerance, at.residual.force_scale);
+    const SolveReport report = factor_.solve(matrix_, right_side_, residual, increment_);
+    factor_.count(report.refinements);
+    if (!report.accepted || !at.border.exists()) return report.accepted;
+    const Eigen::VectorXd& column = at.border.column;
+    return factor_.solve(matrix_, column, travel_residual * column.norm(), response_).accepted;
+}
+
+/// Scales the increment by one factor for all blocks: it stays Newton's direction.
+void NewtonIncrement::limit_motions(const NewtonPoint& at) {
+    const BlockSystem& system = *at.evaluator.problem().body.system;
+    const double limit = options_.motion_limit * system.spacing;
+    double largest = 0.0;
+    limited_.clear();
+    for (int b = 0; b < system.n_blocks(); ++b) {
+        const double motion = at.evaluator.coordinates().motion(increment_, b);
+        if (motion > limit) limited_.push_back(b);
+        largest = std::max(largest, motion);
+    }
+    if (largest > limit) increment_ *= limit / largest;
+}
+
+bool NewtonIncrement::find(const NewtonPoint& at, TangentKind kind) {
+    const EquilibriumProblem& problem = at.evaluator.problem();
+    if (options_.reuse && kind != TangentKind::touching) {
+        if (!solve_with_reuse(at, kind)) return false;
+    } else {
+        assemble(at, kind);
+        if (!solve_anew(at, kind)) return false;
+    }
+    problem.body.loads->constraints.project(increment_);
+    if (at.border.exists()) {
+        problem.body.loads->constraints.project(response_);
+        const double imbalance = platen_imbalance(problem, at.border, at.q, at.residual.forces);
+        at.border.add_to(imbalance - at.border.row.dot(at.prescribed), response_, increment_);
+    }
+    increment_ += at.prescribed;
+    limit_motions(at);
+    return true;
+}
+
+} // namespace kluft

@@ -1,0 +1,47 @@
+#include "kluft/equilibrium/reused_factor.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace kluft {
+
+namespace {
+
+constexpr int max_refinements = 60;                   ///< Krylov vectors of one linear solve
+constexpr int refinements_worth_a_factorization = 15; ///< measured at 600, 5 000 and 50 000 blocks: 15, 18, 19
+
+} // namespace
+
+bool ReusedFactor::update(const EquilibriumProblem& problem, const Eigen::VectorXd& q) {
+    if (!reference_.taken() || analysis_ != linear_solver_.statistics().analyses ||
+        excess_refinements_ > refinements_worth_a_factorization) {
+        return false;
+    }
+    return linear_solver_.update(reference_.changes(problem, q));
+}
+
+bool ReusedFactor::renew(const EquilibriumProblem& problem, const Eigen::VectorXd& q, BlockMatrix& tangent) {
+    reference_.take(problem, q, tangent);
+    if (!linear_solver_.factorize(std::move(tangent), Factorization::rounded_cholesky)) {
+        reference_.forget();
+        return false;
+    }
+    analysis_ = linear_solver_.statistics().analyses;
+    fresh_refinements_ = -1;
+    excess_refinements_ = 0;
+    return true;
+}
+
+SolveReport ReusedFactor::solve(const BlockMatrix& matrix, const Eigen::VectorXd& b, double residual,
+                                Eigen::VectorXd& x) {
+    SolveGoal goal;
+    goal.residual = residual;
+    return linear_solver_.solve(matrix, b, goal, max_refinements, x);
+}
+
+void ReusedFactor::count(int refinements) {
+    if (fresh_refinements_ < 0) fresh_refinements_ = refinements;
+    excess_refinements_ += std::max(0, refinements - fresh_refinements_);
+}
+
+} // namespace kluft

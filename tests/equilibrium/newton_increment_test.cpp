@@ -1,0 +1,140 @@
+#include "kluft/equilibrium/newton_increment.hpp"
+
+#include <algorithm>
+
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <gtest/gtest.h>
+
+#include "support/pressed_body.hpp"
+
+namespace kluft {
+namespace {
+
+using cut_scenes::Uniform;
+
+/// Increments of a body from a state in which neither the forces nor the prescribed displacements are right.
+struct Start {
+    Start(bool travelling, Kinematics kinematics, double amplitude = 2e-5) : body(travelling, {1, 0}, kinematics) {
+        Uniform uniform(8);
+        Eigen::VectorXd motion(evaluator.coordinates().size());
+        for (double& value : motion) value = uniform(-amplitude, amplitude);
+        evaluator.coordinates().move(at_rest(body.system), motion, 1.0, q);
+        body.problem.loads.constraints.correction(q, prescribed);
+        evaluator.reduced_residual(q, residual);
+        border = border_of_platen(body.problem, evaluator.coordinates());
+        linear.analyze(pattern);
+    }
+    [[nodiscard]] NewtonPoint point() { return {evaluator, border, q, residual, prescribed, 1e-5}; }
+    [[nodiscard]] Eigen::MatrixXd tangent() {
+        BlockMatrix matrix;
+        evaluator.tangent(q, TangentKind::exact, matrix);
+        return dense(matrix);
+    }
+
+    PressedBody body;
+    BlockPattern pattern = pattern_of(body.problem);
+    EquilibriumEvaluator evaluator{body.problem, pattern};
+    Eigen::VectorXd q, prescribed;
+    Residual residual;
+    Border border;
+    LinearSolver linear;
+};
+
+/// The increment of the dense system with a Lagrange multiplier for every row and the travel of the platen as an
+/// unknown,
+///     K dq + C' multipliers = -R,   C (q + dq) = target + rate travel,   v . (R + K dq) = stress width(q + dq).
+Eigen::VectorXd dense_increment(Start& start) {
+    const OwnedProblem& problem = start.body.problem;
+    const DenseRows rows(problem);
+    const Eigen::MatrixXd tangent = start.tangent();
+    const Eigen::Index n = tangent.rows(), m = rows.rates.size();
+    Eigen::MatrixXd system = rows.bordered(tangent);
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(n + m + 1);
+    right.head(n) = -start.residual.forces;
+    for (Eigen::Index i = 0; i < m; ++i) {
+        const PrescribedDisplacement& row = problem.loads.constraints.rows()[static_cast<std::size_t>(i)];
+        right[n + i] = DenseRows::scale * (row.target - row.direction.dot(displacement_at(start.q, row.block, row.xi)));
+    }
+    system(n + m, n + m) = DenseRows::scale; // without a travelling platen its travel is zero
+    if (problem.loads.platen_force) {
+        const PlatenForce& platen = *problem.loads.platen_force;
+        const Eigen::VectorXd v = rows.matrix.completeOrthogonalDecomposition().solve(rows.rates);
+        Eigen::VectorXd widening;
+        start.evaluator.coordinates().reduce(platen.widening, widening);
+        system.block(n + m, 0, 1, n) = v.transpose() * tangent - platen.stress * widening.transpose();
+        system(n + m, n + m) = 0.0;
+        right[n + m] = platen.at(start.q) - v.dot(start.residual.forces);
+    }
+    return Eigen::FullPivLU<Eigen::MatrixXd>(system).solve(right).head(n);
+}
+
+TEST(NewtonIncrement, SolvesTheDenseSystemWithLagrangeMultipliers) {
+    for (const Kinematics kinematics : {Kinematics::affine, Kinematics::rigid}) {
+        for (const bool travelling : {false, true}) {
+            Start start(travelling, kinematics);
+            NewtonIncrement newton(start.linear, {.reuse = false, .motion_limit = 10.0});
+            ASSERT_TRUE(newton.find(start.point(), TangentKind::exact));
+            const Eigen::VectorXd expected = dense_increment(start);
+            EXPECT_LT((newton.increment() - expected).norm(), 1e-7 * expected.norm()) << travelling;
+            EXPECT_TRUE(newton.limited().empty());
+        }
+    }
+}
+
+// theory (31): what a linear solve leaves is at most a tenth of its right side, here with the factor of another
+// tangent.
+TEST(NewtonIncrement, RefinedIncrementLeavesLittleOfItsEquations) {
+    for (const Kinematics kinematics : {Kinematics::affine, Kinematics::rigid}) {
+        Start start(false, kinematics);
+        NewtonIncrement newton(start.linear, {.reuse = true, .motion_limit = 10.0});
+        ASSERT_TRUE(newton.find(start.point(), TangentKind::exact));
+        const Eigen::MatrixXd tangent = start.tangent();
+        Eigen::VectorXd right = -start.residual.forces - tangent * start.prescribed;
+        Eigen::VectorXd left = -start.residual.forces - tangent * newton.increment();
+        start.body.problem.loads.constraints.project(right);
+        start.body.problem.loads.constraints.project(left);
+        EXPECT_LT(left.norm(), 0.1 * right.norm());
+    }
+}
+
+TEST(NewtonIncrement, KeepsItsFactorUntilItIsToldToForgetIt) {
+    Start start(true, Kinematics::affine);
+    NewtonIncrement newton(start.linear, {});
+    for (int i = 0; i < 3; ++i) ASSERT_TRUE(newton.find(start.point(), TangentKind::exact));
+    EXPECT_EQ(start.linear.statistics().factorizations, 1);
+    newton.forget_factor();
+    ASSERT_TRUE(newton.find(start.point(), TangentKind::exact));
+    EXPECT_EQ(start.linear.statistics().factorizations, 2);
+}
+
+// One factor for all blocks: the increment keeps its direction.
+TEST(NewtonIncrement, IsScaledUntilNoBlockMovesBeyondTheLimit) {
+    for (const Kinematics kinematics : {Kinematics::affine, Kinematics::rigid}) {
+        Start start(false, kinematics);
+        NewtonIncrement whole(start.linear, {.reuse = false, .motion_limit = 10.0});
+        ASSERT_TRUE(whole.find(start.point(), TangentKind::exact));
+        std::vector<double> motions;
+        for (int b = 0; b < start.body.system.n_blocks(); ++b)
+            motions.push_back(start.evaluator.coordinates().motion(whole.increment(), b));
+        const double largest = *std::ranges::max_element(motions);
+        const double share = 0.7 * largest / start.body.system.spacing;
+        NewtonIncrement limited(start.linear, {.reuse = false, .motion_limit = share});
+        ASSERT_TRUE(limited.find(start.point(), TangentKind::exact));
+        EXPECT_LT((limited.increment() - 0.7 * whole.increment()).norm(), 1e-9 * whole.increment().norm());
+        const auto beyond = std::ranges::count_if(motions, [&](double motion) { return motion > 0.7 * largest; });
+        EXPECT_EQ(static_cast<std::ptrdiff_t>(limited.limited().size()), beyond);
+        EXPECT_GE(beyond, 1);
+    }
+}
+
+TEST(NewtonIncrement, IsNotFoundWhereAPieceHasNoStiffness) {
+    Start start(false, Kinematics::affine);
+    start.body.problem.placement.bonds.clear();
+    start.body.problem.placement.contacts.clear();
+    NewtonIncrement newton(start.linear, {.reuse = false});
+    EXPECT_FALSE(newton.find(start.point(), TangentKind::symmetric));
+}
+
+} // namespace
+} // namespace kluft
