@@ -1,6 +1,4 @@
 // kluft run SCENE
-#include <atomic>
-#include <csignal>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -27,6 +25,7 @@
 #include "kluft/simulation/simulation.hpp"
 #include "kluft/simulation/state_fields.hpp"
 #include "kluft/simulation/strength_reduction.hpp"
+#include "stop_request.hpp"
 
 namespace kluft {
 
@@ -36,10 +35,6 @@ namespace fs = std::filesystem;
 
 /// Below this many unknowns the BLAS gets one thread: more make it slower (measured), and one repeats to the bit.
 constexpr int unknowns_worth_threads = 20000;
-
-std::atomic<bool> stop_requested{false};
-
-void request_stop(int) { stop_requested = true; }
 
 /// Passes everything on to the files and keeps the terminal informed.
 class RunObserver : public StepObserver {
@@ -205,8 +200,7 @@ ExitCode run(const RunArguments& arguments) {
             if (!arguments.quiet) fmt::print(stderr, "warning: {}\n", warning);
         }
     }
-    std::signal(SIGINT, request_stop);
-    std::signal(SIGTERM, request_stop);
+    listen_for_stop();
     return simulate(model, scene, state, writer, log, directory, earlier_cpu, arguments.quiet);
 }
 

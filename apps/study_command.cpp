@@ -1,13 +1,10 @@
 // kluft study STUDY.yaml | step-size SCENE | trade SCENE
 #include <algorithm>
-#include <atomic>
 #include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -25,23 +22,14 @@
 #include "kluft/studies/study_report.hpp"
 #include "kluft/studies/study_results.hpp"
 #include "kluft/studies/study_run.hpp"
+#include "stop_request.hpp"
+#include "this_program.hpp"
 
 namespace kluft {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-std::atomic<bool> stop_requested{false};
-
-void request_stop(int) { stop_requested = true; }
-
-fs::path this_program() {
-    std::error_code error;
-    const fs::path program = fs::read_symlink("/proc/self/exe", error);
-    if (error) throw InputError("kluft study: cannot find the path of this program: " + error.message());
-    return program;
-}
 
 /// Where the study stands: a line that is rewritten on a terminal, elsewhere one now and then.
 class StudyProgressLine {
@@ -162,7 +150,7 @@ int default_jobs() { return static_cast<int>(std::max(std::thread::hardware_conc
 
 /// The words that gather the results of an emitted study.
 std::vector<std::string> collect_command(const StudyArguments& arguments, const StudyPlace& place) {
-    std::vector<std::string> words{this_program(), "study"};
+    std::vector<std::string> words{this_program("study"), "study"};
     for (const auto& word : arguments.words) {
         std::error_code error;
         words.push_back(fs::is_regular_file(word, error) ? fs::absolute(word).lexically_normal().string() : word);
@@ -197,16 +185,15 @@ ExitCode study(const StudyArguments& arguments) {
     }
     if (!lock) lock.emplace(directory);
     const int jobs = arguments.jobs > 0 ? arguments.jobs : default_jobs();
-    prepare_study(read, this_program(), directory);
+    prepare_study(read, this_program("study"), directory);
     if (!arguments.emit.empty()) {
         const auto next = emit_study(arguments.emit, read, directory, jobs, collect_command(arguments, place));
         fmt::print("{}", next);
         return ExitCode::done;
     }
-    std::signal(SIGINT, request_stop);
-    std::signal(SIGTERM, request_stop);
+    listen_for_stop();
     StudyProgressLine line;
-    StudyRunOptions options{this_program(), jobs, {}};
+    StudyRunOptions options{this_program("study"), jobs, {}};
     if (!arguments.quiet) options.show = [&](const StudyProgress& progress) { line.show(progress); };
     const StudyTable table = run_study(read, directory, options, stop_requested);
     line.clear();

@@ -12,19 +12,13 @@
 
 #include "commands.hpp"
 #include "kluft/core/diagnostics.hpp"
+#include "this_program.hpp"
 
 namespace kluft {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-fs::path this_program() {
-    std::error_code error;
-    const fs::path program = fs::read_symlink("/proc/self/exe", error);
-    if (error) throw InputError("kluft validate: cannot find the path of this program: " + error.message());
-    return program;
-}
 
 /// scripts/validate of the sources that the program was built in, or of the installed share directory.
 fs::path validation_script(const fs::path& program) {
@@ -46,7 +40,7 @@ fs::path validation_script(const fs::path& program) {
 } // namespace
 
 ExitCode validate(const ValidateArguments& arguments) {
-    const fs::path program = this_program();
+    const fs::path program = this_program("validate");
     std::vector<std::string> words{validation_script(program), "--kluft", program};
     words.insert(words.end(), arguments.words.begin(), arguments.words.end());
     std::vector<char*> pointers;

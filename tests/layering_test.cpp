@@ -11,12 +11,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "support/source_folder.hpp"
+
 namespace kluft {
 namespace {
 
 namespace fs = std::filesystem;
-
-const fs::path root = KLUFT_SOURCE_DIR;
 
 /// Low to high; layers of one rank are siblings and do not include each other.
 const std::map<std::string, int> rank_of_layer{
@@ -91,21 +91,22 @@ std::vector<Include> includes_of(const fs::path& file) {
 std::string first_folder(const fs::path& path) { return path.begin()->string(); }
 
 std::string layer_of_file(const fs::path& file) {
-    const fs::path relative = file.lexically_relative(root);
+    const fs::path relative = file.lexically_relative(source_folder);
     if (first_folder(relative) == "apps") return "apps";
-    const fs::path base = first_folder(relative) == "include" ? root / "include" / "kluft" : root / "src";
+    const fs::path base =
+        first_folder(relative) == "include" ? source_folder / "include" / "kluft" : source_folder / "src";
     return first_folder(file.lexically_relative(base));
 }
 
 std::string complaint(const fs::path& file, const Include& include, const std::string& reason) {
-    return file.lexically_relative(root).string() + ":" + std::to_string(include.line) + " includes " + include.name +
-           ": " + reason;
+    return file.lexically_relative(source_folder).string() + ":" + std::to_string(include.line) + " includes " +
+           include.name + ": " + reason;
 }
 
 std::vector<fs::path> all_sources() {
     std::vector<fs::path> files;
     for (const char* const folder : {"include", "src", "apps"})
-        for (const fs::path& file : sources_under(root / folder)) files.push_back(file);
+        for (const fs::path& file : sources_under(source_folder / folder)) files.push_back(file);
     return files;
 }
 
@@ -148,7 +149,7 @@ std::set<std::string> reached_from(const fs::path& file) {
         waiting.pop_back();
         for (const Include& include : includes_of(next))
             if (include.name.starts_with("kluft/") && reached.insert(include.name).second)
-                waiting.push_back(root / "include" / include.name);
+                waiting.push_back(source_folder / "include" / include.name);
     }
     return reached;
 }
@@ -180,7 +181,7 @@ TEST(Layering, KeepsEveryLibraryInTheLayerThatHidesIt) {
 
 TEST(Layering, KeepsHeavyHeadersOutOfPublicOnes) {
     std::vector<std::string> leaks;
-    for (const fs::path& file : sources_under(root / "include"))
+    for (const fs::path& file : sources_under(source_folder / "include"))
         for (const Include& include : includes_of(file))
             for (const std::string& library : never_in_public_headers)
                 if (include.name.starts_with(library))
@@ -193,7 +194,7 @@ TEST(Layering, IncludesCgalInOneFile) {
     std::vector<std::string> files;
     for (const fs::path& file : all_sources())
         for (const Include& include : includes_of(file))
-            if (include.name.starts_with("CGAL/")) files.push_back(file.lexically_relative(root).string());
+            if (include.name.starts_with("CGAL/")) files.push_back(file.lexically_relative(source_folder).string());
     EXPECT_THAT(files, testing::Each("src/blocks/arrangement.cpp"));
 }
 

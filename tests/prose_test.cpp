@@ -10,12 +10,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "support/source_folder.hpp"
+
 namespace kluft {
 namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path root = KLUFT_SOURCE_DIR;
 const std::set<std::string> text_endings{".cpp", ".hpp", ".in", ".cmake", ".txt",     ".json", ".yaml", ".yml", ".md",
                                          ".csv", ".sh",  ".py", ".bash",  ".geojson", ".svg",  ".toml", ""};
 
@@ -26,7 +27,8 @@ bool is_foreign_folder(const fs::path& path) {
 
 std::vector<fs::path> text_files() {
     std::vector<fs::path> files;
-    for (auto entry = fs::recursive_directory_iterator(root); entry != fs::recursive_directory_iterator(); ++entry) {
+    for (auto entry = fs::recursive_directory_iterator(source_folder); entry != fs::recursive_directory_iterator();
+         ++entry) {
         if (is_foreign_folder(entry->path()) && entry->is_directory()) entry.disable_recursion_pending();
         if (entry->is_regular_file() && text_endings.contains(entry->path().extension().string()) &&
             entry->path().filename() != ".git")
@@ -55,8 +57,8 @@ std::vector<std::string> lines_with(const std::vector<std::string>& words) {
         for (int number = 1; std::getline(stream, line); ++number)
             for (const std::string& word : words)
                 if (has_word(line, word))
-                    found.push_back(file.lexically_relative(root).string() + ":" + std::to_string(number) + ": " +
-                                    line);
+                    found.push_back(file.lexically_relative(source_folder).string() + ":" + std::to_string(number) +
+                                    ": " + line);
     }
     return found;
 }

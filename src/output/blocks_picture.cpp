@@ -10,6 +10,7 @@
 
 #include "body_drawing.hpp"
 #include "body_page.hpp"
+#include "kluft/core/units.hpp"
 #include "kluft/output/atomic_file.hpp"
 #include "kluft/output/colour_scale.hpp"
 #include "kluft/output/vtu.hpp"
@@ -18,8 +19,6 @@
 namespace kluft {
 
 namespace {
-
-constexpr double mega = 1e6;
 
 LegendEntry patch_entry(std::string label, const Colour& fill) {
     return {std::move(label), [fill](Canvas& canvas, const Vec2& middle) {

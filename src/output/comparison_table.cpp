@@ -7,7 +7,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "json_number.hpp"
 #include "kluft/core/nearest_name.hpp"
+#include "kluft/core/units.hpp"
 #include "kluft/core/version.hpp"
 
 namespace kluft {
@@ -17,7 +19,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Cells = std::array<std::string, 5>;
 
-constexpr double percent = 100.0;
 constexpr const char* unknown = "-";
 const Cells column_names{"quantity", "A", "B", "difference", ""};
 
@@ -128,8 +129,6 @@ std::string markdown_run(char letter, const ComparedRun& run) {
                        escaped(run.directory), escaped(run_facts(run)));
 }
 
-Json number(const std::optional<double>& value) { return known(value) ? Json(*value) : Json(nullptr); }
-
 Json text_or_null(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
 
 Json run_json(const ComparedRun& run) {
@@ -145,9 +144,9 @@ Json run_json(const ComparedRun& run) {
 
 Json quantity_json(const ComparedQuantity& quantity) {
     Json json;
-    json["a"] = number(quantity.a);
-    json["b"] = number(quantity.b);
-    json["difference"] = number(quantity.difference);
+    json["a"] = json_number(quantity.a);
+    json["b"] = json_number(quantity.b);
+    json["difference"] = json_number(quantity.difference);
     json["within"] =
         quantity.verdict == Verdict::not_judged ? Json(nullptr) : Json(quantity.verdict == Verdict::within);
     return json;
@@ -189,14 +188,14 @@ std::string comparison_markdown(const ComparisonTable& table) {
 std::string comparison_json(const ComparisonTable& table) {
     Json json;
     json["agree"] = table.agree;
-    json["tolerance"] = number(table.tolerance);
+    json["tolerance"] = json_number(table.tolerance);
     json["a"] = run_json(table.a);
     json["b"] = run_json(table.b);
     json["quantities"] = Json::object();
     for (const ComparedQuantity& quantity : table.quantities)
         json["quantities"][quantity.key] = quantity_json(quantity);
-    json["matching_distance"] = number(table.matching_distance);
-    json["curve_end"] = number(table.curve_end);
+    json["matching_distance"] = json_number(table.matching_distance);
+    json["curve_end"] = json_number(table.curve_end);
     json["notes"] = table.notes;
     json["pictures"] = table.pictures;
     json["version"] = std::string(version());

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "kluft/core/units.hpp"
 #include "kluft/output/atomic_file.hpp"
 #include "kluft/output/axis.hpp"
 #include "kluft/output/page_box.hpp"
@@ -22,9 +23,6 @@ constexpr double page_width = 500.0;  // points
 constexpr double plot_height = 350.0; // without the legend of several curves
 constexpr double left_margin = 66.0;
 constexpr double right_margin = 18.0;
-constexpr double pixels_per_point = 3.2;
-constexpr double percent = 100.0;
-constexpr double mega = 1e6;
 constexpr double band_opacity = 0.22;
 const Colour unbalanced_colour = colour(0xD7191C);
 const Colour reference_colour = colour(0x666666);
@@ -485,7 +483,7 @@ CurvePlot stress_strain_plot(const std::string& title, const std::vector<RunCurv
 std::string draw_curves(const CurvePlot& given, PictureFormat format) {
     const CurvePlot plot = drawable(given);
     const LegendGrid below = legend_below(plot);
-    return draw_picture(format, page_width, plot_height + below.height(), pixels_per_point,
+    return draw_picture(format, page_width, plot_height + below.height(), plot_pixels_per_point,
                         [&](Canvas& canvas) { draw_plot(canvas, plot, below); });
 }
 

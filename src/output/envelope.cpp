@@ -2,20 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 
 #include "kluft/core/diagnostics.hpp"
+#include "kluft/core/units.hpp"
 #include "kluft/output/atomic_file.hpp"
 #include "kluft/output/summary.hpp"
 
 namespace kluft {
 
 namespace {
-
-constexpr double degrees = 180.0 / std::numbers::pi;
-constexpr double mega = 1e6;
 
 /// Slope and intercept of sigma_1 over sigma_3.
 std::pair<double, double> fitted_line(const std::vector<PeakPoint>& points) {

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "kluft/core/units.hpp"
 #include "kluft/output/axis.hpp"
 #include "kluft/output/envelope.hpp"
 #include "legend.hpp"
@@ -14,13 +15,10 @@ namespace kluft {
 namespace {
 
 constexpr double plot_width = 430.0; // points
-constexpr double left_margin = 62.0;
-constexpr double right_margin = 20.0;
-constexpr double top_margin = 42.0;
-constexpr double bottom_margin = 48.0;
-constexpr double pixels_per_point = 3.2;
-constexpr double degrees = 180.0 / std::numbers::pi;
-constexpr double mega = 1e6;
+constexpr double left_of_plot = 62.0;
+constexpr double right_of_plot = 20.0;
+constexpr double above_plot = 42.0;
+constexpr double below_plot = 48.0;
 const Stroke fit_stroke{colour(0x1A1A1A), 1.5};
 
 /// Shear strength on a plane under the normal stress sigma (both in MPa).
@@ -39,7 +37,7 @@ PlotFrame frame_of(const std::vector<PeakPoint>& points, const Envelope& fit) {
         top = std::max(top, 0.5 * std::abs(point.sigma_1 - point.sigma_3) / mega);
     }
     PlotFrame frame;
-    frame.corner = {left_margin, top_margin};
+    frame.corner = {left_of_plot, above_plot};
     frame.x = round_axis(low, high, 8);
     top = std::max(1.15 * top, 0.9 * shear_strength(fit, 0.7 * high));
     const double tick = frame.x.step;
@@ -102,9 +100,9 @@ std::string draw_envelope(const std::string& title, const std::vector<PeakPoint>
                           const std::vector<NamedEnvelope>& others, PictureFormat format) {
     const PlotFrame frame = frame_of(points, fit);
     const LegendGrid below(legend_of(points, fit, others), frame.size.x());
-    const double bottom = frame.corner.y() + frame.size.y() + bottom_margin;
-    const Vec2 page(frame.corner.x() + frame.size.x() + right_margin, bottom + below.height());
-    return draw_picture(format, page.x(), page.y(), pixels_per_point, [&](Canvas& canvas) {
+    const double bottom = frame.corner.y() + frame.size.y() + below_plot;
+    const Vec2 page(frame.corner.x() + frame.size.x() + right_of_plot, bottom + below.height());
+    return draw_picture(format, page.x(), page.y(), plot_pixels_per_point, [&](Canvas& canvas) {
         canvas.text_within(frame.size.x(), {frame.corner.x(), 26.0}, title, {.size = 11.5, .bold = true});
         draw_axes(canvas, frame, "normal stress (MPa, compression positive)", "shear stress (MPa)");
         canvas.begin_clip(frame.corner, frame.size);

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <sys/resource.h>
 
+#include "json_number.hpp"
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/output/atomic_file.hpp"
 
@@ -131,10 +132,6 @@ void add_counts(const Rows& history, CurveNumbers& numbers) {
     numbers.cracks_shear = history.back().cracks_shear;
 }
 
-Json number(const std::optional<double>& value) {
-    return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
-}
-
 constexpr std::array statuses{
     std::pair{RunStatus::done, "done"}, std::pair{RunStatus::no_equilibrium, "no_equilibrium"},
     std::pair{RunStatus::collapsed, "collapsed"}, std::pair{RunStatus::out_of_resources, "out_of_resources"},
@@ -245,16 +242,16 @@ std::string summary_json(const RunSummary& summary) {
     Json json;
     json["status"] = status_name(summary.status);
     json["title"] = summary.title;
-    json["peak_stress"] = number(numbers.peak_stress);
-    json["peak_strain"] = number(numbers.peak_strain);
+    json["peak_stress"] = json_number(numbers.peak_stress);
+    json["peak_strain"] = json_number(numbers.peak_strain);
     json["peak_reached"] = numbers.peak_reached;
-    json["residual_stress"] = number(numbers.residual_stress);
-    json["youngs_modulus"] = number(numbers.youngs_modulus);
-    json["poissons_ratio"] = number(numbers.poissons_ratio);
-    json["axial_modulus"] = number(numbers.axial_modulus);
-    json["lateral_ratio"] = number(numbers.lateral_ratio);
+    json["residual_stress"] = json_number(numbers.residual_stress);
+    json["youngs_modulus"] = json_number(numbers.youngs_modulus);
+    json["poissons_ratio"] = json_number(numbers.poissons_ratio);
+    json["axial_modulus"] = json_number(numbers.axial_modulus);
+    json["lateral_ratio"] = json_number(numbers.lateral_ratio);
     visit_results(summary.results,
-                  [&](const char* name, const std::optional<double>& result) { json[name] = number(result); });
+                  [&](const char* name, const std::optional<double>& result) { json[name] = json_number(result); });
     json["cracks_tension"] = numbers.cracks_tension;
     json["cracks_shear"] = numbers.cracks_shear;
     json["blocks"] = summary.blocks;
@@ -266,18 +263,18 @@ std::string summary_json(const RunSummary& summary) {
     json["integrator"] = summary.motion ? "explicit" : "implicit";
     if (summary.motion) {
         json["time_steps"] = summary.motion->time_steps;
-        json["time_step"] = number(summary.motion->time_step);
-        json["energy_error"] = number(summary.motion->energy_error);
+        json["time_step"] = json_number(summary.motion->time_step);
+        json["energy_error"] = json_number(summary.motion->energy_error);
     }
-    json["elapsed_s"] = number(summary.costs.elapsed_s);
-    json["cpu_s"] = number(summary.cpu_s);
+    json["elapsed_s"] = json_number(summary.costs.elapsed_s);
+    json["cpu_s"] = json_number(summary.cpu_s);
     json["peak_memory_bytes"] = summary.peak_memory_bytes;
     json["platen_stage"] = summary.platen_stage ? Json(*summary.platen_stage) : Json(nullptr);
     json["version"] = summary.version;
     json["message"] = summary.message;
     json["seconds"] = Json::object();
     visit_seconds(summary.costs.seconds,
-                  [&](const char* name, double seconds) { json["seconds"][name] = number(seconds); });
+                  [&](const char* name, double seconds) { json["seconds"][name] = json_number(seconds); });
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 

@@ -134,7 +134,7 @@ private:
         step_ = Step{};
         step_.end = state_;
         step_.row = journal_.last_row();
-        step_.balanced_part = Step::BalancedPart{state_.body, state_.at.load_factor, {}, 0, 0};
+        step_.balanced_part = Step::BalancedPart{.body = state_.body, .load_factor = state_.at.load_factor};
     }
 
     void take_step(double to) {
@@ -304,8 +304,11 @@ private:
         double energy = energy_of_interfaces(broken);
         weaken_together(model_, broken, before.axial_strain, step_);
         if (before.balanced)
-            step_.balanced_part = Step::BalancedPart{work().body, work().at.load_factor, in_place(),
-                                                     step_.equilibria.size(), step_.cracks.size()};
+            step_.balanced_part = Step::BalancedPart{.body = work().body,
+                                                     .load_factor = work().at.load_factor,
+                                                     .in_place = in_place(),
+                                                     .n_equilibria = step_.equilibria.size(),
+                                                     .n_cracks = step_.cracks.size()};
         const double lost = detect();
         energy -= energy_of_interfaces(broken);
         motion_.add_crack_energy(energy);

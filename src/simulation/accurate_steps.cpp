@@ -74,45 +74,62 @@ Step with_estimate(const StepBench& bench, const State& before, Step step) {
     return step;
 }
 
+/// A size that was tried and rejected.
+struct Rejected {
+    double size = 0.0; ///< load factor; 0 where there is none, or where no equilibrium was found with it
+    StepError error;
+};
+
+/// What an attempt of a size is worth.
+struct Verdict {
+    bool is_kept = false;
+    bool branches = false; ///< the error does not fall with the size
+    StepError own;         ///< of the size: without the lag, and past the peak without the path's
+    double lag = 0.0;      ///< as it is known now
+};
+
+Verdict judge(const LocalAccuracy& local, double size, const StepError& error, const Rejected& rejected, double lag) {
+    const bool stands = std::isfinite(error.path);
+    const auto learned = stands && rejected.size > 0.0
+                             ? lag_from(size, error, rejected.size, rejected.error, lag, local.accuracy)
+                             : std::optional(lag);
+    Verdict verdict;
+    verdict.branches = !learned;
+    verdict.lag = learned.value_or(lag);
+    verdict.own = {stands && local.past_peak ? 0.0 : std::max(0.0, error.path - verdict.lag * size), error.chord};
+    verdict.is_kept =
+        verdict.branches || (stands && size <= least_step_size) || is_accurate(size, verdict.own, local.accuracy);
+    return verdict;
+}
+
 /// One load step: of the size that the accuracy asks for, or up to the next event.
 Step take_accurate_step(const StepBench& bench, const State& before) {
     const LocalAccuracy local = accuracy_after(bench, before);
-    const double accuracy = local.accuracy;
-    const double small_step = local.small_step();
     const double remaining = 1.0 - before.at.load_factor;
     const int solves_before = bench.journal.report().costs.open_close_iterations;
     StepControl control = before.control; // its size and its lag learn from attempts that are rejected
-    StepError rejected;
-    double rejected_size = 0.0;
+    Rejected rejected;
     for (bool again = false;; again = true) {
         const double size = fitted_step_size(control.size, remaining);
-        const double target = size < remaining ? before.at.load_factor + size : 1.0;
-        StepGoal goal = accurate_goal(bench, before, target, accuracy);
+        StepGoal goal =
+            accurate_goal(bench, before, size < remaining ? before.at.load_factor + size : 1.0, local.accuracy);
         goal.solves_before = solves_before;
-        Attempt attempt = try_step(bench, before, goal, control, small_step, again);
+        Attempt attempt = try_step(bench, before, goal, control, local.small_step(), again);
+        if (attempt.step.failure && size <= local.small_step()) return std::move(attempt.step);
         StepControl& reached = attempt.step.end.control;
-        if (attempt.step.failure && size <= small_step) return std::move(attempt.step);
         if (!attempt.error) {
             charge_unjudged(before, reached, attempt.step.end.at.load_factor);
             return with_estimate(bench, before, std::move(attempt.step));
         }
-        const StepError& error = *attempt.error;
-        const bool stands = std::isfinite(error.path);
-        const auto lag = stands && rejected_size > 0.0
-                             ? lag_from(size, error, rejected_size, rejected, control.lag, accuracy)
-                             : std::optional(control.lag);
-        const bool branches = !lag;
-        control.lag = reached.lag = lag.value_or(control.lag);
-        const StepError own{stands && local.past_peak ? 0.0 : std::max(0.0, error.path - control.lag * size),
-                            error.chord};
-        if (branches || (stands && size <= least_step_size) || is_accurate(size, own, accuracy)) {
-            keep_judged(size, own, branches, accuracy, reached);
+        const Verdict verdict = judge(local, size, *attempt.error, rejected, control.lag);
+        control.lag = reached.lag = verdict.lag;
+        if (verdict.is_kept) {
+            keep_judged(size, verdict.own, verdict.branches, local.accuracy, reached);
             return with_estimate(bench, before, std::move(attempt.step));
         }
         ++bench.journal.report().costs.rejected_steps;
-        control.size = next_step_size(size, own, accuracy);
-        rejected = error;
-        rejected_size = stands ? size : 0.0;
+        control.size = next_step_size(size, verdict.own, local.accuracy);
+        rejected = {std::isfinite(attempt.error->path) ? size : 0.0, *attempt.error};
     }
 }
 
@@ -122,8 +139,8 @@ StageEnd run_accurate_steps(const StepBench& bench, State& state) {
     StageEnd end;
     while (!end.failure && (state.at.load_factor < 1.0 || !state.is_settled)) {
         begin_load_step(bench);
-        Step step = state.at.load_factor < 1.0 ? take_accurate_step(bench, state)
-                                               : take_step(bench, state, goal_at(bench, 1.0, true));
+        Step step = state.is_settled ? take_accurate_step(bench, state)
+                                     : take_step(bench, state, goal_at(bench, state.at.load_factor, true));
         if (step.failure) return commit_balanced_part(std::move(step), state, bench.journal);
         const bool last = step.end.at.load_factor >= 1.0;
         end = commit_regular_step(bench, std::move(step), last, state);

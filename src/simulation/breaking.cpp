@@ -13,8 +13,6 @@ namespace kluft {
 
 namespace {
 
-constexpr double largest_useful_index = 10.0; ///< of f in the search for an event: a strength of zero gives infinity
-
 std::vector<CrackCandidate> candidates(const StepInProgress& p, const Placement& placement, const LoadsAt& at,
                                        const Eigen::VectorXd& q) {
     const Model& model = p.bench.model;
@@ -32,6 +30,14 @@ std::vector<CrackCandidate> breaking(const StepGoal& goal, const std::vector<Cra
     return failing(all, 1.0 - goal.accuracy);
 }
 
+/// Finds equilibrium at the load factor that the step stands at, with contacts detected anew.
+void find_again(StepInProgress& p) {
+    PlacedState placed = place(p);
+    Equilibrium found = find_at(p, placed, p.load_factor(), p.displacement());
+    if (!found.balanced) found = recover(p, placed, found, p.load_factor());
+    if (!p.failed()) reach(p, std::move(placed), found);
+}
+
 } // namespace
 
 void break_bonds(StepInProgress& p) {
@@ -41,11 +47,14 @@ void break_bonds(StepInProgress& p) {
         if (broken.empty()) return;
         p.step.smooth = false;
         weaken_together(p.bench.model, broken, p.step.row.axial_strain, p.step);
-        PlacedState placed = place(p);
-        Equilibrium found = find_at(p, placed, p.load_factor(), p.displacement());
-        if (!found.balanced) found = recover(p, placed, found, p.load_factor());
-        if (!p.failed()) reach(p, std::move(placed), found);
+        find_again(p);
     }
+}
+
+void settle(StepInProgress& p) {
+    p.step.smooth = false;
+    find_again(p);
+    if (!p.failed() && p.bench.model.has_potential_cracks) break_bonds(p);
 }
 
 double largest_failure_index(const StepInProgress& p, const Placement& placement, const LoadsAt& at,

@@ -72,7 +72,8 @@ void Journal::progress(const State& state, const StepRecord& row, double load_fa
 RunReport Journal::ended(const State& state, const StageEnd& end) const {
     if (!end.failure) return cut_short(RunStatus::done, "");
     const Stage& stage = model_.loads.stages[state.at.stage];
-    const bool past_strength = end.failure->may_be_collapse() && is_loaded_by_stress(stage) && end.step > 1;
+    const bool has_stood = state.at.stage > 0 || state.at.step_in_stage > 0; // through a whole load step
+    const bool past_strength = end.failure->may_be_collapse() && is_loaded_by_stress(stage) && has_stood;
     std::string why = fmt::format("no equilibrium in stage {} at load step {}: {}", state.at.stage, end.step,
                                   description(model_, *end.failure));
     if (end.factor_of_safety) why = fmt::format("factor of safety {:.6g}; beyond it {}", *end.factor_of_safety, why);

@@ -38,6 +38,12 @@ Equilibrium advance(StepInProgress& p, PlacedState& placed) {
     return found;
 }
 
+/// The next load step is predicted from a smooth one.
+void keep_predictor(StepInProgress& p) {
+    if (p.step.smooth && !p.goal.must_rest) return keep_rate(p);
+    p.step.end.memory.rate.resize(0);
+}
+
 } // namespace
 
 // ---- the load step -------------------------------------------------------------------------------------------------
@@ -45,18 +51,15 @@ Equilibrium advance(StepInProgress& p, PlacedState& placed) {
 Step take_step(const StepBench& bench, const State& from, const StepGoal& goal) {
     StepInProgress p = begin_step(bench, from, goal);
     const bool by_events = goal.cracks.update == CrackUpdate::event;
-    do {
+    if (!from.is_settled) settle(p); // where an earlier attempt has failed, at the same load
+    for (bool first = from.is_settled; !p.failed() && (first || p.load_factor() < goal.load_factor); first = false) {
         PlacedState placed = place_for_load_step(p);  // 1 detect, 2 transfer
         const Equilibrium found = advance(p, placed); // 3 pose, 4 iterate, 5 judge
         if (!p.failed()) reach(p, std::move(placed), found);
         if (!p.failed() && goal.checks_cracks && (by_events || p.load_factor() >= goal.load_factor))
             break_bonds(p); // 6 crack, 7 weaken, and back to 1 at the same load
-    } while (!p.failed() && p.load_factor() < goal.load_factor);
-    if (p.step.smooth && !goal.must_rest) {
-        keep_rate(p);
-    } else {
-        p.step.end.memory.rate.resize(0);
     }
+    keep_predictor(p);
     return finished(std::move(p)); // 8 commit, 9 notify: the caller's
 }
 

@@ -97,6 +97,7 @@ Outcome judge(StepInProgress& p, const PlacedState& placed, const LoadsAt& at, R
 /// What the relaxation came to in all its attempts, where none was balanced.
 Equilibrium given_up(StepInProgress& p, Equilibrium last) {
     const bool never_moved = last.displacement.size() == 0;
+    if (never_moved) last.worst_block = p.step.worst_block;
     const bool past_strength = is_platen_loaded_by_stress(p.bench.stage(p.from)); // the platen keeps moving
     if (never_moved || past_strength)
         fail(p, last, never_moved ? last.summary.residual_ratio : last.viscous_share, FailureKind::no_equilibrium);
@@ -131,8 +132,14 @@ Equilibrium relax(StepInProgress& p, PlacedState& placed, const LoadsAt& at, con
 
 void hold_balanced_part(Step& step) {
     if (step.balanced_part) return;
-    step.balanced_part = Step::BalancedPart{step.end.body, step.end.at.load_factor, step.in_place,
-                                            step.equilibria.size(), step.cracks.size()};
+    step.balanced_part = Step::BalancedPart{.body = step.end.body,
+                                            .load_factor = step.end.at.load_factor,
+                                            .in_place = step.in_place,
+                                            .viscosity_factor = step.end.memory.viscosity_factor,
+                                            .control = step.end.control,
+                                            .stresses = step.end.stresses,
+                                            .n_equilibria = step.equilibria.size(),
+                                            .n_cracks = step.cracks.size()};
 }
 
 } // namespace

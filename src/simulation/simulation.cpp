@@ -40,7 +40,7 @@ void tell_initial_state(const StepBench& bench, const State& state) {
 
 StageLoads begin_stage(const Model& model, const SolverOptions& solver, EquilibriumSearch& search, State& state) {
     const Stage& stage = model.loads.stages[state.at.stage];
-    if (state.at.step_in_stage == 0) {
+    if (state.at.is_at_stage_start()) {
         state.memory.rate.resize(0);
         state.control.size = 1.0 / stage.steps;
         state.control.lag = 0.0;
@@ -61,8 +61,9 @@ StageEnd run_stage(const StepBench& bench, State& state) {
 void end_stage(const StepBench& bench, Eigen::VectorXd forces, State& state) {
     if (forces.size() == 0) forces = measure_state(bench, state, 1.0).measured.forces; // resumed at the end of a stage
     const LoadsAt at = loads_at(bench.model, bench.loads, state.at.stage, 1.0);
+    const RunCosts costs = bench.journal.costs();
     leave_stage(bench.model, bench.loads, at.loads, forces, state);
-    state.costs = bench.journal.costs();
+    state.costs = costs;
 }
 
 } // namespace

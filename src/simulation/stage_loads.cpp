@@ -254,7 +254,7 @@ void move_loads(const Model& model, const StageLoads& stage_loads, int stage, do
 
 StageLoads enter_stage(const Model& model, State& state) {
     const Stage& stage = model.loads.stages[state.at.stage];
-    if (state.at.step_in_stage == 0) {
+    if (state.at.is_at_stage_start()) {
         state.stage_start.displacement = state.body.displacement;
         if (stage.motion && state.strain_zero.size() == 0) state.strain_zero = state.body.displacement;
     }
@@ -263,12 +263,12 @@ StageLoads enter_stage(const Model& model, State& state) {
 
 void leave_stage(const Model& model, const StageLoads& stage_loads, const Loads& loads, const Eigen::VectorXd& forces,
                  State& state) {
-    const auto end = stage_loads.pressures(1.0);
+    std::vector<double> end = stage_loads.pressures(1.0);
     for (int i = 0; i < static_cast<int>(end.size()); ++i) {
         const auto frame = boundary_frame(model.system, i);
-        state.stage_start.boundary_pressure[i] =
-            stage_loads.is_held(i) ? boundary_stress(loads, forces, i, true, frame.length, frame.normal) : end[i];
+        if (stage_loads.is_held(i)) end[i] = boundary_stress(loads, forces, i, true, frame.length, frame.normal);
     }
+    state.stage_start.boundary_pressure = std::move(end); // from here on nothing throws
     ++state.at.stage;
     state.at.step_in_stage = 0;
     state.at.load_factor = 0.0;

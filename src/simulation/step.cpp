@@ -18,6 +18,9 @@ void keep_balanced_part(Step& step) {
         Step::BalancedPart& part = *step.balanced_part;
         step.end.body = std::move(part.body);
         step.end.at.load_factor = part.load_factor;
+        step.end.memory.viscosity_factor = std::move(part.viscosity_factor);
+        step.end.control = std::move(part.control);
+        step.end.stresses = part.stresses;
         step.in_place = std::move(part.in_place);
         step.equilibria.resize(part.n_equilibria);
         step.cracks.resize(part.n_cracks);
@@ -26,7 +29,6 @@ void keep_balanced_part(Step& step) {
     step.smooth = false;
     step.end.is_settled = false;
     step.end.memory.rate.resize(0);
-    step.end.memory.viscosity_factor.clear();
     if (step.equilibria.empty()) return;
     step.balanced = std::ranges::all_of(step.equilibria, &StepRecord::balanced);
     step.worst_share = std::ranges::max(step.equilibria, {}, &StepRecord::unbalanced_ratio).unbalanced_ratio;

@@ -17,7 +17,6 @@ namespace {
 constexpr double lag_weight = 4.0;             ///< of the mass-like term's share in the stresses (measured: 1 to 4)
 constexpr double least_predicted_share = 0.01; ///< of a load step: the first trial of an event
 constexpr double least_event_width = 1e-4;     ///< of the accuracy: load factors between which no event is searched
-constexpr double largest_useful_index = 10.0;
 
 /// The error of a load step that is taken again with a smaller size, whatever the accuracy.
 constexpr StepError without_equilibrium{std::numeric_limits<double>::infinity(),

@@ -185,6 +185,7 @@ void fail(StepInProgress& p, const Equilibrium& found, double residual_ratio, Fa
 }
 
 void keep_rate(StepInProgress& p) {
+    if (p.load_factor() == p.from.at.load_factor) return p.step.end.memory.rate.resize(0);
     p.step.end.memory.rate = (p.displacement() - p.from.body.displacement) / (p.load_factor() - p.from.at.load_factor);
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -22,8 +23,9 @@ StepGoal goal_with_strengths_of(const StepBench& bench, const State& state, doub
     return goal;
 }
 
-/// The state that the stages before have left must stand by the closer look of this one.
-std::optional<Failure> look_closer(const StepBench& bench, State& state) {
+/// The state that the stages before have left must stand by the closer look of this one. `equilibria`: what is to be told of
+/// it with the first load step.
+std::optional<Failure> look_closer(const StepBench& bench, State& state, std::vector<StepRecord>& equilibria) {
     StepGoal goal = goal_with_strengths_of(bench, state, 0.0);
     goal.checks_cracks = false;
     Step step = take_step(bench, state, goal);
@@ -31,17 +33,19 @@ std::optional<Failure> look_closer(const StepBench& bench, State& state) {
     state = std::move(step.end);
     state.costs = bench.journal.costs();
     bench.journal.warn(step, state.at.step + 1);
-    bench.journal.tell(step);
+    equilibria = std::move(step.equilibria);
     return std::nullopt;
 }
 
-/// Tries a load step and commits it if there is an equilibrium at its end.
+/// Tries a load step and commits it, after the equilibria found before, if there is an equilibrium at its end.
 std::optional<Failure> try_factor(const StepBench& bench, double load_factor, StepKind kind, State& state,
-                                  Eigen::VectorXd& forces) {
+                                  Eigen::VectorXd& forces, std::vector<StepRecord>& before) {
     begin_load_step(bench);
     Step step = take_step(bench, state, goal_with_strengths_of(bench, state, load_factor));
     if (step.failure) return step.failure;
     forces = std::move(step.forces);
+    step.equilibria.insert(step.equilibria.begin(), before.begin(), before.end());
+    before.clear();
     commit(std::move(step), kind, state, bench.journal);
     return std::nullopt;
 }
@@ -56,13 +60,14 @@ StageEnd find_strength_limit(const StepBench& bench, State& state) {
     const StrengthReduction& reduction = *bench.stage(state).strength_reduction;
     const int n_steps = bench.stage(state).steps;
     StageEnd end;
-    if (state.at.load_factor == 0.0) end.failure = look_closer(bench, state);
+    std::vector<StepRecord> before; // equilibria that are not told yet
+    if (state.at.load_factor == 0.0) end.failure = look_closer(bench, state, before);
     if (end.failure) return {end.failure, state.at.step + 1, {}, {}};
     double failing = 1.0; // load factor
     while (!end.failure && state.at.step_in_stage < n_steps) {
         failing = static_cast<double>(state.at.step_in_stage + 1) / n_steps;
         const bool last = state.at.step_in_stage + 1 == n_steps;
-        end.failure = try_factor(bench, failing, {.last_of_stage = last}, state, end.forces);
+        end.failure = try_factor(bench, failing, {.last_of_stage = last}, state, end.forces, before);
     }
     if (!end.failure) {
         bench.journal.report().warnings.push_back(
@@ -74,7 +79,7 @@ StageEnd find_strength_limit(const StepBench& bench, State& state) {
     while (factor(failing) - factor(state.at.load_factor) > reduction.tolerance * factor(state.at.load_factor)) {
         const double middle = 0.5 * (state.at.load_factor + failing);
         if (middle == state.at.load_factor || middle == failing) break; // to the last digit
-        if (auto failure = try_factor(bench, middle, {.regular = false}, state, end.forces)) {
+        if (auto failure = try_factor(bench, middle, {.regular = false}, state, end.forces, before)) {
             end.failure = std::move(failure);
             failing = middle;
         }

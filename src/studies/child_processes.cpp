@@ -24,10 +24,6 @@ constexpr double grace = 60.0; ///< for saving a state after being asked to stop
 constexpr double grace_out_of_time = 10.0;
 constexpr int cannot_start = 127; ///< as of shells
 
-double seconds_since(std::chrono::steady_clock::time_point then) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - then).count();
-}
-
 double seconds_of(const timeval& time) {
     constexpr double micro = 1e-6;
     return static_cast<double>(time.tv_sec) + micro * static_cast<double>(time.tv_usec);
@@ -67,6 +63,10 @@ EndedProcess ended_process(int status, const rusage& usage) {
 }
 
 } // namespace
+
+double seconds_since(std::chrono::steady_clock::time_point then) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - then).count();
+}
 
 ChildProcesses::~ChildProcesses() {
     for (const Process& process : running_) {

@@ -11,6 +11,8 @@
 
 namespace kluft {
 
+[[nodiscard]] double seconds_since(std::chrono::steady_clock::time_point then);
+
 struct EndedProcess {
     std::size_t tag = 0; ///< what the process was started as
     int exit_code = -1;  ///< -1 if a signal ended it

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "kluft/core/units.hpp"
 #include "kluft/output/atomic_file.hpp"
 #include "kluft/output/blocks_picture.hpp"
 #include "kluft/output/curve_picture.hpp"
@@ -17,8 +18,6 @@ namespace kluft {
 
 namespace {
 
-constexpr double mega = 1e6;
-constexpr double percent = 0.01;
 constexpr double rounding = 1e-6; ///< of the reach: cracks exactly one spacing apart are matched
 const Colour matched_colour = colour(0x1A1A1A);
 
@@ -157,7 +156,7 @@ void add_mechanics(const CurveNumbers& a, const CurveNumbers& b, bool tested, Ta
     };
     ComparedQuantity& peak = writer.add("peak_stress", "peak stress", "MPa", mega, a.peak_stress, b.peak_stress);
     if (tested || a.peak_stress.value_or(0.0) != 0.0 || b.peak_stress.value_or(0.0) != 0.0) writer.judge(peak);
-    judge(writer.add("peak_strain", "peak strain", "%", percent, a.peak_strain, b.peak_strain));
+    judge(writer.add("peak_strain", "peak strain", "%", 1.0 / percent, a.peak_strain, b.peak_strain));
     judge(writer.add("youngs_modulus", "Young's modulus", "MPa", mega, a.youngs_modulus, b.youngs_modulus));
     writer.add("poissons_ratio", "Poisson's ratio", "", 1.0, a.poissons_ratio, b.poissons_ratio);
     writer.add("residual_stress", "residual stress", "MPa", mega, a.residual_stress, b.residual_stress);
@@ -175,7 +174,7 @@ void add_cracks(const FinishedRun& a, const FinishedRun& b, const Comparison& co
         share_b = matched_share(b, n_matched);
     }
     writer.add("matched_cracks", "matched cracks", "", 1.0, matched, matched).difference.reset();
-    writer.add("matched_share", "share of cracks matched", "%", percent, share_a, share_b).difference.reset();
+    writer.add("matched_share", "share of cracks matched", "%", 1.0 / percent, share_a, share_b).difference.reset();
 }
 
 void add_curves(const std::optional<CurveDifference>& difference, TableWriter& writer) {

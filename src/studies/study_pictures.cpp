@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "kluft/core/diagnostics.hpp"
+#include "kluft/core/units.hpp"
 #include "kluft/output/history_table.hpp"
 #include "kluft/output/summary.hpp"
 
@@ -18,11 +19,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double percent = 100.0;
-constexpr double mega = 1e6;
 constexpr std::size_t grey = 6; // number of the dark grey among the colours
 
-const std::vector<std::string_view> needed_columns{"step", "stage", "axial_strain", "differential_stress", "balanced"};
+const std::vector<std::string_view> plotted_columns{"step", "stage", "axial_strain", "differential_stress", "balanced"};
 
 std::string with_unit(const StudyMeasure& measure) {
     const QuantityUnit unit = quantity_unit(measure.name);
@@ -98,7 +97,7 @@ std::optional<CaseRun> read_case_run(const fs::path& directory) {
         if (!summary.motion && summary.costs.open_close_iterations > 0)
             run.solves = summary.costs.open_close_iterations;
         if (!summary.platen_stage) return run;
-        const auto rows = read_history(directory / "history.csv", needed_columns);
+        const auto rows = read_history(directory / "history.csv", plotted_columns);
         for (const StepRecord& row : platen_rows(rows, *summary.platen_stage))
             run.points.push_back({{percent * row.axial_strain, row.differential_stress / mega}, row.balanced});
         run.curve = growing(run.points);

@@ -133,7 +133,7 @@ double uniform(const ReplicaPlan& plan, int replica, int which) {
 
 std::string rounded(double value) { return fmt::format("{:.{}g}", value, significant_digits); }
 
-constexpr double degrees = std::numbers::pi / 180.0;
+constexpr double degree = std::numbers::pi / 180.0;
 
 using CaseKey = std::tuple<int, std::string, std::vector<std::string>>;
 
@@ -210,10 +210,10 @@ std::vector<StudySetting> replica_settings(const ReplicaPlan& plan, int replica,
             {"geometry.tessellation.voronoi.seed", std::to_string(bits(plan, replica, 4) % largest_seed), plan.at});
     if (net.voronoi || !net.hexagons) return settings;
     const HexagonLattice* const hexagons = &*net.hexagons;
-    const double turned = plan.rotation * (2.0 * uniform(plan, replica, 1) - 1.0) * degrees;
+    const double turned = plan.rotation * (2.0 * uniform(plan, replica, 1) - 1.0) * degree;
     const double angle = hexagons->rotation + turned;
     if (plan.rotation > 0.0)
-        settings.push_back({"geometry.tessellation.hexagons.rotation", rounded(angle / degrees), plan.at});
+        settings.push_back({"geometry.tessellation.hexagons.rotation", rounded(angle / degree), plan.at});
     if (plan.offset) {
         const double u = uniform(plan, replica, 2);
         const double v = uniform(plan, replica, 3);

@@ -11,6 +11,7 @@
 
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/core/nearest_name.hpp"
+#include "kluft/core/units.hpp"
 #include "kluft/output/atomic_file.hpp"
 #include "kluft/output/report_document.hpp"
 #include "kluft/studies/ensemble.hpp"
@@ -24,7 +25,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double percent = 100.0;
 constexpr double precision_wanted = 0.01; // of the mean of an ensemble
 constexpr const char* unknown = "-";
 constexpr std::string_view picture_prefix = "study-";

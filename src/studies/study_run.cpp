@@ -29,8 +29,6 @@ using Clock = std::chrono::steady_clock;
 constexpr double seconds_between_tables = 3.0;
 constexpr int bad_input = 2; ///< exit code
 
-double seconds_since(Clock::time_point then) { return std::chrono::duration<double>(Clock::now() - then).count(); }
-
 double sum_of(const std::optional<double>& earlier, double now) { return earlier.value_or(0.0) + now; }
 
 /// One call of run_study.

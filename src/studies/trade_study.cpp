@@ -42,7 +42,8 @@ struct Variant {
 
 std::string number_text(double value) { return fmt::format("{:.12g}", value); }
 
-std::string quoted(const std::string& text) {
+/// A text in YAML's double quotes, in one line.
+std::string quoted_line(const std::string& text) {
     std::string result = "\"";
     for (const char c : text) {
         if (c == '"' || c == '\\') result += '\\';
@@ -297,7 +298,7 @@ Texts usual_quantities(const Scene& scene) {
                                   "summary.json to compare, found none of them");
 }
 
-SceneNode tree_of(const Scene& scene) {
+SceneNode checked_tree(const Scene& scene) {
     SceneSources sources;
     const int source = sources.add_file(scene.name, scene.text);
     SceneErrors errors(sources);
@@ -310,10 +311,11 @@ SceneNode tree_of(const Scene& scene) {
 
 std::string trade_study(const std::filesystem::path& path, const Scene& scene, const Texts& quantities) {
     const Texts compared = quantities.empty() ? usual_quantities(scene) : quantities;
-    const SceneNode tree = tree_of(scene);
+    const SceneNode tree = checked_tree(scene);
     const TradeStudy study(scene, tree);
-    std::string text = fmt::format("title: {}\nscene: {}\ncombine: product\nvariants:\n",
-                                   quoted("Trade of accuracy against time: " + scene.title), quoted(path.string()));
+    std::string text =
+        fmt::format("title: {}\nscene: {}\ncombine: product\nvariants:\n",
+                    quoted_line("Trade of accuracy against time: " + scene.title), quoted_line(path.string()));
     for (const Variant& variant : study.variants()) {
         text += fmt::format("  - name: {}\n    vary:\n", variant.name);
         for (const Variation& each : variant.vary)

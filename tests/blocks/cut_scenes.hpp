@@ -27,6 +27,9 @@ inline void add_trace(GeometrySpec& spec, std::vector<Vec2> points, int interfac
     spec.fractures.push_back({std::move(points), interface_type, ""});
 }
 
+/// The whole plane.
+inline bool everywhere(const Vec2&) { return true; }
+
 /// Uniform numbers that are the same with every standard library.
 class Uniform {
 public:

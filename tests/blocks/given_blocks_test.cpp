@@ -21,7 +21,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-Polygon rectangle(double x, double y, double width, double height) {
+Polygon rectangle_at(double x, double y, double width, double height) {
     return {{x, y}, {x + width, y}, {x + width, y + height}, {x, y + height}};
 }
 
@@ -47,7 +47,7 @@ std::string refusal(const GeometrySpec& spec) {
 }
 
 TEST(GivenBlocks, KeepTheirOrderTheirNamesAndTheirMaterials) {
-    GeometrySpec spec = spec_of({{"upper", rectangle(5, 8, 2, 1)}, {"lower", rectangle(5, 7, 2, 1)}});
+    GeometrySpec spec = spec_of({{"upper", rectangle_at(5, 8, 2, 1)}, {"lower", rectangle_at(5, 7, 2, 1)}});
     spec.blocks[0].material = 1;
     spec.blocks[1].fixed = true;
     spec.blocks_interface = 3;
@@ -67,9 +67,9 @@ TEST(GivenBlocks, KeepTheirOrderTheirNamesAndTheirMaterials) {
 
 // A brick on two others: its lower edge is split where they meet.
 TEST(GivenBlocks, EdgesAreSplitWhereTwoNeighboursMeet) {
-    const BlockSystem system = cut_blocks(spec_of({{"left", rectangle(0, 0, 2, 1)},
-                                                   {"right", rectangle(2, 0, 2, 1)},
-                                                   {"upper", rectangle(1, 1, 2, 1)}}))
+    const BlockSystem system = cut_blocks(spec_of({{"left", rectangle_at(0, 0, 2, 1)},
+                                                   {"right", rectangle_at(2, 0, 2, 1)},
+                                                   {"upper", rectangle_at(1, 1, 2, 1)}}))
                                    .system;
     EXPECT_THAT(check_block_system(system, {.domain_area = 6.0}), IsEmpty());
     ASSERT_EQ(system.n_interfaces(), 3);
@@ -80,9 +80,9 @@ TEST(GivenBlocks, EdgesAreSplitWhereTwoNeighboursMeet) {
 
 TEST(GivenBlocks, StandOnASteppedBase) {
     GeometrySpec spec = spec_of({{"base", {{0, -1}, {3, -1}, {3, 1}, {2, 1}, {2, 0.5}, {1, 0.5}, {1, 0}, {0, 0}}},
-                                 {"a", rectangle(0, 0, 1, 2)},
-                                 {"b", rectangle(1, 0.5, 1, 2)},
-                                 {"c", rectangle(2, 1, 1, 2)}});
+                                 {"a", rectangle_at(0, 0, 1, 2)},
+                                 {"b", rectangle_at(1, 0.5, 1, 2)},
+                                 {"c", rectangle_at(2, 1, 1, 2)}});
     const BlockSystem system = cut_blocks(spec).system;
     EXPECT_THAT(check_block_system(system), IsEmpty());
     std::map<std::pair<int, int>, double> lengths;
@@ -129,33 +129,38 @@ TEST(GivenBlocks, RingOfVoussoirsClosesWithGapsInside) {
 // Such a corner is found by contact detection as a vertex against an edge.
 TEST(GivenBlocks, CornerThatOnlyTouchesASideDoesNotSplitIt) {
     const BlockSystem system =
-        cut_blocks(spec_of({{"base", rectangle(0, 0, 4, 1)}, {"roof", {{2, 1}, {3, 2}, {2, 3}, {1, 2}}}})).system;
+        cut_blocks(spec_of({{"base", rectangle_at(0, 0, 4, 1)}, {"roof", {{2, 1}, {3, 2}, {2, 3}, {1, 2}}}})).system;
     EXPECT_EQ(system.n_interfaces(), 0);
     EXPECT_EQ(system.blocks[0].edges.size(), 4U);
 }
 
 TEST(GivenBlocks, MayHaveGapsBetweenThem) {
     const BlockSystem system =
-        cut_blocks(spec_of({{"a", rectangle(0, 0, 1, 1)}, {"b", rectangle(1.001, 0, 1, 1)}})).system;
+        cut_blocks(spec_of({{"a", rectangle_at(0, 0, 1, 1)}, {"b", rectangle_at(1.001, 0, 1, 1)}})).system;
     EXPECT_EQ(system.n_interfaces(), 0);
     EXPECT_THAT(check_block_system(system, {.domain_area = 2.0}), IsEmpty());
 }
 
 TEST(GivenBlocks, OverlapsAreRefusedWithBothNames) {
     const auto overlap = AllOf(HasSubstr("geometry.blocks"), HasSubstr("'a' and 'b'"), HasSubstr("overlap"));
-    EXPECT_THAT(refusal(spec_of({{"a", rectangle(0, 0, 2, 2)}, {"b", rectangle(1, 1, 2, 2)}})), overlap) << "crossing";
-    EXPECT_THAT(refusal(spec_of({{"a", rectangle(0, 0, 3, 3)}, {"b", rectangle(1, 1, 1, 1)}})), overlap) << "inside";
-    EXPECT_THAT(refusal(spec_of({{"a", rectangle(0, 0, 1, 1)}, {"b", rectangle(0, 0, 1, 1)}})), overlap) << "the same";
-    EXPECT_THAT(refusal(spec_of({{"a", rectangle(0, 0, 2, 1)}, {"b", rectangle(1, 0, 2, 1)}})), overlap) << "flush";
-    EXPECT_THAT(refusal(spec_of({{"a", rectangle(0, 0, 3, 1)}, {"b", rectangle(1, 0, 1, 1)}})), overlap) << "across";
-    EXPECT_THAT(refusal(spec_of({{"a", rectangle(0, 0, 1, 1)}, {"b", rectangle(1 - 1e-6, 0, 1, 1)}})), overlap)
+    EXPECT_THAT(refusal(spec_of({{"a", rectangle_at(0, 0, 2, 2)}, {"b", rectangle_at(1, 1, 2, 2)}})), overlap)
+        << "crossing";
+    EXPECT_THAT(refusal(spec_of({{"a", rectangle_at(0, 0, 3, 3)}, {"b", rectangle_at(1, 1, 1, 1)}})), overlap)
+        << "inside";
+    EXPECT_THAT(refusal(spec_of({{"a", rectangle_at(0, 0, 1, 1)}, {"b", rectangle_at(0, 0, 1, 1)}})), overlap)
+        << "the same";
+    EXPECT_THAT(refusal(spec_of({{"a", rectangle_at(0, 0, 2, 1)}, {"b", rectangle_at(1, 0, 2, 1)}})), overlap)
+        << "flush";
+    EXPECT_THAT(refusal(spec_of({{"a", rectangle_at(0, 0, 3, 1)}, {"b", rectangle_at(1, 0, 1, 1)}})), overlap)
+        << "across";
+    EXPECT_THAT(refusal(spec_of({{"a", rectangle_at(0, 0, 1, 1)}, {"b", rectangle_at(1 - 1e-6, 0, 1, 1)}})), overlap)
         << "by a little";
     EXPECT_THAT(refusal(spec_of({{"a", {{0, 0}, {2, 0}, {2, 2}}}, {"b", {{1, 0.5}, {2, 0}, {3, 3}}}})), overlap)
         << "from a common corner";
 }
 
 TEST(GivenBlocks, BoundariesHaveTheFreePartsOfTheirSides) {
-    GeometrySpec spec = spec_of({{"base", rectangle(0, 0, 4, 1)}, {"column", rectangle(1, 1, 1, 2)}});
+    GeometrySpec spec = spec_of({{"base", rectangle_at(0, 0, 4, 1)}, {"column", rectangle_at(1, 1, 1, 2)}});
     spec.boundaries = {{"top", {2, 6}}, {"push", {7}, "column"}};
     const BlockSystem system = cut_blocks(spec).system;
     double top = 0.0;
@@ -173,8 +178,8 @@ TEST(GivenBlocks, BoundariesHaveTheFreePartsOfTheirSides) {
 
 TEST(BlockSets, AreFormedByNameAndByPlace) {
     GeometrySpec spec =
-        spec_of({{"a", rectangle(0, 0, 1, 1)}, {"b", rectangle(1, 0, 1, 1)}, {"c", rectangle(2, 0, 1, 1)}});
-    spec.sets = {{"ends", {}, {2, 0}, true}, {"left half", rectangle(-1, -1, 2.7, 3), {}, false}};
+        spec_of({{"a", rectangle_at(0, 0, 1, 1)}, {"b", rectangle_at(1, 0, 1, 1)}, {"c", rectangle_at(2, 0, 1, 1)}});
+    spec.sets = {{"ends", {}, {2, 0}, true}, {"left half", rectangle_at(-1, -1, 2.7, 3), {}, false}};
     const BlockSystem system = cut_blocks(spec).system;
     EXPECT_THAT(blocks_called(system, "ends"), ElementsAre(0, 2));
     EXPECT_THAT(blocks_called(system, "left half"), ElementsAre(0, 1));
@@ -184,15 +189,15 @@ TEST(BlockSets, AreFormedByNameAndByPlace) {
     EXPECT_THROW((void)block_called(system, "ends", "here"), InputError);
     EXPECT_TRUE(system.blocks[0].fixed && !system.blocks[1].fixed && system.blocks[2].fixed);
     EXPECT_EQ(block_label(system, 1), "'b'");
-    spec.sets = {{"far", rectangle(10, 10, 1, 1), {}, false}};
+    spec.sets = {{"far", rectangle_at(10, 10, 1, 1), {}, false}};
     EXPECT_THAT(refusal(spec), HasSubstr("geometry.sets.far"));
 }
 
 TEST(BlockSets, HoldBlocksOfABodyThatWasCut) {
     GeometrySpec spec;
-    spec.domain = rectangle(0, 0, 2, 1);
+    spec.domain = rectangle_at(0, 0, 2, 1);
     spec.fractures.push_back({{{1, -1}, {1, 2}}, 0, "middle"});
-    spec.sets = {{"right", rectangle(1, 0, 1, 1), {}, true}};
+    spec.sets = {{"right", rectangle_at(1, 0, 1, 1), {}, true}};
     const BlockSystem system = cut_blocks(spec).system;
     EXPECT_THAT(blocks_called(system, "right"), ElementsAre(1));
     EXPECT_TRUE(system.blocks[1].fixed);
@@ -201,7 +206,7 @@ TEST(BlockSets, HoldBlocksOfABodyThatWasCut) {
 
 TEST(BlockSearch, FindsTheBlockWithAPointInItOrOnItsOutline) {
     const BlockSystem system =
-        cut_blocks(spec_of({{"a", rectangle(10, 10, 1, 1)},
+        cut_blocks(spec_of({{"a", rectangle_at(10, 10, 1, 1)},
                             {"l", {{12, 10}, {14, 10}, {14, 11}, {13, 11}, {13, 12}, {12, 12}}}}))
             .system;
     EXPECT_EQ(block_containing(system, {10.5, 10.5}), 0);

@@ -10,16 +10,16 @@
 
 #include <gtest/gtest.h>
 
+#include "blocks/cut_scenes.hpp"
 #include "kluft/core/diagnostics.hpp"
 
 namespace kluft {
 namespace {
 
+using cut_scenes::everywhere;
 using Point = std::pair<double, double>;
 
 Point key(const Vec2& p) { return {p.x(), p.y()}; }
-
-const auto everywhere = [](const Vec2&) { return true; };
 
 std::vector<std::pair<Vec2, Vec2>> whole_net(const HexagonLattice& lattice) {
     return hexagon_edges(lattice, {Vec2(0, 0), Vec2(1, 1)}, everywhere);

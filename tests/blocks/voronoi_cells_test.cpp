@@ -23,7 +23,6 @@ using namespace cut_scenes;
 
 const double side = std::sqrt(0.5 * std::numbers::sqrt3); ///< a of a net with d = 1
 const double unit = side / 65536.0;
-const auto everywhere = [](const Vec2&) { return true; };
 
 Box box_of(double width, double height) { return {Vec2(0, 0), Vec2(width, height)}; }
 

@@ -1,15 +1,14 @@
 #include "kluft/constitutive/strength_envelope.hpp"
+#include "support/units.hpp"
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include <gtest/gtest.h>
 
 namespace kluft {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180.0;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // Of the reference test: c 0.16 MPa, phi 36.2 deg, sigma_t 0.1 MPa.

@@ -13,7 +13,7 @@ namespace {
 
 using cut_scenes::Uniform;
 
-BlockSystem hexagons() { return cut_blocks(hexagon_spec(0.5, 0.4, 0.1, {0.03, 0.04})).system; }
+BlockSystem net_of_hexagons() { return cut_blocks(hexagon_spec(0.5, 0.4, 0.1, {0.03, 0.04})).system; }
 
 Eigen::VectorXd random_vector(Eigen::Index n, double amplitude, Uniform& uniform) {
     Eigen::VectorXd v(n);
@@ -22,13 +22,13 @@ Eigen::VectorXd random_vector(Eigen::Index n, double amplitude, Uniform& uniform
 }
 
 TEST(Coordinates, BodyHasSixUnknownsPerAffineAndThreePerRigidBlock) {
-    const BlockSystem system = hexagons();
+    const BlockSystem system = net_of_hexagons();
     EXPECT_EQ(Coordinates(system, Kinematics::affine).size(), 6 * system.n_blocks());
     EXPECT_EQ(Coordinates(system, Kinematics::rigid).size(), 3 * system.n_blocks());
 }
 
 TEST(Coordinates, AffineBlocksMoveByTheShareOfTheIncrement) {
-    const BlockSystem system = hexagons();
+    const BlockSystem system = net_of_hexagons();
     const Coordinates coordinates(system, Kinematics::affine);
     Uniform uniform(1);
     const Eigen::VectorXd q = random_motion(system, 0.1, uniform);
@@ -44,7 +44,7 @@ TEST(Coordinates, AffineBlocksMoveByTheShareOfTheIncrement) {
 // Twelve increments of 30 degrees, w = h pi/6, are a full turn: D = h (R - I) is zero again, and |det F| = 1 on the
 // way.
 TEST(Coordinates, RotationsOfRigidBlocksAddUp) {
-    const BlockSystem system = hexagons();
+    const BlockSystem system = net_of_hexagons();
     const Coordinates coordinates(system, Kinematics::rigid);
     Eigen::VectorXd increment = Eigen::VectorXd::Zero(coordinates.size());
     for (int b = 0; b < system.n_blocks(); ++b) {
@@ -64,7 +64,7 @@ TEST(Coordinates, RotationsOfRigidBlocksAddUp) {
 
 // By hand: |(3, 4)| = 5, and D = ((1, 2), (3, 4)) has the norm sqrt(30).
 TEST(Coordinates, MotionOfAnAffineBlockIsTheLargerOfItsTranslationAndItsDeformation) {
-    const BlockSystem system = hexagons();
+    const BlockSystem system = net_of_hexagons();
     const Coordinates coordinates(system, Kinematics::affine);
     Eigen::VectorXd increment = at_rest(system);
     increment.segment<6>(6) << 3e-3, 4e-3, 1e-3, 3e-3, 2e-3, 4e-3;
@@ -76,7 +76,7 @@ TEST(Coordinates, MotionOfAnAffineBlockIsTheLargerOfItsTranslationAndItsDeformat
 
 // The same motion, counted in the six numbers and in the three: a small rotation changes D by its motion.
 TEST(Coordinates, MotionOfARigidBlockIsThatOfItsSixNumbers) {
-    const BlockSystem system = hexagons();
+    const BlockSystem system = net_of_hexagons();
     const Coordinates coordinates(system, Kinematics::rigid);
     Uniform uniform(2);
     Eigen::VectorXd q = affine_motion(system, rotation_by(0.8));
@@ -92,7 +92,7 @@ TEST(Coordinates, MotionOfARigidBlockIsThatOfItsSixNumbers) {
 // Virtual work: forces on the six numbers do the same work as the reduced ones on the unknowns, in either kinematics
 // and at rotations of any size. Central differences of the motion.
 TEST(Coordinates, ReducedForcesDoTheSameWork) {
-    const BlockSystem system = hexagons();
+    const BlockSystem system = net_of_hexagons();
     for (const Kinematics kinematics : {Kinematics::affine, Kinematics::rigid}) {
         Coordinates coordinates(system, kinematics);
         for (const double turn : {0.0, 0.7, 2.5}) {
@@ -113,7 +113,7 @@ TEST(Coordinates, ReducedForcesDoTheSameWork) {
 
 // By hand: where nothing has turned, w of a block gets the magnitudes of D21 and D12 alone.
 TEST(Coordinates, NormOfMagnitudesCountsWhatActsOnTheUnknowns) {
-    const BlockSystem system = hexagons();
+    const BlockSystem system = net_of_hexagons();
     Eigen::VectorXd magnitudes = at_rest(system);
     magnitudes.segment<6>(6) << 2.0, 3.0, 100.0, 1.0, 5.0, 100.0;
     Coordinates affine(system, Kinematics::affine);
@@ -124,7 +124,7 @@ TEST(Coordinates, NormOfMagnitudesCountsWhatActsOnTheUnknowns) {
 }
 
 TEST(Coordinates, NormsOfTheBlocksAddUpToThatOfTheBody) {
-    const BlockSystem system = hexagons();
+    const BlockSystem system = net_of_hexagons();
     for (const Kinematics kinematics : {Kinematics::affine, Kinematics::rigid}) {
         const Coordinates coordinates(system, kinematics);
         Uniform uniform(4);
@@ -138,7 +138,7 @@ TEST(Coordinates, NormsOfTheBlocksAddUpToThatOfTheBody) {
 // D = h (R - I) of a rigid block has the round-off of h even where it is zero; displacements of affine blocks have that
 // of their own size.
 TEST(Coordinates, RoundoffOfRigidBlocksIsThatOfTheirSize) {
-    const BlockSystem system = hexagons();
+    const BlockSystem system = net_of_hexagons();
     const Coordinates affine(system, Kinematics::affine), rigid(system, Kinematics::rigid);
     EXPECT_EQ(affine.roundoff(at_rest(system)), 0.0);
     EXPECT_DOUBLE_EQ(rigid.roundoff(at_rest(system)), 1e-13 * 0.1);

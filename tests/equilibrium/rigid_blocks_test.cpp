@@ -15,10 +15,10 @@ namespace {
 
 using cut_scenes::Uniform;
 
-constexpr int bond = 0, joint = 1;
-
 /// A small body of rigid hexagons with two fractures, in a state where every block has turned.
 struct RigidBody {
+    static constexpr int bond = 0, joint = 1;
+
     explicit RigidBody(std::uint64_t seed, double turn) : uniform(seed) {
         GeometrySpec spec = hexagon_spec(0.5, 0.4, 0.1, {0.03, 0.04}, bond);
         cut_scenes::add_trace(spec, {{-0.1, 0.1}, {0.6, 0.33}}, joint);

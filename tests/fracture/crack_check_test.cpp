@@ -1,16 +1,14 @@
 #include "kluft/fracture/crack_check.hpp"
 
 #include <cmath>
-#include <numbers>
 
 #include <gtest/gtest.h>
 
 #include "kluft/blocks/block_cutter.hpp"
+#include "support/units.hpp"
 
 namespace kluft {
 namespace {
-
-constexpr double degree = std::numbers::pi / 180.0;
 
 Mat2 stress(double xx, double yy, double xy) {
     Mat2 s;

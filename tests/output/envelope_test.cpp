@@ -1,7 +1,6 @@
 #include "kluft/output/envelope.hpp"
 
 #include <cmath>
-#include <numbers>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,14 +8,13 @@
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/output/atomic_file.hpp"
 #include "output/temporary_directory.hpp"
+#include "support/units.hpp"
 
 namespace kluft {
 namespace {
 
 using ::testing::HasSubstr;
 using testing::TemporaryDirectory;
-
-constexpr double degree = std::numbers::pi / 180.0;
 
 // The published tests: c = 0.16 MPa, phi = 36.2 deg; uniaxial strength 2 c cos/(1 - sin) = 0.6308 MPa.
 TEST(Envelope, GivesTheUniaxialStrengthOfTheTests) {

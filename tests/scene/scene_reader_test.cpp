@@ -2,13 +2,13 @@
 
 #include <filesystem>
 #include <fstream>
-#include <numbers>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "kluft/scene/outline.hpp"
 #include "scene/scene_text.hpp"
+#include "support/units.hpp"
 
 namespace kluft {
 namespace {
@@ -16,8 +16,6 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-
-constexpr double degree = std::numbers::pi / 180.0;
 
 TEST(SceneReader, ReadsMaterialsInSi) {
     const Scene scene = read_scene_text(test::full_scene);

@@ -14,15 +14,12 @@
 #include "support/owned_problem.hpp"
 #include "support/scene_run.hpp"
 #include "support/slope_scene.hpp"
+#include "support/units.hpp"
 
 namespace kluft {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180.0;
-
 /// In equilibrium to the end, without help of the mass-like term.
-bool stands(const SceneRun& run) { return run.report.status == RunStatus::done && run.report.unbalanced_steps == 0; }
-
 // ---- hexagons ------------------------------------------------------------------------------------------------------
 
 /// Number of neighbours of each block, and whether it is a whole hexagon.

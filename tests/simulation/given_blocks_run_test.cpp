@@ -2,7 +2,6 @@
 // and by motion.
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <string>
 #include <vector>
 
@@ -13,11 +12,11 @@
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/simulation/fingerprint.hpp"
 #include "support/scene_run.hpp"
+#include "support/units.hpp"
 
 namespace kluft {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180.0;
 constexpr double gravity = 9.81;
 
 /// The value of a column of histories.csv at a load step.
@@ -153,7 +152,7 @@ TEST_P(GivenBlocksRun, TiltingGravityIsAnIncline) {
     }
 }
 
-const char* const column = R"(
+const char* const column_scene = R"(
 kluft: 1
 materials: {rock: {youngs_modulus: 10 GPa, poissons_ratio: 0.25}}
 interfaces: {joint: {kind: fracture, normal_stiffness: 1e12, shear_stiffness: 1e12, contact_rounding: 0}}
@@ -176,7 +175,7 @@ output:
 // The mean stress of the column is P/A under a force on its top, and P y/(A H) under one at the height y
 // (Love-Weber: the sum of f y over the area). Strains are below 1e-6. The top sinks by the strain and the foot's closure.
 TEST_P(GivenBlocksRun, PointForcesMakeTheStressOfAColumn) {
-    const auto pressed = run(column);
+    const auto pressed = run(column_scene);
     const double width = 0.5;
     ASSERT_EQ(pressed.history.size(), 5U);
     const double expected[] = {0.0, 500.0, 1000.0, 4000.0 - 1000.0 * 2.0 / 3.0, 4000.0};
@@ -253,18 +252,18 @@ output: {histories: {seam: {fracture: seam}, upper: {point: [0.5, 1.5]}}}
 }
 
 TEST(PointForces, MustActOnABlock) {
-    EXPECT_THROW((void)run_scene(column, {"stages.0.forces.weight.point=[0.5, 3.1]"}), InputError);
-    EXPECT_THROW((void)run_scene(column, {"stages.1.forces.pull.point=[5, 5]"}), InputError);
-    EXPECT_THROW((void)run_scene(column, {"geometry.sets.all.blocks=[column, base]"}), InputError);
+    EXPECT_THROW((void)run_scene(column_scene, {"stages.0.forces.weight.point=[0.5, 3.1]"}), InputError);
+    EXPECT_THROW((void)run_scene(column_scene, {"stages.1.forces.pull.point=[5, 5]"}), InputError);
+    EXPECT_THROW((void)run_scene(column_scene, {"geometry.sets.all.blocks=[column, base]"}), InputError);
 }
 
 TEST(FixedBlocks, AreNotMovedByAPlaten) {
-    EXPECT_THROW((void)run_scene(column, {"stages=[{strain: {boundary: bottom, value: 1 %}}]"}), InputError);
+    EXPECT_THROW((void)run_scene(column_scene, {"stages=[{strain: {boundary: bottom, value: 1 %}}]"}), InputError);
 }
 
 TEST(Model, FixedBlocksForcesAndGravityBelongToTheFingerprint) {
     const auto print = [](const std::vector<std::string>& overrides) {
-        return fingerprint(build_scene_model(read_scene_text(column, overrides)).model);
+        return fingerprint(build_scene_model(read_scene_text(column_scene, overrides)).model);
     };
     const std::string plain = print({});
     EXPECT_EQ(plain, print({"output.histories=null"}));

@@ -88,7 +88,8 @@ TEST(BalancedPart, OfAFailedStepIsCommittedWithTheCracksChosenAtIt) {
     step.end.body.interfaces.front() = InterfaceStatus::tension_crack;
     step.cracks = {CrackRecord{.step = 1, .pass = 1}};
     step.crack_passes = 1;
-    step.balanced_part = Step::BalancedPart{step.end.body, 0.5, {}, 1, 1};
+    step.balanced_part =
+        Step::BalancedPart{.body = step.end.body, .load_factor = 0.5, .n_equilibria = 1, .n_cracks = 1};
     // What came after it: an unbalanced equilibrium, more cracks, and then nothing.
     step.end.body.displacement.setConstant(7.0);
     step.row.balanced = false;
@@ -126,7 +127,9 @@ TEST(BalancedPart, OfAStepWithoutEquilibriumIsNothing) {
 TEST(Ending, IsACollapseOnlyUnderStressAndAfterTheFirstLoadStep) {
     const MadeUpRun run;
     const auto status_of = [&](Failure failure, int step, std::optional<double> factor = std::nullopt) {
-        return run.journal.ended(run.state, {failure, step, factor, {}}).status;
+        State state = run.state;
+        state.at.step_in_stage = step - 1; // whole load steps before the one that failed
+        return run.journal.ended(state, {failure, step, factor, {}}).status;
     };
     EXPECT_EQ(status_of({}, 2), RunStatus::collapsed);
     EXPECT_EQ(status_of({.nothing_holds = true}, 2), RunStatus::no_equilibrium);

@@ -81,6 +81,24 @@ TEST(LoadStep, FailedStepIsCommittedUpToItsLastBalancedEquilibrium) {
     EXPECT_EQ(work.told.rows.size(), 1U);
 }
 
+// What is committed of the first load step of a stage does not move the start of the stage, from which platens travel.
+TEST(LoadStep, PartOfTheFirstLoadStepIsNotTheStartOfTheStage) {
+    Workplace work(posed::two_bonded_blocks(4e6));
+    (void)commit_balanced_part(work.take(1.0), work.state, work.journal);
+    ASSERT_GT(work.state.body.displacement.norm(), 0.0);
+    work.enter();
+    EXPECT_EQ(work.state.stage_start.displacement.norm(), 0.0);
+}
+
+// A step without length has no rate to predict the next one from.
+TEST(LoadStep, StepToItsOwnLoadFactorLeavesNoPredictor) {
+    Workplace work(posed::two_bonded_blocks(1e5));
+    commit(work.take(0.5), {}, work.state, work.journal);
+    const Step again = work.take(0.5);
+    EXPECT_FALSE(again.failure.has_value());
+    EXPECT_EQ(again.end.memory.rate.size(), 0);
+}
+
 TEST(LoadStep, PullIsTheStressOfBothBlocksWhileTheBondHolds) {
     Workplace work(posed::two_bonded_blocks(0.8 * tensile_strength));
     const Step step = work.take(1.0);

@@ -1,5 +1,4 @@
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include <Eigen/LU>
@@ -11,13 +10,10 @@
 #include "kluft/simulation/state_fields.hpp"
 #include "support/scene_run.hpp"
 #include "support/slope_scene.hpp"
+#include "support/units.hpp"
 
 namespace kluft {
 namespace {
-
-constexpr double degree = std::numbers::pi / 180.0;
-
-bool stands(const SceneRun& run) { return run.report.status == RunStatus::done && run.report.unbalanced_steps == 0; }
 
 const std::vector<std::string> rigid_blocks{"analysis.kinematics=rigid"};
 

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
-#include <numbers>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -12,11 +11,10 @@
 #include "kluft/kinematics/affine.hpp"
 #include "kluft/simulation/placement.hpp"
 #include "support/scene_run.hpp"
+#include "support/units.hpp"
 
 namespace kluft {
 namespace {
-
-constexpr double degree = std::numbers::pi / 180.0;
 
 const char* const single_block = R"(
 kluft: 1

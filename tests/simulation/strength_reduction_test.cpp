@@ -1,5 +1,4 @@
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -8,11 +7,10 @@
 #include "kluft/simulation/state_fields.hpp"
 #include "kluft/simulation/strength_reduction.hpp"
 #include "support/scene_run.hpp"
+#include "support/units.hpp"
 
 namespace kluft {
 namespace {
-
-constexpr double degree = std::numbers::pi / 180.0;
 
 /// A block of 4 m x 1 m on a fixed plinth, gravity turned by the slope; phi = 30 degrees.
 std::string block_on_slope(double slope_degrees, const std::string& reduction, const std::string& more_joints = "",

@@ -24,6 +24,11 @@ struct SceneRun {
     std::vector<CrackRecord> cracks;
 };
 
+/// Whether the run came to its end, balanced at each load step.
+inline bool stands(const SceneRun& run) {
+    return run.report.status == RunStatus::done && run.report.unbalanced_steps == 0;
+}
+
 class RecordingObserver : public StepObserver {
 public:
     explicit RecordingObserver(SceneRun& run) : run_(run) {}

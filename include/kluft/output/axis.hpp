@@ -32,6 +32,8 @@ struct Axis {
 /// other ranges those of 0.1 to 1.
 [[nodiscard]] Axis round_log_axis(double low, double high);
 
+inline constexpr double plot_pixels_per_point = 3.2; ///< of plots that are written as PNG
+
 /// Rectangle of a plot on the page with its two axes.
 struct PlotFrame {
     Vec2 corner = Vec2::Zero(); ///< upper left, points

@@ -8,6 +8,10 @@ namespace kluft {
 /// Makes potential cracks fail at the end of the step and finds equilibrium again at the same load, until none fails.
 void break_bonds(StepInProgress& in_progress);
 
+/// Finds equilibrium at the load factor that the step starts from, of a state in which bonds have failed and none was found
+/// since, and goes on as break_bonds does.
+void settle(StepInProgress& in_progress);
+
 /// The largest failure index f of the potential cracks at q; at most 10, for a strength of zero makes it infinite.
 [[nodiscard]] double largest_failure_index(const StepInProgress& in_progress, const Placement& placement,
                                            const LoadsAt& at, const Eigen::VectorXd& q);

@@ -27,6 +27,7 @@ template <class Equilibrium> struct EventCut {
 
 inline constexpr int quick_event_trials = 12; ///< then the interval is halved: a kink of the index may be crept up to
 inline constexpr int max_event_trials = 60;
+inline constexpr double largest_useful_index = 10.0; ///< a strength of zero makes f infinite
 
 /// The first event in (from, end.load_factor]. `index_of(equilibrium)` and `index_at_start()` evaluate the index, each
 /// under the loads of its own load factor; `find_at(load_factor, share, end)` searches an equilibrium between the start

@@ -26,6 +26,9 @@ struct LoadPlace {
     int step_in_stage = 0;    ///< load steps of the stage committed
     int step = 0;             ///< load steps committed in all
     double load_factor = 0.0; ///< of the stage, 0..1
+
+    /// Whether nothing of the stage is committed yet, not even a part of its first load step.
+    [[nodiscard]] bool is_at_stage_start() const { return step_in_stage == 0 && load_factor == 0.0; }
 };
 
 /// The physics: what the next equilibrium follows from.

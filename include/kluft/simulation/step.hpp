@@ -39,9 +39,12 @@ struct Step {
 
     /// What is left of a step that fails after an unbalanced equilibrium: all up to its last balanced one.
     struct BalancedPart {
-        BodyState body;
+        BodyState body{};
         double load_factor = 0.0;
-        LoadedPlacement in_place;
+        LoadedPlacement in_place{};
+        std::vector<double> viscosity_factor{}; ///< of SolverMemory
+        StepControl control{};
+        StressHistory stresses{};
         std::size_t n_equilibria = 0;
         std::size_t n_cracks = 0;
     };

@@ -117,7 +117,7 @@ template <class IndexAt>
 /// The step has failed at what was found.
 void fail(StepInProgress& in_progress, const Equilibrium& found, double residual_ratio, FailureKind kind);
 
-/// The rate of the smooth step so far: the next one is predicted from it.
+/// Keeps the rate of the smooth step so far, from which the next one is predicted; none of a step without length.
 void keep_rate(StepInProgress& in_progress);
 
 } // namespace kluft

@@ -1,0 +1,15 @@
+#include "stop_request.hpp"
+
+#include <csignal>
+
+namespace kluft {
+
+std::atomic<bool> stop_requested{false};
+
+void listen_for_stop() {
+    const auto request_stop = [](int) { stop_requested = true; };
+    std::signal(SIGINT, request_stop);
+    std::signal(SIGTERM, request_stop);
+}
+
+} // namespace kluft
