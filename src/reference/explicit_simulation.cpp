@@ -116,7 +116,10 @@ private:
         while (!end.failure && state_.at.step_in_stage < stage().steps) {
             const bool last = state_.at.step_in_stage + 1 == stage().steps;
             take_step(static_cast<double>(state_.at.step_in_stage + 1) / stage().steps);
-            if (failed()) return commit_balanced_part(std::move(step_), state_, journal_);
+            if (failed()) {
+                keep_balanced_part(step_);
+                return commit_balanced_part(std::move(step_), state_, journal_);
+            }
             const StepRecord row = step_.row;
             commit(std::move(step_), {.last_of_stage = last}, state_, journal_);
             end.failure = failure_after(row);

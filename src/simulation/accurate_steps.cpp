@@ -115,9 +115,9 @@ Step take_accurate_step(const StepBench& bench, const State& before) {
             accurate_goal(bench, before, size < remaining ? before.at.load_factor + size : 1.0, local.accuracy);
         goal.solves_before = solves_before;
         Attempt attempt = try_step(bench, before, goal, control, local.small_step(), again);
-        if (attempt.step.failure && size <= local.small_step()) return std::move(attempt.step);
         StepControl& reached = attempt.step.end.control;
-        if (!attempt.error) {
+        const bool is_last = attempt.step.failure && size <= local.small_step();
+        if (is_last || !attempt.error) {
             charge_unjudged(before, reached, attempt.step.end.at.load_factor);
             return with_estimate(bench, before, std::move(attempt.step));
         }

@@ -111,7 +111,6 @@ void commit(Step step, StepKind kind, State& state, Journal& journal) {
 StageEnd commit_balanced_part(Step step, State& state, Journal& journal) {
     StageEnd end{step.failure, state.at.step + 1, {}, {}};
     journal.warn(step, end.step);
-    keep_balanced_part(step);
     if (!step.equilibria.empty()) commit(std::move(step), {.regular = false}, state, journal);
     return end;
 }

@@ -14,12 +14,12 @@ namespace kluft {
 namespace {
 
 /// The state as it stands, under the loads of a load factor.
-struct Standing {
+struct MeasuredState {
     Measured measured;
     LoadedPlacement in_place;
 };
 
-Standing measure_state(const StepBench& bench, const State& state, double load_factor) {
+MeasuredState measure_state(const StepBench& bench, const State& state, double load_factor) {
     const StepGoal goal;
     StepInProgress p = begin_step(bench, state, goal);
     PlacedState placed = place(p);
@@ -27,15 +27,15 @@ Standing measure_state(const StepBench& bench, const State& state, double load_f
     Equilibrium standing;
     standing.displacement = standing.start = state.body.displacement;
     standing.balanced = true;
-    Standing result;
+    MeasuredState result;
     result.measured = measure(p, placed, at, standing);
     result.in_place = {std::move(placed.placement), std::move(at)};
     return result;
 }
 
 void tell_initial_state(const StepBench& bench, const State& state) {
-    const Standing standing = measure_state(bench, state, 0.0);
-    bench.journal.begin(standing.measured.row, state, standing.in_place);
+    const MeasuredState at_rest = measure_state(bench, state, 0.0);
+    bench.journal.begin(at_rest.measured.row, state, at_rest.in_place);
 }
 
 StageLoads begin_stage(const Model& model, const SolverOptions& solver, EquilibriumSearch& search, State& state) {

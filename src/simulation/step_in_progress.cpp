@@ -78,6 +78,7 @@ StepInProgress begin_step(const StepBench& bench, const State& from, const StepG
 Step finished(StepInProgress p) {
     Step& step = p.step;
     step.end.memory.near_pairs = p.bench.search.near_pairs();
+    if (step.failure) keep_balanced_part(step);
     step.row.open_close_iterations = p.bench.journal.report().costs.open_close_iterations - p.goal.solves_before;
     step.row.balanced = step.balanced;
     step.row.unbalanced_ratio = step.worst_share;

@@ -23,9 +23,10 @@ StepGoal goal_with_strengths_of(const StepBench& bench, const State& state, doub
     return goal;
 }
 
-/// The state that the stages before have left must stand by the closer look of this one. `equilibria`: what is to be told of
-/// it with the first load step.
-std::optional<Failure> look_closer(const StepBench& bench, State& state, std::vector<StepRecord>& equilibria) {
+/// The state that the stages before have left must be in equilibrium by the tolerances of this one, too. `equilibria`:
+/// what is to be told of it with the first load step.
+std::optional<Failure> find_initial_equilibrium(const StepBench& bench, State& state,
+                                                std::vector<StepRecord>& equilibria) {
     StepGoal goal = goal_with_strengths_of(bench, state, 0.0);
     goal.checks_cracks = false;
     Step step = take_step(bench, state, goal);
@@ -61,7 +62,7 @@ StageEnd find_strength_limit(const StepBench& bench, State& state) {
     const int n_steps = bench.stage(state).steps;
     StageEnd end;
     std::vector<StepRecord> before; // equilibria that are not told yet
-    if (state.at.load_factor == 0.0) end.failure = look_closer(bench, state, before);
+    if (state.at.load_factor == 0.0) end.failure = find_initial_equilibrium(bench, state, before);
     if (end.failure) return {end.failure, state.at.step + 1, {}, {}};
     double failing = 1.0; // load factor
     while (!end.failure && state.at.step_in_stage < n_steps) {

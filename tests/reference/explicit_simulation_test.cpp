@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "kluft/reference/explicit_simulation.hpp"
+#include "support/posed_run.hpp"
 #include "support/scene_run.hpp"
 
 namespace kluft {
@@ -177,6 +178,31 @@ TEST(ExplicitSimulation, BodyUnderAGivenStressCollapsesAtTheStepThatPassesJaeger
 }
 
 // A platen at constant velocity: slower and slower runs meet the quasi-static one; the waves of a fast one are seen.
+// The upper block is torn off in the second of two load steps. In motion the body is never balanced to the usual share, so
+// that nothing of the step is told; where a large share counts as balanced it ends at its crack.
+TEST(ExplicitSimulation, FailedStepEndsAtItsLastBalancedEquilibrium) {
+    const Model model = posed::two_bonded_blocks(1.5 * posed::tensile_strength, 2);
+    const std::atomic<bool> stop{false};
+    const auto torn = [&](double balance, posed::Told& told) {
+        State state = initial_state(model);
+        const RunReport report = run_explicit(model, {}, {.balance = balance}, {}, state, told, stop);
+        EXPECT_EQ(report.status, RunStatus::collapsed) << report.diagnosis;
+        EXPECT_EQ(told.rows.back().load_factor, state.at.load_factor);
+        EXPECT_TRUE(told.rows.back().balanced);
+        return state;
+    };
+    posed::Told nothing;
+    EXPECT_EQ(torn(1e-3, nothing).at.load_factor, 0.5);
+    EXPECT_TRUE(nothing.cracks.empty());
+    posed::Told crack;
+    const State state = torn(0.5, crack);
+    EXPECT_NEAR(state.at.load_factor, 1.0 / 1.5, 0.05);
+    EXPECT_EQ(state.at.step_in_stage, 1);
+    EXPECT_EQ(crack.cracks.size(), 1U);
+    EXPECT_EQ(crack.rows.back().cracks_tension, 1);
+    EXPECT_EQ(state.body.interfaces.front(), InterfaceStatus::tension_crack);
+}
+
 TEST(ExplicitSimulation, PlatenVelocityIsWhatTheSceneSays) {
     const std::string platen = "strain: {boundary: top, value: 1e-4}";
     const auto run_at = [&](const char* rate) {

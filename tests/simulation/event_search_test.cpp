@@ -68,12 +68,15 @@ TEST(EventSearch, KeepsTheLastEventKnownWhereNothingIsFoundInBetween) {
 
 // The guess for a trial lies on the line from the start to the end that is known.
 TEST(EventSearch, GivesEachTrialItsShareOfTheWay) {
+    int n_trials = 0;
     (void)first_event(
         accurate, 0.5, Point{1.0}, [](const Point& at) { return 8.0 * (at.load_factor - 0.5); }, [] { return 0.0; },
-        [](double load_factor, double share, const Point& end) {
+        [&](double load_factor, double share, const Point& end) {
+            ++n_trials;
             EXPECT_NEAR(share, (load_factor - 0.5) / (end.load_factor - 0.5), 1e-15);
             return Point{load_factor};
         });
+    EXPECT_GT(n_trials, 0);
 }
 
 TEST(EventSearch, ExpectsTheEventOfASmoothIndexWhereItIs) {

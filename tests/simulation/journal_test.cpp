@@ -71,6 +71,23 @@ TEST(Commit, CountsUnbalancedLoadStepsAndThoseInSuccession) {
     EXPECT_EQ(run.journal.report().unbalanced_steps, 3);
 }
 
+// A full disk or lack of memory while a step is told loses nothing of it: a resumed run goes on after it.
+TEST(Commit, StateHasMovedBeforeTheStepIsTold) {
+    struct FullDisk : posed::Told {
+        void equilibrium(const StepRecord&) override { throw std::bad_alloc(); }
+    };
+    MadeUpRun run;
+    FullDisk full;
+    Journal journal(run.model, run.state, full, 1);
+    const RunReport report = report_of(journal, [&]() -> RunReport {
+        commit(run.step_to(0.25), {}, run.state, journal);
+        return {};
+    });
+    EXPECT_EQ(report.status, RunStatus::out_of_resources);
+    EXPECT_EQ(run.state.at.load_factor, 0.25);
+    EXPECT_EQ(run.state.at.step, 1);
+}
+
 TEST(Commit, WarnsOfALostContactOnceInARun) {
     MadeUpRun run;
     for (int i = 0; i < 3; ++i) {
@@ -88,10 +105,18 @@ TEST(BalancedPart, OfAFailedStepIsCommittedWithTheCracksChosenAtIt) {
     step.end.body.interfaces.front() = InterfaceStatus::tension_crack;
     step.cracks = {CrackRecord{.step = 1, .pass = 1}};
     step.crack_passes = 1;
-    step.balanced_part =
-        Step::BalancedPart{.body = step.end.body, .load_factor = 0.5, .n_equilibria = 1, .n_cracks = 1};
+    step.end.stresses.largest_axial = 3e5;
+    step.end.control.size = 0.125;
+    step.balanced_part = Step::BalancedPart{.body = step.end.body,
+                                            .load_factor = 0.5,
+                                            .control = step.end.control,
+                                            .stresses = step.end.stresses,
+                                            .n_equilibria = 1,
+                                            .n_cracks = 1};
     // What came after it: an unbalanced equilibrium, more cracks, and then nothing.
     step.end.body.displacement.setConstant(7.0);
+    step.end.stresses.largest_axial = 9e5;
+    step.end.control.size = 0.0625;
     step.row.balanced = false;
     step.row.unbalanced_ratio = 0.1;
     step.equilibria.push_back(step.row);
@@ -99,11 +124,15 @@ TEST(BalancedPart, OfAFailedStepIsCommittedWithTheCracksChosenAtIt) {
     step.crack_passes = 2;
     step.balanced = false;
     step.failure = Failure{};
+    keep_balanced_part(step);
     const StageEnd end = commit_balanced_part(std::move(step), run.state, run.journal);
     EXPECT_TRUE(end.failure.has_value());
     EXPECT_EQ(end.step, 1);
     EXPECT_EQ(run.state.at.load_factor, 0.5);
     EXPECT_EQ(run.state.body.displacement.norm(), 0.0);
+    EXPECT_EQ(run.state.stresses.largest_axial, 3e5);
+    EXPECT_EQ(run.state.control.size, 0.125);
+    EXPECT_FALSE(run.state.is_settled);
     EXPECT_EQ(run.told.equilibria.size(), 1U);
     EXPECT_EQ(run.told.cracks.size(), 1U);
     ASSERT_EQ(run.told.rows.size(), 1U);
@@ -158,7 +187,6 @@ TEST(Ending, OfARunThatIsCutShortIsAStatusToo) {
             return {};
         });
     };
-    EXPECT_EQ(end_of([] {}).status, RunStatus::done);
     EXPECT_EQ(end_of([] { throw Interrupted{}; }).status, RunStatus::interrupted);
     const RunReport full = end_of([] { throw ResourceError("disk full"); });
     EXPECT_EQ(full.status, RunStatus::out_of_resources);

@@ -90,6 +90,22 @@ TEST(LoadStep, PartOfTheFirstLoadStepIsNotTheStartOfTheStage) {
     EXPECT_EQ(work.state.stage_start.displacement.norm(), 0.0);
 }
 
+// A state that stands before its failed bonds were settled is settled at its own load first; the next event is where it
+// would have been.
+TEST(LoadStep, FromAnUnsettledStateFindsTheNextEvent) {
+    for (const Kinematics kinematics : {Kinematics::affine, Kinematics::rigid}) {
+        Workplace work(posed::two_bonded_blocks(4e6, 1, kinematics));
+        commit(work.take(0.1), {.regular = false}, work.state, work.journal);
+        work.state.is_settled = false;
+        const Step step = work.take(1.0);
+        ASSERT_TRUE(step.failure.has_value());
+        ASSERT_EQ(step.equilibria.size(), 2U);
+        EXPECT_EQ(step.equilibria.front().load_factor, 0.1);
+        EXPECT_NEAR(step.equilibria.back().load_factor, tensile_strength / 4e6, 0.02 * tensile_strength / 4e6);
+        EXPECT_EQ(step.cracks.size(), 1U);
+    }
+}
+
 // A step without length has no rate to predict the next one from.
 TEST(LoadStep, StepToItsOwnLoadFactorLeavesNoPredictor) {
     Workplace work(posed::two_bonded_blocks(1e5));

@@ -43,7 +43,7 @@ inline InterfaceType joint(double friction_angle) {
 
 /// Two blocks of 1 m by 1 m, one on the other, the lower one on a fixed support. They are bonded until the bond fails to a
 /// joint, and the upper one is pulled by a pressure at its top of -`pull` at the end of the only stage (Pa).
-inline Model two_bonded_blocks(double pull, int steps = 1) {
+inline Model two_bonded_blocks(double pull, int steps = 1, Kinematics kinematics = Kinematics::affine) {
     GeometrySpec spec = cut_scenes::rectangle(1.0, 2.0);
     cut_scenes::add_trace(spec, {{-1.0, 1.0}, {2.0, 1.0}}, 0);
     spec.reference_spacing = 1.0;
@@ -54,6 +54,7 @@ inline Model two_bonded_blocks(double pull, int steps = 1) {
     crack.kind = InterfaceKind::potential_crack;
     crack.fails_to = 1;
     input.interface_types = {crack, joint(30.0 * degree)};
+    input.kinematics = kinematics;
     input.loads.supports = {Support::fixed, Support::none, Support::none, Support::none};
     Stage stage;
     stage.name = "pull";

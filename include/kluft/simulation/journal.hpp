@@ -26,7 +26,7 @@ struct Interrupted {};
 /// How a stage ended.
 struct StageEnd {
     std::optional<Failure> failure;         ///< the run ends here
-    int step = 0;                           ///< the load step that failed, through all stages
+    int step = 0;                           ///< the load step that failed or comes next, through all stages
     std::optional<double> factor_of_safety; ///< the failure is what was looked for
     Eigen::VectorXd forces; ///< at the end, internal - external without the supports' (N/m); empty without a load step
 };
@@ -84,8 +84,8 @@ private:
 /// Makes the end of the step the state, which only this changes during a stage, and tells what happened in the step.
 void commit(Step step, StepKind kind, State& state, Journal& journal);
 
-/// Of a load step that failed commits what there is up to its last balanced equilibrium, with the potential cracks that
-/// were to fail there; nothing where it has none. What was computed after it is lost.
+/// Commits what there is of a load step that failed, which ends at its last balanced equilibrium (keep_balanced_part);
+/// nothing where it has none.
 [[nodiscard]] StageEnd commit_balanced_part(Step step, State& state, Journal& journal);
 
 /// Load steps of all stages.

@@ -23,13 +23,13 @@ struct LoadedPlacement {
 };
 
 struct Step {
-    State end;                          ///< at the last equilibrium; the start where nothing was found
-    StepRecord row;                     ///< of that equilibrium
-    bool smooth = true;                 ///< nothing broke, was cut or relaxed
-    bool balanced = true;               ///< all equilibria
-    double worst_share = 0.0;           ///< of the mass-like term, of all equilibria
-    int crack_passes = 0;               ///< checks that made potential cracks fail
-    int worst_block = -1;               ///< of the last solve
+    State end;                ///< at the last equilibrium, of a failed step the last balanced one; or the start
+    StepRecord row;           ///< of that equilibrium, with the totals of the step
+    bool smooth = true;       ///< nothing broke, was cut or relaxed
+    bool balanced = true;     ///< all equilibria
+    double worst_share = 0.0; ///< of the mass-like term, of all equilibria
+    int crack_passes = 0;     ///< checks that made potential cracks fail
+    int worst_block = -1;     ///< of the last solve
     std::vector<StepRecord> equilibria; ///< in order
     std::vector<CrackRecord> cracks;
     std::optional<Failure> failure; ///< the step did not come to its goal
@@ -37,7 +37,8 @@ struct Step {
     LoadedPlacement in_place;       ///< at the last equilibrium
     Eigen::VectorXd forces;         ///< there: internal - external, without the supports' (N/m)
 
-    /// What is left of a step that fails after an unbalanced equilibrium: all up to its last balanced one.
+    /// What is left of a step that fails after an unbalanced equilibrium, or on the way to one: all up to its last
+    /// balanced one.
     struct BalancedPart {
         BodyState body{};
         double load_factor = 0.0;
@@ -48,7 +49,7 @@ struct Step {
         std::size_t n_equilibria = 0;
         std::size_t n_cracks = 0;
     };
-    std::optional<BalancedPart> balanced_part; ///< where the end is not balanced or on the way to an equilibrium
+    std::optional<BalancedPart> balanced_part; ///< of a step under way
 };
 
 /// Takes back what was computed after the last balanced equilibrium of a step that failed; the potential cracks that were
