@@ -1,6 +1,7 @@
 # With KLUFT_UNITY the C++ sources of one folder are compiled in batches: the headers, which take most of the time, are
 # read once for each. What stands in the unnamed namespaces of a folder therefore has distinct names.
-set(KLUFT_UNITY_BATCH 8) # sources: large enough to save most of the time, small enough that all cores have work to the end
+# Sources in a batch: large enough to save most of the time, small enough that all cores have work to the end.
+set(KLUFT_UNITY_BATCH 12)
 
 function(kluft_unity target)
   if(NOT KLUFT_UNITY)

@@ -64,7 +64,7 @@ Eigen::VectorXd dense_equilibrium(const OwnedProblem& problem, Eigen::VectorXd q
     return q;
 }
 
-TEST(OpenCloseSolver, FindsTheEquilibriumOfTheDenseSystemWithLagrangeMultipliers) {
+TEST(SlowOpenCloseSolver, FindsTheEquilibriumOfTheDenseSystemWithLagrangeMultipliers) {
     for (const bool travelling : {false, true}) {
         for (const bool fractured : {false, true}) {
             const PressedBody body(travelling, {1, fractured ? char{0} : char{1}});

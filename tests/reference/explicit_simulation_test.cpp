@@ -61,7 +61,7 @@ stages:
   - {name: platen, strain: {boundary: top, value: 4e-4}, steps: 5}
 )";
 
-TEST(ExplicitSimulation, FracturedHexagonsFollowTheImplicitCurve) {
+TEST(SlowExplicitSimulation, FracturedHexagonsFollowTheImplicitCurve) {
     const auto reference = run_scene(hexagons);
     const auto run = run_scene(hexagons, {by_steps});
     ASSERT_EQ(run.report.status, RunStatus::done) << run.report.diagnosis;
@@ -78,7 +78,7 @@ TEST(ExplicitSimulation, FracturedHexagonsFollowTheImplicitCurve) {
 }
 
 // An unfractured bonded body is elastic: no friction, so both integrators meet at one state.
-TEST(ExplicitSimulation, BondedHexagonsAreAsStiffAsInTheImplicitRun) {
+TEST(SlowExplicitSimulation, BondedHexagonsAreAsStiffAsInTheImplicitRun) {
     const std::vector<std::string> overrides{"geometry.fractures=[]", "materials.rock.cohesion=1e9",
                                              "materials.rock.tensile_strength=1e9"};
     auto explicit_overrides = overrides;
@@ -250,7 +250,7 @@ TEST(ExplicitSimulation, InterruptedRunKeepsTheLastCommittedStep) {
     EXPECT_EQ(state.body.displacement.norm(), 0.0);
 }
 
-TEST(ExplicitSimulation, SameSceneTwiceGivesTheSameBits) {
+TEST(SlowExplicitSimulation, SameSceneTwiceGivesTheSameBits) {
     const auto first = run_scene(hexagons, {by_steps});
     const auto second = run_scene(hexagons, {by_steps});
     EXPECT_EQ((first.state.body.displacement - second.state.body.displacement).norm(), 0.0);

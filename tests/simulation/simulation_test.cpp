@@ -354,7 +354,7 @@ TEST(Simulation, SameSceneTwiceGivesTheSameBits) {
 
 // Love-Weber: the Cauchy stress of a block is the sum of f x over its contact and outer forces, by its current area.
 // The blocks of the outline are left out, because their platen forces are not in the list of points.
-TEST(Simulation, BlockStressIsTheLoveWeberSumOfItsContactForces) {
+TEST(SlowSimulation, BlockStressIsTheLoveWeberSumOfItsContactForces) {
     auto run = run_scene(small_specimen, {"solver.tolerance=1e-9", "solver.balance=1e-7"});
     ASSERT_EQ(run.report.status, RunStatus::done) << run.report.diagnosis;
     const BlockSystem& system = run.model.system;
