@@ -173,7 +173,7 @@ std::string comparison_markdown(const ComparisonTable& table) {
     for (const ComparedQuantity& quantity : table.quantities) {
         Cells row = cells_of(quantity);
         if (quantity.verdict == Verdict::missed)
-            for (std::string& cell : row) cell = "**" + cell + "**";
+            for (std::string& cell : row) cell = fmt::format("**{}**", cell);
         text += markdown_row(row);
     }
     text += '\n' + conclusion(table);
