@@ -94,6 +94,7 @@ ExitCode exit_code(RunStatus status) {
     case RunStatus::collapsed:
         return ExitCode::done;
     case RunStatus::no_equilibrium:
+    case RunStatus::unbalanced:
         return ExitCode::no_equilibrium;
     case RunStatus::out_of_resources:
         return ExitCode::out_of_resources;

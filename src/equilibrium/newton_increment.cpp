@@ -78,7 +78,8 @@ bool NewtonIncrement::solve_with_reuse(const NewtonPoint& at, TangentKind kind) 
 }
 
 bool NewtonIncrement::solve_refined(const NewtonPoint& at) {
-    const double residual = linear_residual(right_side_.norm(), at.tolerance, at.residual.force_scale);
+    const double residual =
+        std::min(at.largest_residual, linear_residual(right_side_.norm(), at.tolerance, at.residual.force_scale));
     const SolveReport report = factor_.solve(matrix_, right_side_, residual, increment_);
     factor_.count(report.refinements);
     if (!report.accepted || !at.border.exists()) return report.accepted;

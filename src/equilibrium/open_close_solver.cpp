@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "kluft/core/stopwatch.hpp"
+#include "kluft/equilibrium/block_balance.hpp"
 #include "kluft/equilibrium/line_search.hpp"
 
 namespace kluft {
@@ -19,6 +20,7 @@ constexpr double short_step = 0.1;           ///< of the increment: this way lea
 constexpr int max_short_steps = 3;           ///< in succession
 constexpr double restless_share = 0.2;       ///< of the norm of the residual
 constexpr int relaxation_iterations = 6;     ///< of one step: what takes more needs more mass (measured)
+constexpr double block_linear_share = 0.3;   ///< of what is allowed on a block: what a linear solve may leave
 constexpr double relaxed_share = 0.2;        ///< of the mass-like forces, that a step of relaxation may leave
 
 /// The equations of one solve.
@@ -103,6 +105,32 @@ private:
     Eigen::VectorXd full_step_forces_;
 };
 
+/// Blocks whose part of the forces is larger than a share of their own.
+struct UnbalancedBlocks {
+    std::vector<int> blocks;                                        ///< the worst first
+    double least_allowed = std::numeric_limits<double>::infinity(); ///< part of the forces on any of them (N/m)
+};
+
+UnbalancedBlocks unbalanced_blocks(const Equations& equations, const Eigen::VectorXd& q, const Eigen::VectorXd& forces,
+                                   double tolerance) {
+    UnbalancedBlocks result;
+    if (!std::isfinite(tolerance)) return result;
+    const Coordinates& coordinates = equations.evaluator.coordinates();
+    const OwnForces own = own_forces(equations.problem.body, q);
+    double worst = 0.0;
+    for (int b = 0; b < coordinates.n_blocks(); ++b) {
+        const double left = size_of(rigid_part(coordinates, *equations.problem.body.system, q, forces, b));
+        const double allowed = tolerance * own.around[b] + own.roundoff[b];
+        if (left <= allowed || own.around[b] == 0.0) continue; // it may touch nothing
+        result.blocks.push_back(b);
+        result.least_allowed = std::min(result.least_allowed, allowed);
+        if (left <= worst * allowed) continue;
+        worst = left / std::max(allowed, 1e-300);
+        std::swap(result.blocks.front(), result.blocks.back());
+    }
+    return result;
+}
+
 /// The blocks that have a large part of the forces, or that limited the increment.
 std::vector<int> restless_blocks(const Coordinates& coordinates, const Eigen::VectorXd& forces,
                                  const std::vector<int>& limited) {
@@ -126,9 +154,9 @@ template <class Lists> std::vector<int> union_of(const Lists& lists) {
 /// Judges when the iteration ends, from its norms and step lengths so far.
 class StoppingTest {
 public:
-    StoppingTest(const OpenCloseOptions& options, Aim aim, OpenCloseSummary& summary)
-        : summary_(summary), tolerance_(options.tolerance), max_iterations_(options.max_iterations),
-          relaxes_(aim == Aim::relaxation) {
+    StoppingTest(const OpenCloseOptions& options, const IterationGoal& goal, OpenCloseSummary& summary)
+        : summary_(summary), tolerance_(options.tolerance), block_tolerance_(goal.block_tolerance),
+          max_iterations_(options.max_iterations), relaxes_(goal.aim == Aim::relaxation) {
         if (relaxes_) max_iterations_ = std::min(relaxation_iterations, max_iterations_);
     }
 
@@ -136,13 +164,22 @@ public:
     [[nodiscard]] bool ends(const Equations& equations, const Eigen::VectorXd& q, const Iterate& at) {
         summary_.force_scale = at.residual.force_scale;
         summary_.residual_ratio = summary_.force_scale > 0.0 ? at.norm / summary_.force_scale : 0.0;
-        if (is_equilibrium(at)) return ends_with(Termination::converged);
-        summary_.worst_block = largest_block(equations.evaluator.coordinates(), at.free_forces);
+        unbalanced_ = {};
+        if (is_equilibrium(at)) {
+            unbalanced_ = unbalanced_blocks(equations, q, at.free_forces, block_tolerance_);
+            if (unbalanced_.blocks.empty()) return ends_with(Termination::converged);
+        }
+        summary_.worst_block = unbalanced_.blocks.empty()
+                                   ? largest_block(equations.evaluator.coordinates(), at.free_forces)
+                                   : unbalanced_.blocks.front();
         if (is_relaxed(equations.problem, q, at)) return ends_with(Termination::relaxed);
         if (summary_.iterations < max_iterations_ && short_steps_ < max_short_steps) return false;
         summary_.restless = union_of(restless_);
         return ends_with(Termination::max_iterations);
     }
+
+    /// What a linear solve may leave where only single blocks are not balanced (N/m).
+    [[nodiscard]] double largest_residual() const { return block_linear_share * unbalanced_.least_allowed; }
 
     /// True where root finding has had its chance and the norm does not fall.
     [[nodiscard]] bool stalls(const Iterate& at) const {
@@ -151,6 +188,7 @@ public:
 
     /// Notes the step of length s from an iterate, and the blocks that were restless on it.
     void note_step(const Iterate& from, double s, std::vector<int> restless) {
+        restless.insert(restless.end(), unbalanced_.blocks.begin(), unbalanced_.blocks.end());
         restless_[static_cast<std::size_t>(summary_.iterations) % restless_.size()] = std::move(restless);
         short_steps_ = s < short_step ? short_steps_ + 1 : 0;
         previous_norm_ = from.norm;
@@ -171,31 +209,33 @@ private:
 
     OpenCloseSummary& summary_;
     double tolerance_;
+    double block_tolerance_;
     int max_iterations_;
     bool relaxes_;
     double previous_norm_ = -1.0;                ///< of the free forces one iteration ago (N/m)
     int short_steps_ = 0;                        ///< in succession
+    UnbalancedBlocks unbalanced_;                ///< where the body as a whole meets the tolerance
     std::array<std::vector<int>, 4> restless_{}; ///< blocks, of each of the last iterations
 };
 
 } // namespace
 
 OpenCloseSummary OpenCloseSolver::solve(const EquilibriumProblem& problem, const BlockPattern& pattern,
-                                        Eigen::VectorXd& q, bool unloaded, Aim aim) {
+                                        Eigen::VectorXd& q, const IterationGoal& goal) {
     Equations equations(problem, pattern);
     const Coordinates& coordinates = equations.evaluator.coordinates();
     Search search(equations, residual_seconds_);
     OpenCloseSummary summary;
-    StoppingTest stopping(options_, aim, summary);
+    StoppingTest stopping(options_, goal, summary);
     Iterate at;
     for (;;) {
         evaluate(equations, q, residual_seconds_, at);
         if (stopping.ends(equations, q, at)) return summary;
         const bool first = summary.iterations == 0;
         const bool touching =
-            first && unloaded && !problem.body.placement->contacts.empty(); // a bonded body has its stiffness
-        const NewtonPoint point{equations.evaluator, equations.border, q,
-                                at.residual,         at.prescribed,    options_.tolerance};
+            first && goal.unloaded && !problem.body.placement->contacts.empty(); // a bonded body has its stiffness
+        const NewtonPoint point{equations.evaluator, equations.border,           q, at.residual, at.prescribed,
+                                options_.tolerance,  stopping.largest_residual()};
         if (!newton_.find(point, touching ? TangentKind::touching : options_.tangent)) {
             summary.termination = Termination::singular;
             return summary;

@@ -123,6 +123,13 @@ void external_forces(const LoadedBody& body, const Eigen::VectorXd& q, Eigen::Ve
                           [&](int block, const Vec2& xi, const Vec2& force) { add_force(result, block, xi, force); });
 }
 
+std::vector<double> load_magnitudes(const LoadedBody& body, const Eigen::VectorXd& q) {
+    std::vector<double> result(body.system->blocks.size());
+    for (int b = 0; b < body.system->n_blocks(); ++b) result[b] = weight_of(body, b).norm();
+    for_each_surface_load(body, q, [&](int block, const Vec2&, const Vec2& force) { result[block] += force.norm(); });
+    return result;
+}
+
 PointTraction contact_traction(const std::vector<InterfaceLaw>& laws, const ContactPoint& point,
                                const Eigen::VectorXd& q) {
     const auto [gap, slip] = gap_and_slip(point, q);

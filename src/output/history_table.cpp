@@ -36,6 +36,7 @@ void visit_columns(Record& record, Visit&& visit) {
     visit("open_close_iterations", record.open_close_iterations);
     visit("crack_passes", record.crack_passes);
     visit("unbalanced_ratio", record.unbalanced_ratio);
+    visit("balance_error", record.balance_error);
     visit("balanced", record.balanced);
     visit("elapsed_s", record.elapsed_s);
 }

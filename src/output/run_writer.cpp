@@ -198,6 +198,7 @@ RunSummary RunWriter::summary_of(const RunOutcome& outcome) const {
     summary.version = outcome.version;
     summary.message = outcome.report.diagnosis;
     summary.results = outcome.report.results;
+    summary.falling = outcome.report.falling;
     summary.motion = outcome.report.motion;
     return summary;
 }

@@ -132,16 +132,19 @@ void add_counts(const Rows& history, CurveNumbers& numbers) {
     numbers.cracks_shear = history.back().cracks_shear;
 }
 
-constexpr std::array statuses{
-    std::pair{RunStatus::done, "done"}, std::pair{RunStatus::no_equilibrium, "no_equilibrium"},
-    std::pair{RunStatus::collapsed, "collapsed"}, std::pair{RunStatus::out_of_resources, "out_of_resources"},
-    std::pair{RunStatus::interrupted, "interrupted"}};
+constexpr std::array statuses{std::pair{RunStatus::done, "done"},
+                              std::pair{RunStatus::no_equilibrium, "no_equilibrium"},
+                              std::pair{RunStatus::unbalanced, "unbalanced"},
+                              std::pair{RunStatus::collapsed, "collapsed"},
+                              std::pair{RunStatus::out_of_resources, "out_of_resources"},
+                              std::pair{RunStatus::interrupted, "interrupted"}};
 
 RunStatus status_of(const std::string& name) {
     for (const auto& [status, text] : statuses)
         if (name == text) return status;
-    throw InputError("status: expected done, no_equilibrium, collapsed, out_of_resources or interrupted, found '" +
-                     name + "'");
+    throw InputError(
+        "status: expected done, no_equilibrium, unbalanced, collapsed, out_of_resources or interrupted, found '" +
+        name + "'");
 }
 
 std::optional<double> optional_number(const Json& json, const char* key) {
@@ -180,6 +183,12 @@ RunSummary summary_in(const Json& json) {
     if (json.contains("cpu_s")) summary.cpu_s = optional_number(json, "cpu_s").value_or(0.0);
     json.at("peak_memory_bytes").get_to(summary.peak_memory_bytes);
     json.at("version").get_to(summary.version);
+    for (const Json& each : json.value("falling_blocks", Json::array())) {
+        const Json& direction = each.at("direction");
+        summary.falling.push_back(
+            {each.at("block").get<std::string>(), each.at("stage").get<int>(), each.at("load_factor").get<double>(),
+             Vec2(direction.at(0).get<double>(), direction.at(1).get<double>()), each.at("turn").get<int>()});
+    }
     const Json& times = json.at("seconds");
     visit_seconds(summary.costs.seconds, [&](const char* name, double& seconds) {
         if (times.contains(name)) seconds = optional_number(times, name).value_or(0.0);
@@ -269,6 +278,13 @@ std::string summary_json(const RunSummary& summary) {
     json["elapsed_s"] = json_number(summary.costs.elapsed_s);
     json["cpu_s"] = json_number(summary.cpu_s);
     json["peak_memory_bytes"] = summary.peak_memory_bytes;
+    json["falling_blocks"] = Json::array();
+    for (const FallingBlock& each : summary.falling)
+        json["falling_blocks"].push_back({{"block", each.block},
+                                          {"stage", each.stage},
+                                          {"load_factor", each.load_factor},
+                                          {"direction", {each.direction.x(), each.direction.y()}},
+                                          {"turn", each.turn}});
     json["platen_stage"] = summary.platen_stage ? Json(*summary.platen_stage) : Json(nullptr);
     json["version"] = summary.version;
     json["message"] = summary.message;

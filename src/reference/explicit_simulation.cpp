@@ -61,7 +61,8 @@ public:
                 begin_stage();
                 const StageEnd end = run_stage();
                 const bool last = state_.at.stage + 1 == static_cast<int>(model_.loads.stages.size());
-                if (end.failure || last) return journal_.ended(state_, end);
+                const bool unbalanced = !has_platen_velocity() && state_.unbalanced_in_succession > 0;
+                if (end.failure || last || unbalanced) return journal_.ended(state_, end);
                 leave_stage(model_, loads, motion_.loads(), motion_.evaluate().forces, state_);
                 state_.costs = journal_.costs();
             }

@@ -656,7 +656,9 @@ std::vector<KeyRule> option_rules() {
          .type = KeyType::number,
          .range = between_zero_and_one,
          .fallback = "1e-3",
-         .doc = "Largest share of the mass-like term in the reference force of a balanced step."},
+         .doc = "What may be left over on a block of a balanced step, or on blocks that hold together, relative to its "
+                "own "
+                "force: that of its loads, of a block without any that of its contacts."},
         {.path = "solver.accuracy",
          .type = KeyType::number,
          .range = between_zero_and_one,

@@ -7,8 +7,10 @@ namespace kluft {
 
 namespace {
 
-constexpr double balance_rounds_per_digit = 4.0; ///< of the share that is asked for
-constexpr double least_balance_progress = 0.7;   ///< of the viscous share per round, else the body is moving
+constexpr double eta_decay = 0.1;      ///< from round to round: what a body that stands leaves over falls with it
+constexpr int rounds_with_decay = 4;   ///< then it stays: what nothing else holds needs it
+constexpr int max_rounds = 40;         ///< of one search, as long as what is left over falls
+constexpr double share_of_solve = 0.1; ///< of what may be left over on a block: largest residual of a solve
 
 OpenCloseOptions open_close_options(const SolverOptions& solver) {
     OpenCloseOptions options;
@@ -23,6 +25,11 @@ OpenCloseOptions open_close_options(const SolverOptions& solver) {
 double viscous_share(const EquilibriumProblem& problem, const Eigen::VectorXd& q, double force_scale) {
     const double force = viscous_force(problem, q);
     return force > 0.0 ? force / std::max(force_scale, 1e-300) : 0.0;
+}
+
+/// Each block and group, and the mass-like term, which holds strains of blocks back too.
+bool is_balanced(const Equilibrium& found, const BlockGoal& goal) {
+    return found.verdict.balanced() && found.viscous_share <= goal.share;
 }
 
 } // namespace
@@ -48,49 +55,54 @@ void EquilibriumSearch::order_for(std::vector<std::pair<int, int>> near_pairs) {
     linear_.analyze(pattern_);
 }
 
-Equilibrium EquilibriumSearch::find(EquilibriumProblem problem, Eigen::VectorXd guess, const Balance& balance,
+Equilibrium EquilibriumSearch::find(EquilibriumProblem problem, Eigen::VectorXd guess, const BlockGoal& balance,
                                     bool unloaded) {
     Equilibrium found;
     found.displacement = std::move(guess);
-    found.summary = open_close_.solve(problem, pattern_, found.displacement, unloaded);
+    found.summary = open_close_.solve(problem, pattern_, found.displacement,
+                                      {.unloaded = unloaded, .block_tolerance = share_of_solve * balance.share});
     found.iterations = found.summary.iterations;
     found.worst_block = found.summary.worst_block;
     if (found.converged()) settle(problem, balance, found);
-    found.start = std::move(problem.start);
     return found;
 }
 
-/// The mass-like term must not change the answer: solve again from the result until its share is small, and until it
-/// falls or is that of a body at rest.
-void EquilibriumSearch::settle(EquilibriumProblem& problem, const Balance& balance, Equilibrium& found) {
+/// The mass-like term must not change the answer: solve again from the result until what is left over on each block is
+/// small, or does not fall any more.
+void EquilibriumSearch::settle(EquilibriumProblem& problem, const BlockGoal& balance, Equilibrium& found) {
     found.viscous_share = viscous_share(problem, found.displacement, found.summary.force_scale);
-    const int max_rounds = static_cast<int>(std::ceil(-balance_rounds_per_digit * std::log10(balance.share)));
-    bool settles = found.viscous_share <= balance.rest_share;
-    for (int round = 0; round < max_rounds && (found.viscous_share > balance.share || !settles); ++round) {
+    found.blocks = block_balance(problem.body, found.displacement);
+    found.verdict = judge_blocks(found.blocks, nullptr, balance);
+    const IterationGoal goal{.block_tolerance = share_of_solve * balance.share};
+    for (int round = 0; round < max_rounds && !is_balanced(found, balance); ++round) {
         problem.start = found.displacement;
+        if (round < rounds_with_decay)
+            for (double& eta : problem.eta) eta *= eta_decay;
         Eigen::VectorXd next = found.displacement;
-        OpenCloseSummary summary = open_close_.solve(problem, pattern_, next);
+        OpenCloseSummary summary = open_close_.solve(problem, pattern_, next, goal);
         found.iterations += summary.iterations;
         if (!summary.converged()) break;
-        const double share = viscous_share(problem, next, summary.force_scale);
-        const bool stalls = share > least_balance_progress * found.viscous_share;
+        BlockBalance blocks = block_balance(problem.body, next);
+        found.verdict = judge_blocks(blocks, &found.blocks, balance);
+        if (!found.verdict.balanced() && !found.verdict.falls) break;
+        found.blocks = std::move(blocks);
+        found.viscous_share = viscous_share(problem, next, summary.force_scale);
         found.displacement = std::move(next);
         found.summary = std::move(summary);
-        found.viscous_share = share;
-        settles = !stalls || share <= balance.rest_share;
-        if (stalls) break;
     }
-    found.balanced = settles && found.viscous_share <= balance.share;
+    found.balanced = is_balanced(found, balance);
 }
 
-Equilibrium EquilibriumSearch::move_on(EquilibriumProblem problem, bool unloaded) {
+Equilibrium EquilibriumSearch::move_on(EquilibriumProblem problem, const BlockGoal& balance, bool unloaded) {
     Equilibrium moved;
     moved.displacement = problem.start;
-    moved.summary = open_close_.solve(problem, pattern_, moved.displacement, unloaded, Aim::relaxation);
+    moved.summary = open_close_.solve(
+        problem, pattern_, moved.displacement,
+        {.aim = Aim::relaxation, .unloaded = unloaded, .block_tolerance = share_of_solve * balance.share});
     moved.iterations = moved.summary.iterations;
     moved.worst_block = moved.summary.worst_block;
     moved.viscous_share = viscous_share(problem, moved.displacement, moved.summary.force_scale);
-    moved.start = std::move(problem.start);
+    moved.blocks = block_balance(problem.body, moved.displacement);
     return moved;
 }
 

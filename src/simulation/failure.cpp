@@ -1,5 +1,7 @@
 #include "kluft/simulation/failure.hpp"
 
+#include <set>
+
 #include <fmt/format.h>
 
 #include "kluft/blocks/block_search.hpp"
@@ -19,7 +21,25 @@ std::string block_description(const BlockSystem& system, int index) {
     return text;
 }
 
+std::set<int> blocks_of(const std::vector<MovingBlock>& moving) {
+    std::set<int> blocks;
+    for (const MovingBlock& each : moving) blocks.insert(each.block);
+    return blocks;
+}
+
 } // namespace
+
+std::string description(const Model& model, const std::vector<MovingBlock>& moving) {
+    if (moving.empty()) return "";
+    const auto& [block, direction, turn] = moving.front();
+    std::string text = block_description(model.system, block);
+    text += direction.norm() > 0.0 ? fmt::format(" moves towards ({:.2g}, {:.2g})", direction.x(), direction.y())
+                                   : std::string(" turns");
+    if (turn != 0 && direction.norm() > 0.0) text += " and turns";
+    const std::set<int> all = blocks_of(moving);
+    if (all.size() > 1) text += fmt::format(", and {} more", all.size() - 1);
+    return text;
+}
 
 std::string description(const Model& model, const Failure& failure) {
     if (!failure.what.empty()) return failure.what;
@@ -27,6 +47,7 @@ std::string description(const Model& model, const Failure& failure) {
     if (failure.strength_factor != 1.0)
         text += fmt::format("; with the strengths divided by {:.6g}", failure.strength_factor);
     if (failure.nothing_holds) text += "; nothing holds the body, which has neither a support nor a platen";
+    if (!failure.moving.empty()) return text + "; " + description(model, failure.moving);
     if (failure.worst_block >= 0) text += "; worst is " + block_description(model.system, failure.worst_block);
     return text;
 }

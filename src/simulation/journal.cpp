@@ -11,6 +11,23 @@
 
 namespace kluft {
 
+namespace {
+
+std::vector<FallingBlock> falling_blocks(const Model& model, const State& state,
+                                         const std::vector<MovingBlock>& moving) {
+    std::vector<FallingBlock> falling;
+    std::vector<char> named(model.system.blocks.size(), 0);
+    for (const MovingBlock& each : moving) {
+        if (std::exchange(named[each.block], 1)) continue;
+        const auto& names = model.system.block_names;
+        falling.push_back({names.empty() ? std::to_string(each.block) : names[each.block], state.at.stage,
+                           state.at.load_factor, each.direction, each.turn});
+    }
+    return falling;
+}
+
+} // namespace
+
 Journal::Journal(const Model& model, const State& state, StepObserver& observer, int n_steps,
                  const EquilibriumSearch* search)
     : model_(model), observer_(observer), search_(search), gauges_(make_gauges(model)), n_steps_(n_steps) {
@@ -70,16 +87,24 @@ void Journal::progress(const State& state, const StepRecord& row, double load_fa
 }
 
 RunReport Journal::ended(const State& state, const StageEnd& end) const {
-    if (!end.failure) return cut_short(RunStatus::done, "");
+    if (!end.failure && state.unbalanced_in_succession == 0) return cut_short(RunStatus::done, "");
     const Stage& stage = model_.loads.stages[state.at.stage];
+    if (!end.failure) {
+        std::string why = fmt::format("stage {} ends out of balance", state.at.stage);
+        if (!end.moving.empty()) why += ": " + description(model_, end.moving);
+        RunReport report = cut_short(RunStatus::unbalanced, std::move(why));
+        report.falling = falling_blocks(model_, state, end.moving);
+        return report;
+    }
     const bool has_stood = state.at.stage > 0 || state.at.step_in_stage > 0; // through a whole load step
-    const bool past_strength = end.failure->may_be_collapse() && is_loaded_by_stress(stage) && has_stood;
+    const bool past_limit = end.failure->may_be_collapse() && is_platen_loaded_by_stress(stage) && has_stood;
     std::string why = fmt::format("no equilibrium in stage {} at load step {}: {}", state.at.stage, end.step,
                                   description(model_, *end.failure));
     if (end.factor_of_safety) why = fmt::format("factor of safety {:.6g}; beyond it {}", *end.factor_of_safety, why);
-    RunReport report = cut_short(
-        end.factor_of_safety || past_strength ? RunStatus::collapsed : RunStatus::no_equilibrium, std::move(why));
+    RunReport report = cut_short(end.factor_of_safety || past_limit ? RunStatus::collapsed : RunStatus::no_equilibrium,
+                                 std::move(why));
     report.results.factor_of_safety = end.factor_of_safety;
+    report.falling = falling_blocks(model_, state, end.failure->moving);
     return report;
 }
 
@@ -109,7 +134,7 @@ void commit(Step step, StepKind kind, State& state, Journal& journal) {
 }
 
 StageEnd commit_balanced_part(Step step, State& state, Journal& journal) {
-    StageEnd end{step.failure, state.at.step + 1, {}, {}};
+    StageEnd end{.failure = step.failure, .step = state.at.step + 1};
     journal.warn(step, end.step);
     if (!step.equilibria.empty()) commit(std::move(step), {.regular = false}, state, journal);
     return end;

@@ -81,9 +81,11 @@ void begin_load_step(const StepBench& bench) {
 StageEnd commit_regular_step(const StepBench& bench, Step step, bool last_of_stage, State& state) {
     Failure failure{.worst_block = step.worst_block,
                     .residual_ratio = step.worst_share,
-                    .strength_factor = step.in_place.at.strength_factor};
+                    .strength_factor = step.in_place.at.strength_factor,
+                    .moving = step.moving};
     StageEnd end;
     end.forces = std::move(step.forces);
+    end.moving = step.moving;
     commit(std::move(step), {.last_of_stage = last_of_stage}, state, bench.journal);
     end.step = state.at.step + 1;
     if (state.unbalanced_in_succession >= bench.solver.max_unbalanced_steps) end.failure = std::move(failure);

@@ -13,6 +13,7 @@ namespace {
 constexpr double growth = 16.0; ///< of eta on the blocks that stop the iteration
 constexpr double decay = 4.0;   ///< after a solve in a few iterations, also of later load steps
 constexpr double largest_factor = 4.0e6;
+constexpr double least_factor = 1e-4; ///< of blocks on their way in a relaxation
 
 /// The group of bonded blocks that each block belongs to, named by one of them.
 class BondedGroups {
@@ -77,6 +78,8 @@ bool grow_mass(const std::vector<int>& blocks, std::vector<double>& factors) {
     if (blocks.empty()) std::ranges::for_each(factors, grow);
     return grown;
 }
+
+void quicken(double& factor) { factor = std::max(least_factor, factor / decay); }
 
 void decay_mass(std::vector<double>& factors) {
     bool any = false;

@@ -25,7 +25,7 @@ MeasuredState measure_state(const StepBench& bench, const State& state, double l
     PlacedState placed = place(p);
     LoadsAt at = p.loads_at(load_factor);
     Equilibrium standing;
-    standing.displacement = standing.start = state.body.displacement;
+    standing.displacement = state.body.displacement;
     standing.balanced = true;
     MeasuredState result;
     result.measured = measure(p, placed, at, standing);
@@ -95,7 +95,7 @@ RunReport run_simulation(const Model& model, const CrackOptions& cracks, const S
             if (state.at.step == 0 && state.at.stage == 0) tell_initial_state(bench, state);
             StageEnd end = run_stage(bench, state);
             const bool last = state.at.stage + 1 == static_cast<int>(model.loads.stages.size());
-            if (end.failure || last) return journal.ended(state, end);
+            if (end.failure || last || state.unbalanced_in_succession > 0) return journal.ended(state, end);
             end_stage(bench, std::move(end.forces), state);
         }
     });

@@ -157,13 +157,14 @@ void reach(StepInProgress& p, PlacedState placed, const Equilibrium& found) {
     step.worst_share = std::max(step.worst_share, found.viscous_share);
     note_stresses(p, loaded_body(p.bench.model, placed.placement, at));
     step.equilibria.push_back(step.row);
+    step.moving = found.verdict.moving;
     step.in_place = {std::move(placed.placement), std::move(at)};
     if (found.balanced) step.balanced_part.reset();
 }
 
 Measured measure(const StepInProgress& p, const PlacedState& placed, const LoadsAt& at, const Equilibrium& found) {
     const auto& [model, cracks, solver, loads, search, journal, stop] = p.bench;
-    const EquilibriumProblem problem = pose(model, placed, at, found.start);
+    const EquilibriumProblem problem{loaded_body(model, placed.placement, at), {}, 0.0, {}};
     Measured result;
     result.forces = search.forces(problem, found.displacement);
     StepRecord& row = result.row;
@@ -171,6 +172,7 @@ Measured measure(const StepInProgress& p, const PlacedState& placed, const Loads
     row.open_close_iterations = journal.report().costs.open_close_iterations - p.goal.solves_before;
     row.crack_passes = p.step.crack_passes;
     row.unbalanced_ratio = found.viscous_share;
+    row.balance_error = found.verdict.error;
     row.balanced = found.balanced;
     row.elapsed_s = journal.elapsed();
     if (reduction_of(model.loads, 0) != nullptr) row.strength_factor = at.strength_factor;
@@ -182,7 +184,8 @@ void fail(StepInProgress& p, const Equilibrium& found, double residual_ratio, Fa
                              .worst_block = found.worst_block,
                              .residual_ratio = residual_ratio,
                              .strength_factor = found.strength_factor,
-                             .nothing_holds = p.bench.loads.constraints().rows().empty()};
+                             .nothing_holds = p.bench.loads.constraints().rows().empty(),
+                             .moving = found.verdict.moving};
 }
 
 void keep_rate(StepInProgress& p) {

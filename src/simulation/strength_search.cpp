@@ -12,13 +12,12 @@ namespace kluft {
 namespace {
 
 constexpr double reduction_balance = 0.1;   ///< of the tolerance of a factor of safety: largest `balance`
-constexpr double reduction_residual = 0.01; ///< of it: largest `tolerance`, and the share of a body that rests
+constexpr double reduction_residual = 0.01; ///< of it: largest `tolerance`
 
 StepGoal goal_with_strengths_of(const StepBench& bench, const State& state, double load_factor) {
     const double tolerance = bench.stage(state).strength_reduction->tolerance;
     StepGoal goal = goal_at(bench, load_factor, bench.model.has_potential_cracks);
     goal.balance.share = std::min(bench.solver.balance, reduction_balance * tolerance);
-    goal.balance.rest_share = reduction_residual * tolerance;
     goal.must_rest = true;
     return goal;
 }
@@ -63,7 +62,7 @@ StageEnd find_strength_limit(const StepBench& bench, State& state) {
     StageEnd end;
     std::vector<StepRecord> before; // equilibria that are not told yet
     if (state.at.load_factor == 0.0) end.failure = find_initial_equilibrium(bench, state, before);
-    if (end.failure) return {end.failure, state.at.step + 1, {}, {}};
+    if (end.failure) return {.failure = end.failure, .step = state.at.step + 1};
     double failing = 1.0; // load factor
     while (!end.failure && state.at.step_in_stage < n_steps) {
         failing = static_cast<double>(state.at.step_in_stage + 1) / n_steps;

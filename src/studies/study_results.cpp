@@ -117,7 +117,8 @@ bool judge_summary(const Json& summary, CaseResult& result) {
         result.status = CaseStatus::done;
         return true;
     }
-    if (status != status_name(RunStatus::no_equilibrium)) return false;
+    const bool ended = status == status_name(RunStatus::no_equilibrium) || status == status_name(RunStatus::unbalanced);
+    if (!ended) return false;
     result.status = CaseStatus::no_equilibrium;
     const auto message = value_or(summary, "message", std::string{});
     result.reason = message.substr(0, message.find('\n'));

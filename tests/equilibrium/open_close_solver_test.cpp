@@ -15,7 +15,7 @@ OpenCloseSummary solve(const PressedBody& body, Eigen::VectorXd& q, const OpenCl
     const BlockPattern pattern = pattern_of(body.problem);
     LinearSolver linear;
     linear.analyze(pattern);
-    return OpenCloseSolver(linear, options).solve(body.problem, pattern, q, true);
+    return OpenCloseSolver(linear, options).solve(body.problem, pattern, q, {.unloaded = true});
 }
 
 /// The same equilibrium by another method: Newton on the dense system with a Lagrange multiplier for every row and the

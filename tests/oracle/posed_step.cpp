@@ -86,7 +86,7 @@ PosedStep::Solution PosedStep::solve_by_open_close(double tolerance, double bala
     do {
         problem_.start = solution.q;
         const auto summary =
-            solver.solve(problem_, pattern_, solution.q, unloaded && solution.rounds == 0, Aim::equilibrium);
+            solver.solve(problem_, pattern_, solution.q, {.unloaded = unloaded && solution.rounds == 0});
         ++solution.rounds;
         solution.iterations += summary.iterations;
         solution.residual_ratio = summary.residual_ratio;

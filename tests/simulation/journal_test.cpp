@@ -153,8 +153,10 @@ TEST(BalancedPart, OfAStepWithoutEquilibriumIsNothing) {
     EXPECT_TRUE(run.told.rows.empty() && run.told.equilibria.empty());
 }
 
-TEST(Ending, IsACollapseOnlyUnderStressAndAfterTheFirstLoadStep) {
-    const MadeUpRun run;
+TEST(Ending, IsACollapseOnlyUnderThePlatensStressAndAfterTheFirstLoadStep) {
+    MadeUpRun run;
+    Stage& stage = run.model.loads.stages.front();
+    stage.motion = PlatenMotion{PlatenControl::stress, 2, 1e6};
     const auto status_of = [&](Failure failure, int step, std::optional<double> factor = std::nullopt) {
         State state = run.state;
         state.at.step_in_stage = step - 1; // whole load steps before the one that failed
@@ -167,6 +169,19 @@ TEST(Ending, IsACollapseOnlyUnderStressAndAfterTheFirstLoadStep) {
     EXPECT_EQ(status_of({}, 1), RunStatus::no_equilibrium);
     EXPECT_EQ(status_of({}, 1, 1.5), RunStatus::collapsed); // what a strength reduction looks for
     EXPECT_EQ(run.journal.ended(run.state, {}).status, RunStatus::done);
+    stage.motion.reset(); // nobody asked for the limit
+    EXPECT_EQ(status_of({}, 2), RunStatus::no_equilibrium);
+    EXPECT_EQ(status_of({}, 2, 1.5), RunStatus::collapsed);
+}
+
+TEST(Ending, InAStepThatIsNotBalancedIsNotDone) {
+    MadeUpRun run;
+    commit(run.step_to(0.25, false), {}, run.state, run.journal);
+    const RunReport report = run.journal.ended(run.state, {.moving = {{0, Vec2(0, -1)}}});
+    EXPECT_EQ(report.status, RunStatus::unbalanced);
+    EXPECT_THAT(report.diagnosis, StartsWith("stage 0 ends out of balance: block 0 at (0.5, 0.5)"));
+    ASSERT_EQ(report.falling.size(), 1U);
+    EXPECT_EQ(report.falling.front().direction, Vec2(0, -1));
 }
 
 TEST(Ending, SaysWhereTheRunEndedAndAtWhichFactorOfSafety) {
@@ -196,12 +211,14 @@ TEST(Ending, OfARunThatIsCutShortIsAStatusToo) {
 
 TEST(Failure, NamesTheBlockWithItsInterfaces) {
     const Model model = posed::two_bonded_blocks(1e5);
-    const std::string text = description(model, {.worst_block = 1, .residual_ratio = 0.5, .strength_factor = 1.25});
+    const std::string text =
+        description(model, Failure{.worst_block = 1, .residual_ratio = 0.5, .strength_factor = 1.25});
     EXPECT_EQ(text, "residual 0.5 of the forces; with the strengths divided by 1.25; worst is block " +
                         text.substr(text.find("block ") + 6));
     EXPECT_THAT(text, ::testing::HasSubstr("at (0.5, 1.5), area 1 m2, interfaces 0"));
-    EXPECT_THAT(description(model, {.nothing_holds = true}), ::testing::HasSubstr("neither a support nor a platen"));
-    EXPECT_EQ(description(model, {.what = "the body flows"}), "the body flows");
+    EXPECT_THAT(description(model, Failure{.nothing_holds = true}),
+                ::testing::HasSubstr("neither a support nor a platen"));
+    EXPECT_EQ(description(model, Failure{.what = "the body flows"}), "the body flows");
 }
 
 } // namespace

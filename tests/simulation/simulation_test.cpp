@@ -240,7 +240,7 @@ geometry:
   domain: {rectangle: {width: 0.2, height: 0.4}}
   fractures: [{name: main, trace: [[0.0, 0.0], [0.25, 0.4]], interface: joint}]
   tessellation: {hexagons: {spacing: 0.05}, interface: bond}
-boundaries: {bottom: {support: smooth}}
+boundaries: {bottom: {support: pinned}}
 stages:
   - {name: pressure, pressure: {left: 0.1 MPa, right: 0.1 MPa, top: 0.1 MPa}, steps: 2}
   - {name: platen, strain: {boundary: top, value: 0.02}, platens: smooth, steps: 20}

@@ -235,7 +235,7 @@ TEST(SlowStepControl, PeakOfACrackingSampleIsMetToTheAccuracyFromAnyFirstStep) {
         const auto run = run_scene(sample(steps, "solver: {accuracy: 0.01}"));
         ASSERT_EQ(run.report.status, RunStatus::done);
         EXPECT_NEAR(peak_of(run), reference, 0.01 * reference) << steps;
-        EXPECT_LT(run.report.costs.open_close_iterations, 400) << steps;
+        EXPECT_LT(run.report.costs.open_close_iterations, 500) << steps;
     }
 }
 

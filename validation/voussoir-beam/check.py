@@ -45,7 +45,7 @@ def run_with(case, pieces, half_span):
     stage = histories["stage"].astype(int)
     gravity = ends[stage] + (ends[stage + 1] - ends[stage]) * histories["load_factor"]
     rest = run.history["balanced"] == 1
-    stands = run.summary["status"] != "collapsed"  # to the end: no limit found
+    stands = run.summary["status"] == "done"  # to the end: no limit found
     step = (ends[2] - ends[1]) / 80
     rows = slice(1, int(rest.sum()))
     sag = -half_span * np.sin(histories["left.rotation"][rows])

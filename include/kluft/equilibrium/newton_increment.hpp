@@ -2,6 +2,7 @@
 // platen's travel in it.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include <Eigen/Core>
@@ -22,6 +23,7 @@ struct NewtonPoint {
     const Eigen::VectorXd&
         prescribed;         ///< change of the unknowns that prescribed displacements ask for; zero: they hold
     double tolerance = 0.0; ///< of |R|/F_ref: near equilibrium a linear solve leaves less
+    double largest_residual = std::numeric_limits<double>::infinity(); ///< of a linear solve (N/m)
 };
 
 struct NewtonOptions {

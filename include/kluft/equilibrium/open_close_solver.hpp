@@ -1,6 +1,7 @@
 // Open-close iteration: Newton's method on the one residual, with contact states following from the displacements.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include <Eigen/Core>
@@ -22,6 +23,16 @@ struct OpenCloseOptions {
 enum class Aim {
     equilibrium, ///< to the tolerance
     relaxation   ///< a step on the way: a residual well below the mass-like forces is enough, and few iterations
+};
+
+/// What a solve is to come to.
+struct IterationGoal {
+    Aim aim = Aim::equilibrium;
+    /// The body's contacts carry no force yet and therefore have no stiffness: the first increment takes the touching
+    /// ones as closed.
+    bool unloaded = false;
+    /// Largest residual of a block over its own force (block_balance.hpp), beside the tolerance for all together.
+    double block_tolerance = std::numeric_limits<double>::infinity();
 };
 
 enum class Termination {
@@ -47,10 +58,9 @@ public:
         : options_(options), newton_(linear_solver, {options.reuse, options.motion_limit}) {}
 
     /// Newton with root finding on R . dq from the guess q, which becomes the last iterate. The linear solver must
-    /// have analysed `pattern`. From an `unloaded` body, whose contacts carry no force yet and therefore have no
-    /// stiffness, the first increment takes the touching ones as closed.
+    /// have analysed `pattern`.
     OpenCloseSummary solve(const EquilibriumProblem& problem, const BlockPattern& pattern, Eigen::VectorXd& q,
-                           bool unloaded = false, Aim aim = Aim::equilibrium);
+                           const IterationGoal& goal = {});
 
     void set_tolerance(double tolerance) { options_.tolerance = tolerance; }
 

@@ -67,6 +67,9 @@ void body_forces(const LoadedBody& body, const Eigen::VectorXd& q, BodyForces& r
 /// The external forces at q alone: weights, pressures and point loads, without the supports' (N/m).
 void external_forces(const LoadedBody& body, const Eigen::VectorXd& q, Eigen::VectorXd& result);
 
+/// The sum of the magnitudes of weight, pressures and point loads at q, per block (N/m).
+[[nodiscard]] std::vector<double> load_magnitudes(const LoadedBody& body, const Eigen::VectorXd& q);
+
 struct GapAndSlip {
     double gap = 0.0;  ///< total (m)
     double slip = 0.0; ///< since the history was kept (m)

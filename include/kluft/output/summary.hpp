@@ -64,6 +64,7 @@ struct RunSummary {
     std::string version;
     std::string message; ///< why the run ended, if not done
     RunResults results;
+    std::vector<FallingBlock> falling;  ///< blocks that move where the run has ended
     std::optional<MotionReport> motion; ///< of an explicit run
 };
 

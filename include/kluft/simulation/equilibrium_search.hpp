@@ -1,7 +1,6 @@
 // The search for one equilibrium: open-close iteration, repeated until the mass-like term no longer changes the answer.
 #pragma once
 
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -9,6 +8,7 @@
 
 #include "kluft/assembly/block_matrix.hpp"
 #include "kluft/assembly/linear_solver.hpp"
+#include "kluft/equilibrium/block_balance.hpp"
 #include "kluft/equilibrium/equilibrium_problem.hpp"
 #include "kluft/equilibrium/open_close_solver.hpp"
 #include "kluft/simulation/model.hpp"
@@ -17,21 +17,15 @@
 
 namespace kluft {
 
-/// How near to balance an equilibrium must come.
-struct Balance {
-    double share = 1e-3; ///< largest share of the mass-like term in F_ref
-    /// A share that does not fall from one solve to the next is the motion of a body that slides, unless it is below this.
-    double rest_share = std::numeric_limits<double>::infinity();
-};
-
 /// What was found at one load level.
 struct Equilibrium {
     Eigen::VectorXd displacement; ///< size 6 n_blocks (m)
-    Eigen::VectorXd start;        ///< q_start of the mass-like term in the last solve (m)
     OpenCloseSummary summary;     ///< of the last solve
     double load_factor = 0.0;     ///< of the stage
     double strength_factor = 1.0; ///< F that strengths are divided by
     double viscous_share = 0.0;   ///< of the mass-like term in F_ref
+    BlockBalance blocks;          ///< what is left over on them; empty where the iteration did not converge
+    BlockVerdict verdict;         ///< on that
     int iterations = 0;           ///< linear solves of all solves
     int worst_block = -1;         ///< with the largest residual in the first solve
     bool balanced = false;
@@ -58,10 +52,10 @@ public:
     void order_for(std::vector<std::pair<int, int>> near_pairs);
 
     /// Solves from `guess`, and again from the result, until the mass-like term is small (docs/theory.md, balance).
-    [[nodiscard]] Equilibrium find(EquilibriumProblem problem, Eigen::VectorXd guess, const Balance& balance,
+    [[nodiscard]] Equilibrium find(EquilibriumProblem problem, Eigen::VectorXd guess, const BlockGoal& balance,
                                    bool unloaded);
     /// One step of a relaxation from the problem's start.
-    [[nodiscard]] Equilibrium move_on(EquilibriumProblem problem, bool unloaded);
+    [[nodiscard]] Equilibrium move_on(EquilibriumProblem problem, const BlockGoal& balance, bool unloaded);
 
     /// Internal - external forces at q, that of the mass-like term included, without the supports' (N/m).
     [[nodiscard]] Eigen::VectorXd forces(const EquilibriumProblem& problem, const Eigen::VectorXd& q) const;
@@ -70,7 +64,7 @@ public:
     void add_costs(RunCosts& costs) const;
 
 private:
-    void settle(EquilibriumProblem& problem, const Balance& balance, Equilibrium& found);
+    void settle(EquilibriumProblem& problem, const BlockGoal& balance, Equilibrium& found);
 
     const Model& model_;
     std::vector<std::pair<int, int>> near_pairs_;

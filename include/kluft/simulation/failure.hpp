@@ -2,7 +2,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "kluft/blocks/moving_block.hpp"
 #include "kluft/simulation/model.hpp"
 
 namespace kluft {
@@ -15,15 +17,19 @@ enum class FailureKind {
 
 struct Failure {
     FailureKind kind = FailureKind::no_equilibrium;
-    int worst_block = -1;         ///< with the largest residual; -1 where none was computed
-    double residual_ratio = 0.0;  ///< what is left, over F_ref
-    double strength_factor = 1.0; ///< F that strengths were divided by
-    bool nothing_holds = false;   ///< the body, which has neither a support nor a platen
-    std::string what;             ///< in place of all that, of a broken body or a motion
+    int worst_block = -1;            ///< with the largest residual; -1 where none was computed
+    double residual_ratio = 0.0;     ///< what is left, over F_ref
+    double strength_factor = 1.0;    ///< F that strengths were divided by
+    bool nothing_holds = false;      ///< the body, which has neither a support nor a platen
+    std::vector<MovingBlock> moving; ///< blocks that are not balanced, the worst first
+    std::string what;                ///< in place of all that, of a broken body or a motion
 
     /// Whether the body may just have reached what it carries, where its load is a stress.
     [[nodiscard]] bool may_be_collapse() const { return !nothing_holds && kind != FailureKind::broken_body; }
 };
+
+/// In words the blocks that move and where to; "" without any.
+[[nodiscard]] std::string description(const Model& model, const std::vector<MovingBlock>& moving);
 
 /// In words that follow "no equilibrium in stage 1 at load step 7: ", with the block and its interfaces.
 [[nodiscard]] std::string description(const Model& model, const Failure& failure);

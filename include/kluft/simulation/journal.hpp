@@ -5,6 +5,7 @@
 #include <new>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -28,6 +29,7 @@ struct StageEnd {
     std::optional<Failure> failure;         ///< the run ends here
     int step = 0;                           ///< the load step that failed or comes next, through all stages
     std::optional<double> factor_of_safety; ///< the failure is what was looked for
+    std::vector<MovingBlock> moving;        ///< after a last load step that is not balanced
     Eigen::VectorXd forces; ///< at the end, internal - external without the supports' (N/m); empty without a load step
 };
 

@@ -25,6 +25,9 @@ namespace kluft {
 /// if nothing is left to grow.
 bool grow_mass(const std::vector<int>& blocks, std::vector<double>& factors);
 
+/// Divides the factor of a block on its way by 4, down to 1e-4.
+void quicken(double& factor);
+
 /// Divided by 4, down to 1; empty when nothing is left.
 void decay_mass(std::vector<double>& factors);
 

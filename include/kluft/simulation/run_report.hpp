@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "kluft/core/vector.hpp"
 #include "kluft/simulation/run_costs.hpp"
 #include "kluft/simulation/run_status.hpp"
 
@@ -23,6 +24,15 @@ template <class Results, class Visit> void visit_results(Results& results, Visit
     visit("estimated_error", results.estimated_error);
 }
 
+/// A block that moves where the run has ended.
+struct FallingBlock {
+    std::string block; ///< its name, or its number
+    int stage = 0;
+    double load_factor = 0.0;
+    Vec2 direction = Vec2::Zero(); ///< of length 1; zero where it only turns
+    int turn = 0;                  ///< 1 where it also turns counter-clockwise, -1 clockwise
+};
+
 struct RunReport {
     RunStatus status = RunStatus::done;
     std::string diagnosis; ///< names the blocks and interfaces concerned, or what ran out; empty for `done`
@@ -32,6 +42,7 @@ struct RunReport {
     int detections = 0;
     int crack_checks = 0;
     std::vector<std::string> warnings;
+    std::vector<FallingBlock> falling;  ///< the one furthest from balance first
     std::optional<MotionReport> motion; ///< of explicit runs
 };
 

@@ -32,10 +32,11 @@ struct Step {
     int worst_block = -1;     ///< of the last solve
     std::vector<StepRecord> equilibria; ///< in order
     std::vector<CrackRecord> cracks;
-    std::optional<Failure> failure; ///< the step did not come to its goal
-    std::string lost_contact;       ///< a warning, "" without reason
-    LoadedPlacement in_place;       ///< at the last equilibrium
-    Eigen::VectorXd forces;         ///< there: internal - external, without the supports' (N/m)
+    std::vector<MovingBlock> moving; ///< at the last equilibrium, where that is not balanced
+    std::optional<Failure> failure;  ///< the step did not come to its goal
+    std::string lost_contact;        ///< a warning, "" without reason
+    LoadedPlacement in_place;        ///< at the last equilibrium
+    Eigen::VectorXd forces;          ///< there: internal - external, without the supports' (N/m)
 
     /// What is left of a step that fails after an unbalanced equilibrium, or on the way to one: all up to its last
     /// balanced one.

@@ -20,7 +20,7 @@ namespace kluft {
 /// What is asked of a load step.
 struct StepGoal {
     double load_factor = 1.0;   ///< where it is to end
-    Balance balance;            ///< of its equilibria
+    BlockGoal balance;          ///< of its equilibria
     bool checks_cracks = false; ///< whether potential cracks may fail in it
     CrackOptions cracks;        ///< how
     bool must_rest =

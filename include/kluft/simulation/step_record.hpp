@@ -46,7 +46,8 @@ struct StepRecord {
     int locked = 0;
     int open_close_iterations = 0; ///< linear solves of this step, everything included
     int crack_passes = 0;
-    double unbalanced_ratio = 0.0;
+    double unbalanced_ratio = 0.0; ///< of the mass-like term in F_ref
+    double balance_error = 0.0;    ///< largest share left over on a block or group (docs/theory.md, (27))
     bool balanced = true;
     double elapsed_s = 0.0;
     std::optional<double> strength_factor; ///< F that strengths are divided by, of runs that reduce them

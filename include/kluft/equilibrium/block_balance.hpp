@@ -1,0 +1,62 @@
+// How far each block, and each group of blocks that hold together, is from equilibrium by its own forces
+// (docs/theory.md, "Balance").
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "kluft/blocks/moving_block.hpp"
+#include "kluft/equilibrium/coordinates.hpp"
+#include "kluft/loading/loaded_body.hpp"
+
+namespace kluft {
+
+/// The forces that what is left over on a block is judged against, one per block (N/m).
+struct OwnForces {
+    std::vector<double> own; ///< sum of the magnitudes of its loads; of a block without any, of its contact forces
+    std::vector<double>
+        around; ///< of a block without loads the largest `own` of the blocks that it meets; else its own
+    std::vector<double> roundoff; ///< what round-off of the displacements makes of its forces
+    std::vector<char> loaded;     ///< whether weight, pressure or a point force acts on it
+};
+[[nodiscard]] OwnForces own_forces(const LoadedBody& body, const Eigen::VectorXd& q);
+
+/// The rigid part of `forces` on the unknowns of block `b` at q: force, and moment about the centroid over sqrt(area)
+/// (N/m).
+[[nodiscard]] Vec3 rigid_part(const Coordinates& coordinates, const BlockSystem& system, const Eigen::VectorXd& q,
+                              const Eigen::VectorXd& forces, int b);
+/// The larger of force and moment over sqrt(area) (N/m).
+[[nodiscard]] inline double size_of(const Vec3& rigid_part) {
+    return std::max(rigid_part.head<2>().norm(), std::abs(rigid_part[2]));
+}
+
+/// What is left over on the blocks of a body.
+struct BlockBalance {
+    OwnForces forces;
+    std::vector<Vec3> left;               ///< external - internal, in the free motions, as rigid_part
+    std::vector<Vec2> position;           ///< of the centroid (m)
+    std::vector<double> area;             ///< m2
+    std::vector<std::vector<int>> groups; ///< blocks held together by bonds and locked contact points; two or more each
+};
+[[nodiscard]] BlockBalance block_balance(const LoadedBody& body, const Eigen::VectorXd& q);
+
+/// What is asked of the blocks of a body that stands.
+struct BlockGoal {
+    double share = 1e-3; ///< largest left-over over own force
+};
+
+/// The verdict on the blocks of a body.
+struct BlockVerdict {
+    double error = 0.0;              ///< the largest share of a block or group (docs/theory.md, (27))
+    std::vector<MovingBlock> moving; ///< blocks and the blocks of groups that are not balanced, the worst first
+    bool falls = true;               ///< what is left over on all of these has fallen since the solve before
+    [[nodiscard]] bool balanced() const { return moving.empty(); }
+};
+/// Judges blocks and groups by what is left over now and what was `before`, in the solve that this one started from; null
+/// without one. One without loads on which less is left over than before comes to rest: it only must not disturb the
+/// blocks around it. Nor must it fall where that disturbance is a tenth of what is allowed.
+[[nodiscard]] BlockVerdict judge_blocks(const BlockBalance& now, const BlockBalance* before, const BlockGoal& goal);
+
+} // namespace kluft

@@ -1,0 +1,217 @@
+#include "kluft/equilibrium/block_balance.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <span>
+
+#include "kluft/equilibrium/border.hpp"
+
+namespace kluft {
+
+namespace {
+
+constexpr double least_progress = 0.7; ///< of what is left over, from one solve to the next: else the block is moving
+constexpr double least_turn = 0.1; ///< moment over sqrt(area) and force: a block turns too, as one that topples does
+constexpr double harmless_share =
+    0.1; ///< of the largest share: what a block without loads may leave of forces around it
+
+/// A point where two blocks meet.
+struct Meeting {
+    int block_a = 0;
+    int block_b = 0;
+    double force = 0.0;     ///< N/m
+    double stiffness = 0.0; ///< Pa
+    bool holds = false;     ///< bonded or locked
+};
+
+/// Calls visit for each point where blocks meet.
+template <class Visit> void for_each_meeting(const LoadedBody& body, const Eigen::VectorXd& q, Visit visit) {
+    const Placement& placement = *body.placement;
+    const auto meet = [&](int a, int b, double weight, int law, const PointTraction& traction, bool holds) {
+        visit(Meeting{a, b, weight * std::hypot(traction.normal, traction.shear),
+                      weight * (*body.laws)[law].normal_stiffness, holds});
+    };
+    for (int i = 0; i < static_cast<int>(placement.bonds.size()); ++i) {
+        const Bond& bond = placement.bonds[i];
+        for (int k = 0; k < n_bond_points; ++k)
+            meet(bond.block_a, bond.block_b, bond.weight, bond.law, bond_traction(body, i, k, q), true);
+    }
+    for (const ContactPoint& point : placement.contacts) {
+        const PointTraction traction = contact_traction(*body.laws, point, q);
+        meet(point.block_a, point.block_b, point.weight, point.law, traction, traction.state == ContactState::locked);
+    }
+}
+
+/// The blocks that are held together, two or more each.
+std::vector<std::vector<int>> groups_of(const LoadedBody& body, const Eigen::VectorXd& q) {
+    const int n = body.system->n_blocks();
+    std::vector<int> parent(n);
+    std::iota(parent.begin(), parent.end(), 0);
+    const auto root = [&](int b) {
+        while (parent[b] != b) b = parent[b] = parent[parent[b]];
+        return b;
+    };
+    for_each_meeting(body, q, [&](const Meeting& at) {
+        if (at.holds) parent[root(at.block_a)] = root(at.block_b);
+    });
+    std::vector<std::vector<int>> members(n);
+    for (int b = 0; b < n; ++b) members[root(b)].push_back(b);
+    std::erase_if(members, [](const auto& group) { return group.size() < 2; });
+    return members;
+}
+
+/// A block, or a group of them, as one body.
+struct Part {
+    Vec3 left = Vec3::Zero();
+    double own = 0.0;
+    double around = 0.0;
+    double roundoff = 0.0;
+    bool loaded = false;
+    [[nodiscard]] double size() const { return std::max(0.0, size_of(left) - roundoff); }
+};
+
+/// The part of a body that these blocks are; the moment is about the centroid of all.
+Part part_of(const BlockBalance& balance, std::span<const int> blocks) {
+    Part part;
+    double area = 0.0;
+    Vec2 centre = Vec2::Zero();
+    for (const int b : blocks) {
+        area += balance.area[b];
+        centre += balance.area[b] * balance.position[b];
+    }
+    centre /= area;
+    double of_loads = 0.0;
+    double of_contacts = 0.0;
+    for (const int b : blocks) {
+        const Vec2 force = balance.left[b].head<2>();
+        part.left.head<2>() += force;
+        part.left[2] += std::sqrt(balance.area[b] / area) * balance.left[b][2] +
+                        cross(balance.position[b] - centre, force) / std::sqrt(area);
+        part.loaded = part.loaded || balance.forces.loaded[b];
+        (balance.forces.loaded[b] ? of_loads : of_contacts) += balance.forces.own[b];
+        part.around = std::max(part.around, balance.forces.around[b]);
+        part.roundoff += balance.forces.roundoff[b];
+    }
+    part.own = part.loaded ? of_loads : of_contacts;
+    if (part.loaded) part.around = part.own;
+    return part;
+}
+
+/// The share of what is left over, and whether that has fallen.
+struct Share {
+    double value = 0.0;
+    bool falls = false;
+};
+
+MovingBlock moved_by(const Vec3& left, int block) {
+    const Vec2 force = left.head<2>();
+    const double length = force.norm();
+    const bool turns = std::abs(left[2]) > least_turn * length;
+    return {block, length > 0.0 ? Vec2(force / length) : Vec2(Vec2::Zero()), turns ? (left[2] > 0.0 ? 1 : -1) : 0};
+}
+
+Share share_of(const Part& now, const Part* before, const BlockGoal& goal) {
+    const auto share = [&](double force) { return now.size() > 0.0 ? now.size() / std::max(force, 1e-300) : 0.0; };
+    Share result;
+    if (now.own == 0.0) return result; // it touches nothing, and nothing acts on it
+    result.falls = before != nullptr && now.size() <= least_progress * before->size();
+    const bool disturbs_nobody = share(now.around) <= harmless_share * goal.share;
+    result.value = !now.loaded && (result.falls || disturbs_nobody) ? share(now.around) : share(now.own);
+    return result;
+}
+
+} // namespace
+
+OwnForces own_forces(const LoadedBody& body, const Eigen::VectorXd& q) {
+    const auto n = static_cast<std::size_t>(body.system->n_blocks());
+    OwnForces result{load_magnitudes(body, q), {}, std::vector<double>(n, 0.0), std::vector<char>(n, 0)};
+    std::vector<double> of_contacts(n, 0.0);
+    std::vector<std::pair<int, int>> pairs;
+    const auto roundoff_of = [](double stiffness, double moved) {
+        return 64.0 * std::numeric_limits<double>::epsilon() * stiffness * moved;
+    };
+    const auto motion = [&](int b) {
+        return q.segment<n_block_unknowns>(n_block_unknowns * b).lpNorm<Eigen::Infinity>();
+    };
+    for_each_meeting(body, q, [&](const Meeting& at) {
+        const double roundoff = roundoff_of(at.stiffness, std::max(motion(at.block_a), motion(at.block_b)));
+        for (const int b : {at.block_a, at.block_b}) {
+            of_contacts[b] += at.force;
+            result.roundoff[b] = std::max(result.roundoff[b], roundoff);
+        }
+        if (pairs.empty() || pairs.back() != std::pair(at.block_a, at.block_b))
+            pairs.emplace_back(at.block_a, at.block_b);
+    });
+    for (std::size_t b = 0; b < n; ++b) {
+        const ElasticModuli& moduli = (*body.moduli)[body.system->blocks[b].material];
+        result.roundoff[b] =
+            std::max(result.roundoff[b], roundoff_of(2.0 * moduli.mu + moduli.lambda, motion(static_cast<int>(b))));
+        result.loaded[b] = result.own[b] > 0.0;
+        if (!result.loaded[b]) result.own[b] = of_contacts[b];
+    }
+    result.around = result.own;
+    for (const auto& [a, b] : pairs) {
+        if (!result.loaded[a]) result.around[a] = std::max(result.around[a], result.own[b]);
+        if (!result.loaded[b]) result.around[b] = std::max(result.around[b], result.own[a]);
+    }
+    return result;
+}
+
+/// The moment is h times the force on w, h dtheta = dw.
+Vec3 rigid_part(const Coordinates& coordinates, const BlockSystem& system, const Eigen::VectorXd& q,
+                const Eigen::VectorXd& forces, int b) {
+    const Block& block = system.blocks[b];
+    Vec3 part;
+    if (coordinates.are_rigid()) {
+        part = forces.segment<n_rigid_unknowns>(n_rigid_unknowns * b);
+    } else {
+        part = rigid_motion(q, b, block.size).transpose() * forces.segment<n_block_unknowns>(n_block_unknowns * b);
+    }
+    part[2] *= block.size / std::sqrt(block.area);
+    return part;
+}
+
+BlockBalance block_balance(const LoadedBody& body, const Eigen::VectorXd& q) {
+    const BlockSystem& system = *body.system;
+    const EquilibriumProblem problem{body, {}, 0.0, {}};
+    Coordinates coordinates(system, body.kinematics);
+    coordinates.turn_to(q);
+    BodyForces sum;
+    body_forces(body, q, sum);
+    Eigen::VectorXd left;
+    coordinates.reduce(sum.forces, left);
+    keep_free_part(problem, border_of_platen(problem, coordinates), q, left);
+    BlockBalance result;
+    result.forces = own_forces(body, q);
+    result.groups = groups_of(body, q);
+    for (int b = 0; b < system.n_blocks(); ++b) {
+        result.left.push_back(-rigid_part(coordinates, system, q, left, b));
+        result.position.push_back(system.blocks[b].centroid + q.segment<2>(n_block_unknowns * b));
+        result.area.push_back(system.blocks[b].area);
+    }
+    return result;
+}
+
+BlockVerdict judge_blocks(const BlockBalance& now, const BlockBalance* before, const BlockGoal& goal) {
+    BlockVerdict verdict;
+    double worst = 0.0;
+    const auto judge = [&](std::span<const int> blocks) {
+        const Part part = part_of(now, blocks);
+        const Part part_before = before != nullptr ? part_of(*before, blocks) : Part{};
+        const Share share = share_of(part, before != nullptr ? &part_before : nullptr, goal);
+        verdict.error = std::max(verdict.error, share.value);
+        if (share.value <= goal.share) return;
+        verdict.falls = verdict.falls && share.falls;
+        for (const int b : blocks) verdict.moving.push_back(moved_by(part.left, b));
+        if (share.value <= worst) return;
+        worst = share.value;
+        std::swap(verdict.moving.front(), verdict.moving[verdict.moving.size() - blocks.size()]);
+    };
+    for (int b = 0; b < static_cast<int>(now.left.size()); ++b) judge(std::span(&b, 1));
+    for (const std::vector<int>& group : now.groups) judge(group);
+    return verdict;
+}
+
+} // namespace kluft

@@ -1,0 +1,117 @@
+// What is left over on blocks and groups, on bodies of two blocks that are posed in code.
+#include "kluft/equilibrium/block_balance.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "kluft/simulation/placement.hpp"
+#include "support/posed_run.hpp"
+
+namespace kluft {
+namespace {
+
+constexpr double weight = posed::gravity * posed::density * 2.0; // of the block on a plane (N/m)
+
+/// A block on a plane that dips to the left, in the placement of a state and under its whole weight.
+struct OnAPlane {
+    posed::Workplace work;
+    StepGoal goal;
+    StepInProgress p;
+    PlacedState placed;
+    LoadsAt at;
+
+    explicit OnAPlane(double dip, double friction_angle)
+        : work(posed::block_on_a_plane(dip, friction_angle)), p(begin_step(work.bench(), work.state, goal)),
+          placed(place(p)), at(p.loads_at(1.0)) {}
+    [[nodiscard]] BlockBalance balance(const Eigen::VectorXd& q) const {
+        return block_balance(loaded_body(work.model, placed.placement, at), q);
+    }
+};
+
+TEST(BlockBalance, OfABlockThatNothingHoldsIsItsWeight) {
+    const OnAPlane posed(20.0 * posed::degree, 30.0 * posed::degree);
+    const BlockBalance balance = posed.balance(posed.p.displacement());
+    EXPECT_NEAR(balance.left[1].x(), 0.0, 1e-9 * weight);
+    EXPECT_NEAR(balance.left[1].y(), -weight, 1e-9 * weight);
+    EXPECT_NEAR(balance.forces.own[1], weight, 1e-9 * weight);
+    EXPECT_EQ(size_of(balance.left[0]), 0.0); // it is fixed
+    const BlockVerdict verdict = judge_blocks(balance, nullptr, {});
+    EXPECT_NEAR(verdict.error, 1.0, 1e-9);
+    ASSERT_FALSE(verdict.balanced());
+    EXPECT_EQ(verdict.moving.front().block, 1);
+    EXPECT_NEAR(verdict.moving.front().direction.y(), -1.0, 1e-9);
+}
+
+TEST(BlockBalance, OfABlockAtRestIsNothing) {
+    OnAPlane posed(20.0 * posed::degree, 30.0 * posed::degree);
+    posed.goal.balance.share = 1e-6;
+    const Equilibrium found = find_at(posed.p, posed.placed, 1.0, posed.p.displacement());
+    EXPECT_TRUE(found.balanced);
+    EXPECT_LT(found.verdict.error, 1e-6);
+    EXPECT_LT(size_of(posed.balance(found.displacement).left[1]), 1e-6 * weight);
+}
+
+// Limit equilibrium: what friction cannot hold of the weight along the plane, W (sin dip - cos dip tan phi).
+TEST(BlockBalance, OfABlockThatSlidesIsWhatFrictionCannotHold) {
+    const double dip = 30.0 * posed::degree;
+    const double friction = 25.0 * posed::degree;
+    const OnAPlane posed(dip, friction);
+    StepInProgress p = posed.p;
+    const Equilibrium found = find_at(p, posed.placed, 1.0, p.displacement());
+    EXPECT_FALSE(found.balanced);
+    const double expected = std::sin(dip) - std::cos(dip) * std::tan(friction);
+    EXPECT_NEAR(found.verdict.error, expected, 1e-2 * expected);
+    const Vec2 direction = found.verdict.moving.front().direction;
+    EXPECT_NEAR(direction.x(), -std::cos(dip), 1e-2);
+    EXPECT_NEAR(direction.y(), -std::sin(dip), 1e-2);
+}
+
+/// Two blocks side by side that touch nothing, or each other.
+BlockBalance two_blocks(double left_a, double left_b, double own, bool loaded, bool together) {
+    BlockBalance balance;
+    balance.forces = {{own, own}, {own, own}, {0.0, 0.0}, {loaded, loaded}};
+    balance.left = {Vec3(left_a, 0, 0), Vec3(left_b, 0, 0)};
+    balance.position = {Vec2(0, 0), Vec2(0, 1)};
+    balance.area = {1.0, 1.0};
+    if (together) balance.groups = {{0, 1}};
+    return balance;
+}
+
+TEST(BlockVerdict, CountsTheResultantOfBlocksThatHoldTogether) {
+    // Opposite forces on two blocks, one above the other: no resultant, but a moment of 2 x 0.5 over sqrt(2).
+    const BlockVerdict verdict = judge_blocks(two_blocks(1.0, -1.0, 1e4, true, true), nullptr, {.share = 1e-6});
+    EXPECT_NEAR(verdict.error, 1e-4, 1e-18);
+    const BlockVerdict group = judge_blocks(two_blocks(1.0, 1.0, 1e4, false, true), nullptr, {.share = 1e-3});
+    EXPECT_NEAR(group.error, 2.0 / 2e4, 1e-18);
+    EXPECT_TRUE(group.balanced());
+}
+
+TEST(BlockVerdict, BlockWithoutLoadsOnlyMustNotDisturbThoseAroundIt) {
+    BlockBalance before = two_blocks(4.0, 0.0, 1.0, false, false);
+    before.forces.around = {1e4, 1e4};
+    BlockBalance now = before;
+    now.left[0].x() = 2.0;
+    EXPECT_TRUE(judge_blocks(now, &before, {}).balanced());  // it comes to rest
+    EXPECT_FALSE(judge_blocks(now, &now, {}).balanced());    // it goes on
+    EXPECT_FALSE(judge_blocks(now, nullptr, {}).balanced()); // not known
+    now.left[0].x() = 0.9;
+    EXPECT_TRUE(judge_blocks(now, &now, {}).balanced()); // a tenth of what may disturb those around it
+    now.forces.loaded = {1, 1};
+    EXPECT_FALSE(judge_blocks(now, &before, {}).balanced()); // loads must be carried
+}
+
+TEST(BlockVerdict, FragmentThatTouchesNothingHasNothingToBalanceWithoutLoads) {
+    EXPECT_TRUE(judge_blocks(two_blocks(1e-30, 0.0, 0.0, false, false), nullptr, {}).balanced());
+    EXPECT_FALSE(judge_blocks(two_blocks(1e-30, 0.0, 1e-30, true, false), nullptr, {}).balanced());
+}
+
+TEST(BlockVerdict, NamesTheWorstFirst) {
+    const BlockVerdict verdict = judge_blocks(two_blocks(0.01, 0.5, 1.0, true, false), nullptr, {});
+    ASSERT_EQ(verdict.moving.size(), 2U);
+    EXPECT_EQ(verdict.moving.front().block, 1);
+    EXPECT_EQ(verdict.moving.front().direction, Vec2(1, 0));
+}
+
+} // namespace
+} // namespace kluft
