@@ -93,7 +93,7 @@ void EquilibriumSearch::settle(EquilibriumProblem& problem, const BlockGoal& bal
     found.balanced = is_balanced(found, balance);
 }
 
-Equilibrium EquilibriumSearch::move_on(EquilibriumProblem problem, const BlockGoal& balance, bool unloaded) {
+Equilibrium EquilibriumSearch::move_on(const EquilibriumProblem& problem, const BlockGoal& balance, bool unloaded) {
     Equilibrium moved;
     moved.displacement = problem.start;
     moved.summary = open_close_.solve(

@@ -55,7 +55,7 @@ public:
     [[nodiscard]] Equilibrium find(EquilibriumProblem problem, Eigen::VectorXd guess, const BlockGoal& balance,
                                    bool unloaded);
     /// One step of a relaxation from the problem's start.
-    [[nodiscard]] Equilibrium move_on(EquilibriumProblem problem, const BlockGoal& balance, bool unloaded);
+    [[nodiscard]] Equilibrium move_on(const EquilibriumProblem& problem, const BlockGoal& balance, bool unloaded);
 
     /// Internal - external forces at q, that of the mass-like term included, without the supports' (N/m).
     [[nodiscard]] Eigen::VectorXd forces(const EquilibriumProblem& problem, const Eigen::VectorXd& q) const;
