@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <span>
 
+#include "kluft/core/disjoint_sets.hpp"
 #include "kluft/equilibrium/border.hpp"
 
 namespace kluft {
@@ -26,38 +26,34 @@ struct Meeting {
     bool holds = false;     ///< bonded or locked
 };
 
-/// Calls visit for each point where blocks meet.
-template <class Visit> void for_each_meeting(const LoadedBody& body, const Eigen::VectorXd& q, Visit visit) {
+/// All points where blocks meet at q.
+std::vector<Meeting> meetings_of(const LoadedBody& body, const Eigen::VectorXd& q) {
     const Placement& placement = *body.placement;
-    const auto meet = [&](int a, int b, double weight, int law, const PointTraction& traction, bool holds) {
-        visit(Meeting{a, b, weight * std::hypot(traction.normal, traction.shear),
-                      weight * (*body.laws)[law].normal_stiffness, holds});
+    std::vector<Meeting> meetings;
+    meetings.reserve(n_bond_points * placement.bonds.size() + placement.contacts.size());
+    const auto add = [&](int a, int b, double weight, int law, const PointTraction& traction, bool holds) {
+        meetings.push_back({a, b, weight * std::hypot(traction.normal, traction.shear),
+                            weight * (*body.laws)[law].normal_stiffness, holds});
     };
     for (int i = 0; i < static_cast<int>(placement.bonds.size()); ++i) {
         const Bond& bond = placement.bonds[i];
         for (int k = 0; k < n_bond_points; ++k)
-            meet(bond.block_a, bond.block_b, bond.weight, bond.law, bond_traction(body, i, k, q), true);
+            add(bond.block_a, bond.block_b, bond.weight, bond.law, bond_traction(body, i, k, q), true);
     }
     for (const ContactPoint& point : placement.contacts) {
         const PointTraction traction = contact_traction(*body.laws, point, q);
-        meet(point.block_a, point.block_b, point.weight, point.law, traction, traction.state == ContactState::locked);
+        add(point.block_a, point.block_b, point.weight, point.law, traction, traction.state == ContactState::locked);
     }
+    return meetings;
 }
 
 /// The blocks that are held together, two or more each.
-std::vector<std::vector<int>> groups_of(const LoadedBody& body, const Eigen::VectorXd& q) {
-    const int n = body.system->n_blocks();
-    std::vector<int> parent(n);
-    std::iota(parent.begin(), parent.end(), 0);
-    const auto root = [&](int b) {
-        while (parent[b] != b) b = parent[b] = parent[parent[b]];
-        return b;
-    };
-    for_each_meeting(body, q, [&](const Meeting& at) {
-        if (at.holds) parent[root(at.block_a)] = root(at.block_b);
-    });
-    std::vector<std::vector<int>> members(n);
-    for (int b = 0; b < n; ++b) members[root(b)].push_back(b);
+std::vector<std::vector<int>> groups_of(int n_blocks, const std::vector<Meeting>& meetings) {
+    DisjointSets sets(n_blocks);
+    for (const Meeting& at : meetings)
+        if (at.holds) sets.join(at.block_a, at.block_b);
+    std::vector<std::vector<int>> members(n_blocks);
+    for (int b = 0; b < n_blocks; ++b) members[sets.root(b)].push_back(b);
     std::erase_if(members, [](const auto& group) { return group.size() < 2; });
     return members;
 }
@@ -122,9 +118,7 @@ Share share_of(const Part& now, const Part* before, const BlockGoal& goal) {
     return result;
 }
 
-} // namespace
-
-OwnForces own_forces(const LoadedBody& body, const Eigen::VectorXd& q) {
+OwnForces own_forces(const LoadedBody& body, const Eigen::VectorXd& q, const std::vector<Meeting>& meetings) {
     const auto n = static_cast<std::size_t>(body.system->n_blocks());
     OwnForces result{load_magnitudes(body, q), {}, std::vector<double>(n, 0.0), std::vector<char>(n, 0)};
     std::vector<double> of_contacts(n, 0.0);
@@ -135,7 +129,7 @@ OwnForces own_forces(const LoadedBody& body, const Eigen::VectorXd& q) {
     const auto motion = [&](int b) {
         return q.segment<n_block_unknowns>(n_block_unknowns * b).lpNorm<Eigen::Infinity>();
     };
-    for_each_meeting(body, q, [&](const Meeting& at) {
+    for (const Meeting& at : meetings) {
         const double roundoff = roundoff_of(at.stiffness, std::max(motion(at.block_a), motion(at.block_b)));
         for (const int b : {at.block_a, at.block_b}) {
             of_contacts[b] += at.force;
@@ -143,7 +137,7 @@ OwnForces own_forces(const LoadedBody& body, const Eigen::VectorXd& q) {
         }
         if (pairs.empty() || pairs.back() != std::pair(at.block_a, at.block_b))
             pairs.emplace_back(at.block_a, at.block_b);
-    });
+    }
     for (std::size_t b = 0; b < n; ++b) {
         const ElasticModuli& moduli = (*body.moduli)[body.system->blocks[b].material];
         result.roundoff[b] =
@@ -157,6 +151,12 @@ OwnForces own_forces(const LoadedBody& body, const Eigen::VectorXd& q) {
         if (!result.loaded[b]) result.around[b] = std::max(result.around[b], result.own[a]);
     }
     return result;
+}
+
+} // namespace
+
+OwnForces own_forces(const LoadedBody& body, const Eigen::VectorXd& q) {
+    return own_forces(body, q, meetings_of(body, q));
 }
 
 /// The moment is h times the force on w, h dtheta = dw.
@@ -184,8 +184,9 @@ BlockBalance block_balance(const LoadedBody& body, const Eigen::VectorXd& q) {
     coordinates.reduce(sum.forces, left);
     keep_free_part(problem, border_of_platen(problem, coordinates), q, left);
     BlockBalance result;
-    result.forces = own_forces(body, q);
-    result.groups = groups_of(body, q);
+    const std::vector<Meeting> meetings = meetings_of(body, q);
+    result.forces = own_forces(body, q, meetings);
+    result.groups = groups_of(system.n_blocks(), meetings);
     for (int b = 0; b < system.n_blocks(); ++b) {
         result.left.push_back(-rigid_part(coordinates, system, q, left, b));
         result.position.push_back(system.blocks[b].centroid + q.segment<2>(n_block_unknowns * b));

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include <Eigen/Eigenvalues>
+
+#include "kluft/core/disjoint_sets.hpp"
 
 namespace kluft {
 
@@ -15,28 +16,19 @@ constexpr double decay = 4.0;   ///< after a solve in a few iterations, also of 
 constexpr double largest_factor = 4.0e6;
 constexpr double least_factor = 1e-4; ///< of blocks on their way in a relaxation
 
-/// The group of bonded blocks that each block belongs to, named by one of them.
-class BondedGroups {
-public:
-    BondedGroups(const BlockSystem& system, const std::vector<char>& bonded) : parent_(system.blocks.size()) {
-        std::iota(parent_.begin(), parent_.end(), 0);
-        for (int i = 0; i < system.n_interfaces(); ++i) {
-            if (bonded[i]) parent_[of(system.interfaces[i].block_a)] = of(system.interfaces[i].block_b);
-        }
+/// The groups of bonded blocks.
+DisjointSets bonded_groups(const BlockSystem& system, const std::vector<char>& bonded) {
+    DisjointSets groups(system.n_blocks());
+    for (int i = 0; i < system.n_interfaces(); ++i) {
+        if (bonded[i]) groups.join(system.interfaces[i].block_a, system.interfaces[i].block_b);
     }
-    int of(int b) {
-        while (parent_[b] != b) b = parent_[b] = parent_[parent_[b]];
-        return b;
-    }
-
-private:
-    std::vector<int> parent_;
-};
+    return groups;
+}
 
 } // namespace
 
 bool is_held(const BlockSystem& system, const std::vector<char>& bonded, const Constraints& constraints) {
-    BondedGroups groups(system, bonded);
+    DisjointSets groups = bonded_groups(system, bonded);
     std::vector<Eigen::Matrix3d> grams(system.blocks.size(), Eigen::Matrix3d::Zero());
     const Vec2 centre = 0.5 * (system.lower + system.upper);
     const double size = (system.upper - system.lower).maxCoeff();
@@ -45,10 +37,10 @@ bool is_held(const BlockSystem& system, const std::vector<char>& bonded, const C
         const Block& block = system.blocks[row.block];
         const Vec2 arm = (block.centroid + block.size * row.xi - centre) / size;
         const Eigen::Vector3d motion(row.direction.x(), row.direction.y(), cross(arm, row.direction));
-        grams[groups.of(row.block)] += motion * motion.transpose();
+        grams[groups.root(row.block)] += motion * motion.transpose();
     }
     for (int b = 0; b < system.n_blocks(); ++b) {
-        if (groups.of(b) != b) continue;
+        if (groups.root(b) != b) continue;
         const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(grams[b]);
         if (eigen.eigenvalues()[0] <= 1e-9 * std::max(1e-300, eigen.eigenvalues()[2])) return false;
     }
