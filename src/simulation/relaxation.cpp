@@ -109,7 +109,7 @@ Equilibrium given_up(StepInProgress& p, Equilibrium last) {
 
 /// Blocks on their way that do not hinder the iteration go on faster: they come to rest or fall in fewer steps.
 void hurry(const Equilibrium& moved, std::vector<double>& factors) {
-    if (factors.empty()) return; // all are one, and no block was stopped before
+    if (factors.empty()) return; // an easy step has just set all of them back to one
     for (const MovingBlock& moving : moved.verdict.moving) {
         const int b = moving.block;
         if (!std::ranges::binary_search(moved.summary.restless, b)) quicken(factors[b]);
