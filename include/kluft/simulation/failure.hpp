@@ -21,8 +21,9 @@ struct Failure {
     double residual_ratio = 0.0;     ///< what is left, over F_ref
     double strength_factor = 1.0;    ///< F that strengths were divided by
     bool nothing_holds = false;      ///< the body, which has neither a support nor a platen
+    std::vector<std::string> causes; ///< that are likely, in words
     std::vector<MovingBlock> moving; ///< blocks that are not balanced, the worst first
-    std::string what;                ///< in place of all that, of a broken body or a motion
+    std::string what;                ///< in place of the residual, of a broken body or a motion
 
     /// Whether the body may just have reached what it carries, where its load is a stress.
     [[nodiscard]] bool may_be_collapse() const { return !nothing_holds && kind != FailureKind::broken_body; }

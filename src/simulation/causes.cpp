@@ -1,0 +1,160 @@
+#include "kluft/simulation/causes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <set>
+
+#include <Eigen/Eigenvalues>
+#include <fmt/format.h>
+
+#include "kluft/kinematics/rigid.hpp"
+
+namespace kluft {
+
+namespace {
+
+constexpr double not_held = 1e-9;     ///< of the largest eigenvalue: a motion of the body that no row resists
+constexpr double no_resultant = 1e-6; ///< of the magnitudes of the loads
+constexpr double whole_body = 0.9;    ///< of the area of the blocks: if so much moves, the body does
+constexpr double suspicious_strain = 0.05;
+
+/// The body as one piece: a motion is (u_x, u_y, w) about the middle of its box, w a turn times its extent.
+struct WholeBody {
+    explicit WholeBody(const BlockSystem& system)
+        : middle(0.5 * (system.lower + system.upper)), extent((system.upper - system.lower).maxCoeff()) {}
+    /// direction . displacement of the place x for each of the three motions.
+    [[nodiscard]] Vec3 row(const Vec2& x, const Vec2& direction) const {
+        return {direction.x(), direction.y(), cross(x - middle, direction) / extent};
+    }
+    Vec2 middle;
+    double extent;
+};
+
+/// The motions that no prescribed displacement and no fixed block resists.
+std::vector<Vec3> free_motions(const Model& model, const WholeBody& body, const Constraints& constraints) {
+    Mat3 resistance = Mat3::Zero();
+    for (const PrescribedDisplacement& held : constraints.rows()) {
+        const Block& block = model.system.blocks[held.block];
+        const Vec3 row = body.row(block.centroid + block.size * held.xi, held.direction);
+        resistance += row * row.transpose();
+    }
+    const Eigen::SelfAdjointEigenSolver<Mat3> eigen(resistance);
+    std::vector<Vec3> motions;
+    for (int i = 0; i < 3; ++i) {
+        if (eigen.eigenvalues()[i] <= not_held * eigen.eigenvalues().maxCoeff())
+            motions.emplace_back(eigen.eigenvectors().col(i));
+    }
+    return motions;
+}
+
+LoadedBody without_contacts(const Model& model, const Loads& loads) {
+    LoadedBody body;
+    body.kinematics = model.kinematics;
+    body.system = &model.system;
+    body.moduli = &model.moduli;
+    body.densities = &model.densities;
+    body.laws = &model.laws;
+    body.loads = &loads;
+    return body;
+}
+
+/// Forces and moment of the loads on the body before it moved.
+Vec3 resultant(const Model& model, const WholeBody& body, const Eigen::VectorXd& forces) {
+    Vec3 sum = Vec3::Zero();
+    for (int b = 0; b < model.system.n_blocks(); ++b) {
+        const double* f = forces.data() + n_block_unknowns * b;
+        const Block& block = model.system.blocks[b];
+        sum += body.row(block.centroid, Vec2(f[0], f[1]));
+        sum(2) += block.size * (f[3] - f[4]) / body.extent;
+    }
+    return sum;
+}
+
+std::string pressures_in_words(const Model& model, const Loads& loads) {
+    std::string text;
+    for (std::size_t i = 0; i < loads.pressures.size(); ++i) {
+        const Boundary& boundary = model.system.boundaries[i];
+        if (boundary.edges.empty()) continue;
+        text += fmt::format("{}{} {:.4g}", text.empty() ? "" : ", ", boundary.name, 1e-6 * loads.pressures[i]);
+    }
+    const bool any = std::ranges::any_of(loads.pressures, [](double p) { return p != 0.0; });
+    return any ? fmt::format(" (pressures in MPa: {})", text) : "";
+}
+
+bool is_turn(const Vec3& motion) { return std::abs(motion(2)) > motion.head<2>().norm(); }
+
+std::string direction_in_words(const Vec3& motion) {
+    const Vec2 direction = motion.head<2>().normalized();
+    return fmt::format("({:.2g}, {:.2g})", direction.x(), direction.y());
+}
+
+std::string push_in_words(const Model& model, const Loads& loads, const Vec3& motion, double force) {
+    const Vec3 along = force < 0.0 ? Vec3(-motion) : motion;
+    if (is_turn(along))
+        return fmt::format("the loads turn the body, and neither a support nor a platen holds it against that{}",
+                           pressures_in_words(model, loads));
+    return fmt::format(
+        "the loads push the body towards {} with {:.4g} kN/m, where neither a support nor a platen holds it{}",
+        direction_in_words(along), 1e-3 * std::abs(force), pressures_in_words(model, loads));
+}
+
+bool moves_as_a_whole(const BlockSystem& system, const std::vector<MovingBlock>& moving) {
+    std::set<int> blocks;
+    for (const MovingBlock& each : moving) blocks.insert(each.block);
+    double all = 0.0;
+    double of_moving = 0.0;
+    for (int b = 0; b < system.n_blocks(); ++b) {
+        all += system.blocks[b].area;
+        if (blocks.contains(b)) of_moving += system.blocks[b].area;
+    }
+    return of_moving >= whole_body * all;
+}
+
+/// Of pressures, a platen and weight (Pa).
+double largest_stress(const Model& model, const Loads& loads, const WholeBody& body) {
+    double stress = 0.0;
+    for (const double pressure : loads.pressures) stress = std::max(stress, std::abs(pressure));
+    if (loads.platen_force) stress = std::max(stress, std::abs(loads.platen_force->stress));
+    for (const double density : model.densities)
+        stress = std::max(stress, density * loads.gravity.norm() * body.extent);
+    return stress;
+}
+
+std::optional<std::string> soft_body(const Model& model, const Loads& loads, const WholeBody& body) {
+    const double stress = largest_stress(model, loads, body);
+    if (model.effective_modulus <= 0.0 || stress <= suspicious_strain * model.effective_modulus) return std::nullopt;
+    return fmt::format(
+        "the loads of up to {:.4g} MPa are {:.2g} times the modulus of {:.4g} MPa of the body or its softest "
+        "joint: is a unit missing there?",
+        1e-6 * stress, stress / model.effective_modulus, 1e-6 * model.effective_modulus);
+}
+
+} // namespace
+
+std::vector<std::string> likely_causes(const Model& model, const Loads& loads, const std::vector<MovingBlock>& moving) {
+    const WholeBody body(model.system);
+    const LoadedBody loaded = without_contacts(model, loads);
+    const Eigen::VectorXd at_rest =
+        Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n_block_unknowns) * model.system.n_blocks());
+    Eigen::VectorXd forces;
+    external_forces(loaded, at_rest, forces);
+    const Vec3 sum = resultant(model, body, forces);
+    double magnitude = 0.0;
+    for (const double each : load_magnitudes(loaded, at_rest)) magnitude += each;
+
+    std::vector<std::string> causes;
+    const bool as_a_whole = !loads.constraints.rows().empty() && moves_as_a_whole(model.system, moving);
+    for (const Vec3& motion : free_motions(model, body, loads.constraints)) {
+        const double force = motion.dot(sum);
+        if (std::abs(force) > no_resultant * magnitude)
+            causes.push_back(push_in_words(model, loads, motion, force));
+        else if (as_a_whole)
+            causes.push_back(is_turn(motion) ? std::string("nothing holds the body against a turn")
+                                             : "nothing holds the body along " + direction_in_words(motion));
+    }
+    if (const auto soft = soft_body(model, loads, body)) causes.push_back(*soft);
+    return causes;
+}
+
+} // namespace kluft
