@@ -33,13 +33,13 @@ constexpr double mega = 1e6;
 /// What is known of a run besides its tables; a killed run has no summary.
 struct RunHeading {
     std::string title;
-    int platen_stage = 0;
+    std::optional<int> platen_stage;
 };
 
 RunHeading heading_of(const fs::path& directory) {
-    if (!fs::exists(directory / "summary.json")) return {run_name(directory), 0};
+    if (!fs::exists(directory / "summary.json")) return {run_name(directory), std::nullopt};
     const RunSummary summary = read_summary(directory / "summary.json");
-    return {summary.title, summary.platen_stage.value_or(0)};
+    return {summary.title, summary.platen_stage};
 }
 
 RunCurve read_curve(const fs::path& directory, const std::string& label) {

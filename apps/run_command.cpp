@@ -107,7 +107,7 @@ ExitCode exit_code(RunStatus status) {
 std::string closing_line(const RunReport& report, const RunSummary& summary, const fs::path& directory) {
     std::string text = status_name(report.status);
     if (summary.numbers.peak_stress) {
-        text += fmt::format(": peak {:.4g} MPa at {:.4g} %{}", 1e-6 * *summary.numbers.peak_stress,
+        text += fmt::format(": peak axial stress {:.4g} MPa at {:.4g} %{}", 1e-6 * *summary.numbers.peak_stress,
                             100.0 * summary.numbers.peak_strain.value_or(0.0),
                             summary.numbers.peak_reached ? "" : " (still rising)");
     }

@@ -449,10 +449,11 @@ Vec2 plotted(const StepRecord& record) { return {percent * record.axial_strain, 
 void add_peak(const RunCurve& run, const StepRecord& peak, bool alone, PlottedCurve& curve) {
     const auto& rows = run.equilibria.empty() ? run.history : run.equilibria;
     curve.peak = plotted(peak);
-    curve.peak_reached = curve_numbers(rows, {}, std::nullopt, Plane::strain).peak_reached;
-    const std::string values = fmt::format("{:#.3g} MPa at {:.2f} %", curve.peak->y(), curve.peak->x());
+    curve.peak_reached = curve_numbers(rows, {}, run.platen_stage, Plane::strain).peak_reached;
+    const std::string values =
+        fmt::format("\u03c3\u2081 \u2212 \u03c3\u2083 = {:#.3g} MPa at {:.2f} %", curve.peak->y(), curve.peak->x());
     if (alone) {
-        curve.peak_text = {values, fmt::format("\u03c3\u2081 = {:#.3g} MPa", peak.axial_stress / mega)};
+        curve.peak_text = {values, fmt::format("axial {:#.3g} MPa", peak.axial_stress / mega)};
         if (!curve.peak_reached) curve.peak_text.emplace_back("still rising");
     } else {
         curve.label += curve.peak_reached ? ": " + values : ": still rising";
@@ -462,11 +463,11 @@ void add_peak(const RunCurve& run, const StepRecord& peak, bool alone, PlottedCu
 PlottedCurve plotted_run(const RunCurve& run, bool alone) {
     PlottedCurve curve;
     curve.label = run.label;
-    for (const StepRecord& record : platen_rows(run.history, run.platen_stage))
+    for (const StepRecord& record : platen_rows(run.history, run.platen_stage.value_or(0)))
         curve.points.push_back({plotted(record), record.balanced});
-    for (const StepRecord& record : platen_rows(run.equilibria, run.platen_stage))
+    for (const StepRecord& record : platen_rows(run.equilibria, run.platen_stage.value_or(0)))
         if (record.balanced) curve.fine.push_back(plotted(record));
-    if (const auto peak = peak_row(run.equilibria.empty() ? run.history : run.equilibria))
+    if (const auto peak = peak_row(run.equilibria.empty() ? run.history : run.equilibria, run.platen_stage))
         add_peak(run, *peak, alone, curve);
     return curve;
 }

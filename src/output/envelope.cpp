@@ -46,7 +46,7 @@ double Envelope::sigma_1(double sigma_3) const {
 }
 
 PeakPoint peak_point(const std::string& run, const std::vector<StepRecord>& equilibria) {
-    const auto peak = peak_row(equilibria);
+    const auto peak = peak_row(equilibria, std::nullopt);
     if (!peak) throw InputError(run + ": no balanced equilibrium, so no peak");
     const auto numbers = curve_numbers(equilibria, {}, std::nullopt, Plane::strain);
     return {run, peak->lateral_stress, peak->axial_stress, numbers.peak_reached};

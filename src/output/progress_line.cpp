@@ -39,13 +39,11 @@ std::string readable_time(double seconds) {
 std::string progress_text(const Progress& progress, std::optional<double> seconds_left) {
     const std::string step =
         progress.n_steps > 0 ? fmt::format("{}/{}", progress.step, progress.n_steps) : fmt::format("{}", progress.step);
-    std::string text = fmt::format("stage {}/{}  step {} ({:.0f} %)  strain {:.3f} %  stress {:.3f} MPa  cracks {}  "
-                                   "iterations {}",
-                                   progress.stage + 1, progress.n_stages, step,
-                                   std::floor(100.0 * fraction_of(progress)), 100.0 * progress.axial_strain,
-                                   progress.axial_stress / 1e6, progress.cracks, progress.open_close_iterations);
-    if (seconds_left) text += "  left " + readable_time(*seconds_left);
-    return text;
+    const std::string left = seconds_left ? fmt::format(", {} left", readable_time(*seconds_left)) : "";
+    return fmt::format("stage {}  step {} ({:.0f} %{})  strain {:.3f} %  axial {:.3f} MPa  cracks {}  iterations {}",
+                       progress.stage, step, std::floor(100.0 * fraction_of(progress)), left,
+                       100.0 * progress.axial_strain, progress.axial_stress / 1e6, progress.cracks,
+                       progress.open_close_iterations);
 }
 
 ProgressLine::ProgressLine(std::function<void(std::string_view)> write, bool terminal, int columns,

@@ -171,8 +171,7 @@ void RunWriter::write_fields(const StepRecord& record, const FieldRecord& fields
 }
 
 void RunWriter::write_pictures(const FieldRecord& fields) const {
-    const CurvePlot curve =
-        stress_strain_plot(options_.title, {{"", history_, equilibria_, options_.platen_stage.value_or(0)}});
+    const CurvePlot curve = stress_strain_plot(options_.title, {{"", history_, equilibria_, options_.platen_stage}});
     const BlocksPlot blocks{options_.title, after_title(history_), 1.0, options_.material_names, {}};
     const bool svg = system_.n_blocks() <= most_blocks_in_svg;
     FirstError errors;

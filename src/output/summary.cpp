@@ -22,7 +22,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Rows = std::vector<StepRecord>;
 
-constexpr double elastic_share = 0.3;    // of the peak differential stress
+constexpr double sliding_share = 0.01; // of what is closed: from there on a body is not elastic
+constexpr std::size_t least_elastic_rows = 3;
+constexpr double elastic_share = 0.3;    // of the peak differential stress, where there are fewer
+constexpr double ratio_slack = 1e-3;     // of Poisson's ratio, for round-off
 constexpr double fall_after_peak = 0.01; // of the peak
 constexpr double residual_share = 0.1;   // of the strain
 
@@ -33,11 +36,11 @@ Rows balanced_rows(const Rows& rows) {
     return balanced;
 }
 
-bool falls_after_peak(const Rows& balanced, double peak) {
-    const auto at =
-        std::find_if(balanced.begin(), balanced.end(), [&](const StepRecord& row) { return row.axial_stress >= peak; });
+bool falls_after_peak(const Rows& balanced, double peak, double sense) {
+    const auto at = std::find_if(balanced.begin(), balanced.end(),
+                                 [&](const StepRecord& row) { return sense * row.axial_stress >= sense * peak; });
     return std::any_of(at, balanced.end(), [&](const StepRecord& row) {
-        return row.axial_stress <= peak - fall_after_peak * std::abs(peak);
+        return sense * row.axial_stress <= sense * peak - fall_after_peak * std::abs(peak);
     });
 }
 
@@ -87,27 +90,43 @@ StepRecord interpolated(const StepRecord& a, const StepRecord& b, double share) 
     return row;
 }
 
-/// The rows from the platen's start until the differential stress first exceeds `limit`.
-Rows elastic_rows(const Rows& rows, double limit) {
+/// The rows until the differential stress, positive in the sense of the platen, first exceeds `limit`.
+Rows rows_up_to(const Rows& rows, double limit, double sense) {
     const auto above =
-        std::find_if(rows.begin(), rows.end(), [&](const StepRecord& row) { return row.differential_stress > limit; });
+        std::ranges::find_if(rows, [&](const StepRecord& row) { return sense * row.differential_stress > limit; });
     Rows elastic(rows.begin(), above);
     if (elastic.size() == 1 && above != rows.end()) {
-        const double from = elastic.front().differential_stress;
-        elastic.push_back(interpolated(elastic.front(), *above, (limit - from) / (above->differential_stress - from)));
+        const double from = sense * elastic.front().differential_stress;
+        const double share = (limit - from) / (sense * above->differential_stress - from);
+        elastic.push_back(interpolated(elastic.front(), *above, share));
     }
     return elastic;
 }
 
-void add_elastic_constants(const Rows& equilibria, const Rows& history, int platen_stage, Plane plane,
-                           CurveNumbers& numbers) {
+/// The rows up to the peak until more than 1 % of what is closed slides.
+Rows rows_without_sliding(const Rows& rows, double sense) {
+    const auto peak =
+        std::ranges::max_element(rows, {}, [&](const StepRecord& row) { return sense * row.differential_stress; });
+    return {rows.begin(), std::find_if(rows.begin(), peak + 1, [](const StepRecord& row) {
+                return row.sliding > sliding_share * (row.sliding + row.locked);
+            })};
+}
+
+Rows elastic_rows(const Rows& equilibria, const Rows& rows, int platen_stage, double sense) {
+    Rows elastic = rows_without_sliding(rows, sense);
+    if (elastic.size() >= least_elastic_rows) return elastic;
     double peak = -std::numeric_limits<double>::infinity();
     for (const StepRecord& row : balanced_rows(platen_rows(equilibria, platen_stage)))
-        peak = std::max(peak, row.differential_stress);
+        peak = std::max(peak, sense * row.differential_stress);
+    return rows_up_to(rows, elastic_share * peak, sense);
+}
+
+void add_elastic_constants(const Rows& equilibria, const Rows& history, int platen_stage, Plane plane,
+                           CurveNumbers& numbers) {
     const Rows rows = balanced_rows(platen_rows(history, platen_stage));
-    if (!std::isfinite(peak) || rows.empty()) return;
+    if (rows.empty() || balanced_rows(platen_rows(equilibria, platen_stage)).empty()) return;
     std::vector<std::pair<double, double>> stress, lateral;
-    for (const StepRecord& row : elastic_rows(rows, elastic_share * peak)) {
+    for (const StepRecord& row : elastic_rows(equilibria, rows, platen_stage, platen_sense(history, platen_stage))) {
         stress.emplace_back(row.axial_strain, row.differential_stress);
         lateral.emplace_back(row.axial_strain, -row.lateral_strain);
     }
@@ -117,7 +136,7 @@ void add_elastic_constants(const Rows& equilibria, const Rows& history, int plat
     const double ratio = *numbers.lateral_ratio;
     const double nu = plane == Plane::strain ? ratio / (1.0 + ratio) : ratio;
     const double modulus = plane == Plane::strain ? *numbers.axial_modulus * (1.0 - nu * nu) : *numbers.axial_modulus;
-    if (!std::isfinite(nu) || !std::isfinite(modulus)) return;
+    if (!(nu >= -ratio_slack && nu <= 0.5 + ratio_slack) || !std::isfinite(modulus)) return;
     numbers.youngs_modulus = modulus;
     numbers.poissons_ratio = nu;
 }
@@ -217,11 +236,19 @@ std::vector<StepRecord> platen_rows(const std::vector<StepRecord>& rows, int pla
     return result;
 }
 
-std::optional<StepRecord> peak_row(const std::vector<StepRecord>& rows) {
-    const Rows balanced = balanced_rows(rows);
-    const auto peak = std::max_element(balanced.begin(), balanced.end(), [](const StepRecord& a, const StepRecord& b) {
-        return a.axial_stress < b.axial_stress;
+double platen_sense(const std::vector<StepRecord>& rows, std::optional<int> platen_stage) {
+    if (!platen_stage) return 1.0;
+    const auto last = std::find_if(rows.rbegin(), rows.rend(), [&](const StepRecord& row) {
+        return row.stage == *platen_stage && row.axial_strain != 0.0;
     });
+    return last != rows.rend() && last->axial_strain < 0.0 ? -1.0 : 1.0;
+}
+
+std::optional<StepRecord> peak_row(const std::vector<StepRecord>& rows, std::optional<int> platen_stage) {
+    const Rows balanced = balanced_rows(rows);
+    const double sense = platen_sense(rows, platen_stage);
+    const auto peak =
+        std::ranges::max_element(balanced, {}, [&](const StepRecord& row) { return sense * row.axial_stress; });
     return peak == balanced.end() ? std::nullopt : std::optional(*peak);
 }
 
@@ -229,10 +256,11 @@ CurveNumbers curve_numbers(const std::vector<StepRecord>& equilibria, const std:
                            std::optional<int> platen_stage, Plane plane) {
     CurveNumbers numbers;
     const Rows& all = equilibria.empty() ? history : equilibria;
-    if (const auto peak = peak_row(all)) {
+    if (const auto peak = peak_row(all, platen_stage)) {
         numbers.peak_stress = peak->axial_stress;
         numbers.peak_strain = peak->axial_strain;
-        numbers.peak_reached = falls_after_peak(balanced_rows(all), peak->axial_stress);
+        numbers.peak_reached =
+            falls_after_peak(balanced_rows(all), peak->axial_stress, platen_sense(all, platen_stage));
     }
     if (numbers.peak_reached) numbers.residual_stress = residual_stress(history, platen_stage);
     if (platen_stage) add_elastic_constants(all, history, *platen_stage, plane, numbers);

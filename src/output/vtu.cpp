@@ -68,9 +68,10 @@ void add_block_shapes(VtuDocument& document, const BlockSystem& system, const Fi
 
 void add_block_fields(VtuDocument& document, const BlockSystem& system, const FieldRecord& fields) {
     const auto& stress = fields.stress;
-    document.add_cell_field("stress_xx", [&](std::size_t b) { return stress[b](0, 0); });
-    document.add_cell_field("stress_yy", [&](std::size_t b) { return stress[b](1, 1); });
-    document.add_cell_field("stress_xy", [&](std::size_t b) { return 0.5 * (stress[b](0, 1) + stress[b](1, 0)); });
+    {
+        auto tensors = document.cell_tensors("stress");
+        for (const Mat2& each : stress) tensors.put(Mat2(-0.5 * (each + each.transpose())));
+    }
     document.add_cell_field("sigma_1", [&](std::size_t b) { return principal_compression(stress[b]).first; });
     document.add_cell_field("sigma_3", [&](std::size_t b) { return principal_compression(stress[b]).second; });
     document.add_cell_field("material", [&](std::size_t b) { return std::int32_t{system.blocks[b].material}; });
@@ -127,7 +128,7 @@ void add_interface_fields(VtuDocument& document, const BlockSystem& system, cons
     document.add_cell_field("state", [&](std::size_t i) { return state_code(each[i].state); });
     document.add_cell_field("bonded", [&](std::size_t i) { return std::int32_t{each[i].bonded}; });
     document.add_cell_field("crack_mode", [&](std::size_t i) { return mode_code(each[i]); });
-    document.add_cell_field("normal_traction", [&](std::size_t i) { return each[i].normal_traction; });
+    document.add_cell_field("normal_traction", [&](std::size_t i) { return 0.0 - each[i].normal_traction; });
     document.add_cell_field("shear_traction", [&](std::size_t i) { return each[i].shear_traction; });
     document.add_cell_field("gap", [&](std::size_t i) { return each[i].gap; });
     document.add_cell_field("slip", [&](std::size_t i) { return each[i].slip; });
@@ -174,8 +175,8 @@ std::string blocks_vtu(const BlockSystem& system, const FieldRecord& fields,
                        const std::vector<std::string>& material_names, const StepRecord& record) {
     VtuDocument document(first_vertices(system).back(), system.blocks.size());
     add_stamp(document, record,
-              "SI units. stress_xx, stress_yy, stress_xy: positive in tension; sigma_1, sigma_3: principal stresses, "
-              "positive in compression. Points: before loading; warp by displacement to see the blocks deformed.");
+              "SI units. Stresses are positive in compression; sigma_1, sigma_3: principal stresses in the plane. "
+              "Points: before loading; warp by displacement to see the blocks deformed.");
     document.add_field("material_names", material_names);
     add_block_shapes(document, system, fields);
     add_block_fields(document, system, fields);
@@ -186,7 +187,7 @@ std::string interfaces_vtu(const BlockSystem& system, const FieldRecord& fields,
     VtuDocument document(2 * system.interfaces.size(), system.interfaces.size());
     add_stamp(document, record,
               "SI units. state: 0 open, 1 sliding, 2 locked; crack_mode: 0 none, 1 tension, 2 shear; normal_traction: "
-              "positive in tension; gap: positive when open. Points: before loading.");
+              "positive in compression; gap: positive when open. Points: before loading.");
     add_interface_shapes(document, system, fields);
     add_interface_fields(document, system, fields);
     return document.content();

@@ -41,6 +41,11 @@ void VtuDocument::Array::put(const Vec2& vector) {
     put(0.0);
 }
 
+void VtuDocument::Array::put(const Mat2& tensor) {
+    for (int row = 0; row < 2; ++row) put(Vec2(tensor.row(row)));
+    put(Vec2(0.0, 0.0));
+}
+
 double VtuDocument::finite(double number) {
     if (std::isfinite(number)) return number;
     ++n_replaced_;
@@ -63,6 +68,10 @@ VtuDocument::Array VtuDocument::point_vectors(std::string_view name) {
 VtuDocument::Array VtuDocument::connectivity() { return begin(cells_, R"(type="Int64" Name="connectivity")"); }
 VtuDocument::Array VtuDocument::ends() { return begin(cells_, R"(type="Int64" Name="offsets")"); }
 VtuDocument::Array VtuDocument::types() { return begin(cells_, R"(type="UInt8" Name="types")"); }
+
+VtuDocument::Array VtuDocument::cell_tensors(std::string_view name) {
+    return begin(cell_data_, fmt::format(R"(type="Float64" Name="{}" NumberOfComponents="9")", name));
+}
 
 VtuDocument::Array VtuDocument::cell_field(std::string_view name, std::string_view type) {
     return begin(cell_data_, fmt::format(R"(type="{}" Name="{}")", type, name));

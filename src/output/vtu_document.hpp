@@ -28,6 +28,8 @@ public:
         void put(std::uint8_t number) { append(&number, sizeof number); }
         /// As (x, y, 0).
         void put(const Vec2& vector);
+        /// As 3 x 3 numbers, those out of the plane zero.
+        void put(const Mat2& tensor);
 
     private:
         friend VtuDocument;
@@ -53,6 +55,8 @@ public:
         Array array = cell_field(name, real ? "Float64" : "Int32");
         for (std::size_t i = 0; i < n_cells_; ++i) array.put(value(i));
     }
+
+    [[nodiscard]] Array cell_tensors(std::string_view name);
 
     void add_field(std::string_view name, double value);
     void add_field(std::string_view name, std::int32_t value);

@@ -142,7 +142,7 @@ std::optional<double> matching_distance(const FinishedRun& a, const FinishedRun&
 }
 
 std::optional<CurveDifference> difference_of_curves(const FinishedRun& a, const FinishedRun& b) {
-    const auto peak = peak_row(a.fine_rows());
+    const auto peak = peak_row(a.fine_rows(), a.platen_stage);
     if (!peak || !a.numbers.peak_strain || !b.numbers.peak_strain) return std::nullopt;
     return curve_difference(platen_rows(a.history, a.platen_stage.value_or(0)),
                             platen_rows(b.history, b.platen_stage.value_or(0)),
@@ -154,12 +154,12 @@ void add_mechanics(const CurveNumbers& a, const CurveNumbers& b, bool tested, Ta
     const auto judge = [&](ComparedQuantity& quantity) {
         if (tested) writer.judge(quantity);
     };
-    ComparedQuantity& peak = writer.add("peak_stress", "peak stress", "MPa", mega, a.peak_stress, b.peak_stress);
+    ComparedQuantity& peak = writer.add("peak_stress", "peak axial stress", "MPa", mega, a.peak_stress, b.peak_stress);
     if (tested || a.peak_stress.value_or(0.0) != 0.0 || b.peak_stress.value_or(0.0) != 0.0) writer.judge(peak);
     judge(writer.add("peak_strain", "peak strain", "%", 1.0 / percent, a.peak_strain, b.peak_strain));
     judge(writer.add("youngs_modulus", "Young's modulus", "MPa", mega, a.youngs_modulus, b.youngs_modulus));
     writer.add("poissons_ratio", "Poisson's ratio", "", 1.0, a.poissons_ratio, b.poissons_ratio);
-    writer.add("residual_stress", "residual stress", "MPa", mega, a.residual_stress, b.residual_stress);
+    writer.add("residual_stress", "residual axial stress", "MPa", mega, a.residual_stress, b.residual_stress);
 }
 
 void add_cracks(const FinishedRun& a, const FinishedRun& b, const Comparison& comparison, TableWriter& writer) {

@@ -745,11 +745,11 @@ TEST_F(CommandLine, CompareSetsTwoRunsSideBySide) {
         EXPECT_THAT(content_of(path(name)), StartsWith("\x89PNG")) << name;
     for (const char* name : {"c/curves.svg", "c/cracks.svg"})
         EXPECT_THAT(content_of(path(name)), HasSubstr("</svg>")) << name;
-    EXPECT_THAT(content_of(path("c/compare.md")), HasSubstr("| peak stress (MPa) |"));
+    EXPECT_THAT(content_of(path("c/compare.md")), HasSubstr("| peak axial stress (MPa) |"));
 
     const Result strict = kluft({"compare", "event", "explicit", "--tolerance", "1e-9", "-o", "c"});
     EXPECT_EQ(strict.code, 1) << strict.out;
-    EXPECT_THAT(strict.out, AllOf(ContainsRegex("peak stress [^\n]*MISS\n"), HasSubstr("do not agree within")));
+    EXPECT_THAT(strict.out, AllOf(ContainsRegex("peak axial stress [^\n]*MISS\n"), HasSubstr("do not agree within")));
     const auto json = nlohmann::json::parse(content_of(path("c/compare.json")));
     EXPECT_EQ(json["agree"], false);
     EXPECT_EQ(json["b"]["integrator"], "explicit");

@@ -20,7 +20,7 @@ ComparisonTable table() {
     table.b = {"all", "results/all", "", "", "", {}};
     table.tolerance = 0.05;
     table.quantities = {
-        {"peak_stress", "peak stress", "MPa", 1e6, 1.5e6, 1.2e6, -0.2, Verdict::missed},
+        {"peak_stress", "peak axial stress", "MPa", 1e6, 1.5e6, 1.2e6, -0.2, Verdict::missed},
         {"peak_strain", "peak strain", "%", 0.01, 0.012, 0.0121, 0.1 / 12.0, Verdict::within},
         {"residual_stress", "residual stress", "MPa", 1e6, {}, std::numeric_limits<double>::quiet_NaN(), {}},
         {"cracks_tension", "cracks in tension", "", 1.0, 12345678.0, 0.0, -1.0},
@@ -31,12 +31,12 @@ ComparisonTable table() {
 TEST(ComparisonTable, ShowsUnitsSignedDifferencesAndMisses) {
     const std::string text = comparison_text(table());
     EXPECT_THAT(text, HasSubstr("A  results/event  (done, implicit, 255 blocks)\nB  results/all  (no summary)\n"));
-    EXPECT_THAT(text, ::testing::ContainsRegex("peak stress \\(MPa\\) +1.5 +1.2 +-20.00 %  MISS\n"));
+    EXPECT_THAT(text, ::testing::ContainsRegex("peak axial stress \\(MPa\\) +1.5 +1.2 +-20.00 %  MISS\n"));
     EXPECT_THAT(text, ::testing::ContainsRegex("peak strain \\(%\\) +1.2 +1.21 +\\+0.83 %  within\n"));
     EXPECT_THAT(text, ::testing::ContainsRegex("residual stress \\(MPa\\) +- +- +-\n"));
     EXPECT_THAT(text, HasSubstr("12345678"));
     EXPECT_THAT(text, ::testing::ContainsRegex("mean difference +- +- +3.10 %  within\n"));
-    EXPECT_THAT(text, EndsWith("The runs do not agree within 5 %: peak stress.\n"));
+    EXPECT_THAT(text, EndsWith("The runs do not agree within 5 %: peak axial stress.\n"));
 }
 
 TEST(ComparisonTable, IsMarkdownWithMissesInBold) {
@@ -47,7 +47,7 @@ TEST(ComparisonTable, IsMarkdownWithMissesInBold) {
     marked.notes = {"a_note"};
     marked.pictures = {"curves.png"};
     const std::string text = comparison_markdown(marked);
-    EXPECT_THAT(text, HasSubstr("| **peak stress (MPa)** | **1.5** | **1.2** | **-20.00 %** | **MISS** |\n"));
+    EXPECT_THAT(text, HasSubstr("| **peak axial stress (MPa)** | **1.5** | **1.2** | **-20.00 %** | **MISS** |\n"));
     EXPECT_THAT(text, AllOf(HasSubstr("one\\|two"), HasSubstr("a\\_note"), HasSubstr("![curves](curves.png)")));
     EXPECT_THAT(text, AllOf(HasSubstr("up to 1.2 %"), HasSubstr("within 0.05 m"), Not(HasSubstr("nan"))));
 }

@@ -35,8 +35,8 @@ Progress at_step(int step, int n_steps = 200) {
 }
 
 TEST(ProgressLine, SaysStageStepStrainStressCracksIterationsAndTimeLeft) {
-    EXPECT_EQ(progress_text(at_step(57), 200.0), "stage 2/2  step 57/200 (28 %)  strain 0.570 %  stress 1.213 MPa  "
-                                                 "cracks 43  iterations 412  left 3 min 20 s");
+    EXPECT_EQ(progress_text(at_step(57), 200.0), "stage 1  step 57/200 (28 %, 3 min 20 s left)  strain 0.570 %  "
+                                                 "axial 1.213 MPa  cracks 43  iterations 412");
     EXPECT_THAT(progress_text(at_step(57), std::nullopt), EndsWith("iterations 412"));
 }
 
@@ -89,12 +89,12 @@ TEST(ProgressLine, EstimatesTheTimeLeftFromTheLaterHalf) {
         shown.now = step;
         shown.line.update(at_step(step, 400));
     }
-    EXPECT_THAT(shown.writes.back(), HasSubstr("left 5 min 00 s"));
+    EXPECT_THAT(shown.writes.back(), HasSubstr("5 min 00 s left"));
     for (int step = 101; step <= 140; ++step) {
         shown.now = 100.0 + 3.0 * (step - 100);
         shown.line.update(at_step(step, 400));
     }
-    EXPECT_THAT(shown.writes.back(), HasSubstr("left 13 min 00 s")); // 260 steps of 3 s
+    EXPECT_THAT(shown.writes.back(), HasSubstr("13 min 00 s left")); // 260 steps of 3 s
 }
 
 } // namespace

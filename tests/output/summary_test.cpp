@@ -97,16 +97,55 @@ TEST(Summary, HasNoPeakReachedAndNoResidualWhileTheStressRises) {
     EXPECT_TRUE(curve_numbers(rows, rows, 1, Plane::stress).peak_reached);
 }
 
-TEST(Summary, UsesTheRangeToThirtyPercentOfThePeakOnly) {
+TEST(Summary, ElasticConstantsEndWhereMoreThanAHundredthOfWhatIsClosedSlides) {
     Rows rows = triangle(100e6, 0.3);
-    for (auto& each : rows)
+    for (auto& each : rows) {
+        each.locked = 990;
+        each.sliding = each.axial_strain > 0.005 ? 11 : 9;
+        if (each.axial_strain > 0.005) each.lateral_strain = -7.0 * each.axial_strain;
+    }
+    EXPECT_NEAR(*curve_numbers(rows, rows, 1, Plane::stress).poissons_ratio, 0.3, 1e-12);
+}
+
+TEST(Summary, HasNoYoungsModulusWherePoissonsRatioIsImpossible) {
+    const Rows rows = triangle(100e6, 0.7);
+    const auto numbers = curve_numbers(rows, rows, 1, Plane::stress);
+    EXPECT_FALSE(numbers.youngs_modulus || numbers.poissons_ratio);
+    EXPECT_NEAR(*numbers.axial_modulus, 100e6, 1e-3);
+    EXPECT_NEAR(*numbers.lateral_ratio, 0.7, 1e-12);
+}
+
+// The triangle pulled instead of pressed, without lateral pressure.
+TEST(Summary, PeakOfATensionTestIsTheLargestTension) {
+    Rows rows = triangle(100e6, 0.3);
+    for (StepRecord& each : rows) {
+        each.axial_strain = -each.axial_strain;
+        each.lateral_strain = -each.lateral_strain;
+        each.differential_stress = each.axial_stress = -each.differential_stress;
+        each.lateral_stress = 0.0;
+    }
+    const auto numbers = curve_numbers(rows, rows, 1, Plane::stress);
+    EXPECT_DOUBLE_EQ(*numbers.peak_stress, -1e6);
+    EXPECT_DOUBLE_EQ(*numbers.peak_strain, -0.01);
+    EXPECT_TRUE(numbers.peak_reached);
+    EXPECT_NEAR(*numbers.youngs_modulus, 100e6, 1e-3);
+    EXPECT_NEAR(*numbers.poissons_ratio, 0.3, 1e-12);
+    EXPECT_NEAR(*numbers.residual_stress, -(1.0 - 0.4 * 0.9) * 1e6, 1e-3);
+}
+
+TEST(Summary, UsesTheRangeToThirtyPercentOfThePeakWhereAllSlidesFromTheStart) {
+    Rows rows = triangle(100e6, 0.3);
+    for (auto& each : rows) {
+        each.sliding = each.locked = 50;
         if (each.differential_stress > 0.31e6) each.lateral_strain = -7.0 * each.axial_strain;
+    }
     EXPECT_NEAR(*curve_numbers(rows, rows, 1, Plane::stress).poissons_ratio, 0.3, 1e-12);
 }
 
 // Two steps to the peak: the first is beyond 30 %, so that only the start lies in the range.
 TEST(Summary, InterpolatesTheRangeWhenStepsAreCoarse) {
-    const Rows rows{row(0, 0, 0, 0), row(1, 1, 0.005, 0.5e6, -0.001), row(2, 1, 0.01, 1e6, -0.004)};
+    Rows rows{row(0, 0, 0, 0), row(1, 1, 0.005, 0.5e6, -0.001), row(2, 1, 0.01, 1e6, -0.004)};
+    rows[1].sliding = 1;
     const auto numbers = curve_numbers(rows, rows, 1, Plane::stress);
     EXPECT_NEAR(*numbers.youngs_modulus, 100e6, 1e-3);
     EXPECT_NEAR(*numbers.poissons_ratio, 0.2, 1e-12);

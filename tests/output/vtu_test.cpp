@@ -74,7 +74,14 @@ TEST(Vtu, HoldsStressesWithTheirSigns) {
     const Vec2 axis(std::cos(angle), std::sin(angle));
     const auto fields = testing::affine_fields(system, Mat2::Zero(), -2e6 * axis * axis.transpose());
     const std::string file = blocks_vtu(system, fields, {"rock"}, StepRecord{});
-    EXPECT_DOUBLE_EQ(array_of<double>(file, "stress_xx")[1], -2e6 * std::pow(std::cos(angle), 2));
+    const auto stress = array_of<double>(file, "stress"); // nine numbers a block, positive in compression
+    ASSERT_EQ(stress.size(), 18U);
+    EXPECT_DOUBLE_EQ(stress[9], 2e6 * std::pow(std::cos(angle), 2));
+    EXPECT_DOUBLE_EQ(stress[10], 2e6 * std::cos(angle) * std::sin(angle));
+    EXPECT_EQ(stress[11], 0.0);
+    EXPECT_EQ(stress[12], stress[10]);
+    EXPECT_DOUBLE_EQ(stress[13], 2e6 * std::pow(std::sin(angle), 2));
+    EXPECT_EQ(stress[17], 0.0);
     EXPECT_NEAR(array_of<double>(file, "sigma_1")[1], 2e6, 1e-8);
     EXPECT_NEAR(array_of<double>(file, "sigma_3")[1], 0.0, 1e-8);
     EXPECT_THAT(array_of<std::int32_t>(file, "block"), ElementsAre(0, 1));
@@ -110,7 +117,7 @@ TEST(Vtu, HoldsInterfacesAsLinesWithTheirStates) {
     EXPECT_THAT(array_of<std::int32_t>(file, "bonded"), ElementsAre(0, 0, 0, 1, 1));
     EXPECT_EQ(array_of<double>(file, "gap")[0], 1e-4);
     EXPECT_EQ(array_of<double>(file, "slip")[1], 3e-4);
-    EXPECT_EQ(array_of<double>(file, "normal_traction")[1], -3e5);
+    EXPECT_EQ(array_of<double>(file, "normal_traction")[1], 3e5);
     EXPECT_EQ(array_of<double>(file, "shear_traction")[1], 1e5);
     // Edges of a regular hexagon of width d have the length d/sqrt(3).
     const auto points = array_of<double>(file, "Points");

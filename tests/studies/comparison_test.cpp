@@ -179,7 +179,7 @@ TEST(Comparison, MarksWhatMissesTheTolerance) {
     EXPECT_EQ(quantity(comparison, "curve_mean").verdict, Verdict::within);
     EXPECT_EQ(quantity(comparison, "residual_stress").verdict, Verdict::not_judged);
     EXPECT_THAT(comparison_text(comparison.table),
-                HasSubstr("do not agree within 3 %: peak stress, Young's modulus.\n"));
+                HasSubstr("do not agree within 3 %: peak axial stress, Young's modulus.\n"));
 }
 
 TEST(Comparison, OfARunWithItselfAgreesWithinNothing) {

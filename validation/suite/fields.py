@@ -12,7 +12,8 @@ class Fields:
     """Blocks (polygons) or interfaces (lines) of one load step.
 
     points: (n, 2) before loading; displacement: (n, 2); cells: a list of arrays of point indices; field["stress_xx"]: one
-    number per cell. Units and signs are those of the file: stress and traction positive in tension.
+    number per cell. Units are those of the file. Stress and normal traction are positive in tension here, as in mechanics; the file has
+    them positive in compression.
     """
 
     def __init__(self, path):
@@ -35,6 +36,11 @@ class Fields:
         point_data = {node.get("Name"): array(node) for node in piece.findall("PointData/DataArray")}
         self.displacement = point_data["displacement"][:, :2]
         self.field = {node.get("Name"): array(node) for node in piece.findall("CellData/DataArray")}
+        if "stress" in self.field:
+            tensor = -self.field.pop("stress")
+            self.field.update(stress_xx=tensor[:, 0], stress_xy=tensor[:, 1], stress_yy=tensor[:, 4])
+        if "normal_traction" in self.field:
+            self.field["normal_traction"] = -self.field["normal_traction"]
         shapes = {node.get("Name"): array(node) for node in piece.findall("Cells/DataArray")}
         self.cells = np.split(shapes["connectivity"], shapes["offsets"][:-1])
 

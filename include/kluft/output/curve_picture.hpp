@@ -68,7 +68,7 @@ struct RunCurve {
     std::string label;
     std::vector<StepRecord> history;
     std::vector<StepRecord> equilibria; ///< may be empty
-    int platen_stage = 0;               ///< the first stage that moves a platen
+    std::optional<int> platen_stage;    ///< the first stage that moves a platen
 };
 
 /// Differential stress (MPa) against axial strain (%), positive in compression, from the state before the platen

@@ -33,15 +33,20 @@ struct CurveNumbers {
 /// Rows of the stages from `platen_stage` on, and the last row before them (the state in which the platen starts).
 [[nodiscard]] std::vector<StepRecord> platen_rows(const std::vector<StepRecord>& rows, int platen_stage);
 
-/// The balanced row with the largest axial stress, the first of equals; nothing without a balanced row.
-[[nodiscard]] std::optional<StepRecord> peak_row(const std::vector<StepRecord>& rows);
+/// 1 where the first stage that moves a platen presses the body, -1 where it pulls it; 1 without such a stage.
+[[nodiscard]] double platen_sense(const std::vector<StepRecord>& rows, std::optional<int> platen_stage);
+
+/// The balanced row with the axial stress of largest magnitude in the sense of the platen, the first of equals; nothing without a
+/// balanced row.
+[[nodiscard]] std::optional<StepRecord> peak_row(const std::vector<StepRecord>& rows, std::optional<int> platen_stage);
 
 /// Computes the numbers from the rows of equilibria.csv (peak) and history.csv (the rest; also the peak when there are
 /// no equilibria). Unbalanced rows count in `unbalanced_steps` only.
 ///
-/// Elastic constants: least squares from the start of the platen's movement to 30 % of the peak differential stress;
-/// where fewer than two rows lie in that range, its end is interpolated. In plane stress E = slope, nu = ratio; in plane
-/// strain the slopes are E' = E/(1 - nu^2) and nu' = nu/(1 - nu), hence nu = nu'/(1 + nu') and E = E' (1 - nu^2).
+/// Elastic constants: least squares over the balanced rows from the start of the platen's movement to its peak, at most to
+/// the last before more than 1 % of what is closed slides; where those are fewer than three, over the rows up to 30 % of the peak differential stress, of
+/// which the last is interpolated where they are fewer than two. In plane stress E = slope, nu = ratio; in plane
+/// strain the slopes are E' = E/(1 - nu^2) and nu' = nu/(1 - nu), hence nu = nu'/(1 + nu') and E = E' (1 - nu^2). A body whose nu is not between 0 and 0.5 has no such constants.
 /// `platen_stage`: the first stage that moves a platen; without one there are no elastic constants.
 [[nodiscard]] CurveNumbers curve_numbers(const std::vector<StepRecord>& equilibria,
                                          const std::vector<StepRecord>& history, std::optional<int> platen_stage,
