@@ -248,6 +248,7 @@ private:
         }
 
         overlapping_.emplace_back(edge_a.edge, edge_b.edge);
+        const std::size_t first = points_.size();
         for (int k = 0; k < 3; ++k) {
             const double tau = low + overlap_positions[k] * overlap;
             ContactPoint point = point_between(a, edge_a, tau / extent_a, b, edge_b, 1.0 - (tau - start_b) / extent_b);
@@ -255,6 +256,20 @@ private:
             point.key.point = k;
             finish(point, along);
             points_.push_back(point);
+        }
+        set_pieces(std::span(points_).subspan(first));
+    }
+
+    /// The pieces of an overlap are as long as the weights of its points (15).
+    static void set_pieces(std::span<ContactPoint> points) {
+        const ContactPoint& start = points.front();
+        const ContactPoint& end = points.back();
+        double from = 0.0;
+        for (std::size_t k = 0; k < points.size(); ++k) {
+            const double to = from + lobatto_weights[k];
+            points[k].piece = {end.xi_a - start.xi_a, end.xi_b - start.xi_b, end.offset - start.offset,
+                               from - overlap_positions[k], to - overlap_positions[k]};
+            from = to;
         }
     }
 

@@ -82,15 +82,23 @@ void add_block_tangents(const EquilibriumProblem& problem, const Eigen::VectorXd
     }
 }
 
+void add_tilt_tangent(const TiltTangent& tilt, const PairBlocks<Mat6>& blocks) {
+    blocks.aa += tilt.force_a * tilt.row_a.transpose();
+    blocks.ab += tilt.force_a * tilt.row_b.transpose();
+    blocks.ba += tilt.force_b * tilt.row_a.transpose();
+    blocks.bb += tilt.force_b * tilt.row_b.transpose();
+}
+
 void add_contact_tangents(const EquilibriumProblem& problem, const Eigen::VectorXd& q, TangentKind kind,
                           BlockMatrix& matrix) {
     for (const ContactPoint& point : problem.body.placement->contacts) {
-        const Mat2 tangent = point_tangent(problem, point, q, kind);
-        if (tangent.isZero(0.0)) continue;
+        const auto [tangent, by_tilt] = point_tangent(problem, point, q, kind);
+        if (tangent.isZero(0.0) && by_tilt.isZero(0.0)) continue;
+        const PairBlocks blocks(matrix.values, *matrix.pattern, point.block_a, point.block_b);
         PairMoments moments;
         moments.add(point.xi_a, point.xi_b);
-        add_pair_tangent(moments, point_stiffness(point.normal, point.weight, tangent),
-                         PairBlocks(matrix.values, *matrix.pattern, point.block_a, point.block_b));
+        add_pair_tangent(moments, point_stiffness(point.normal, point.weight, tangent), blocks);
+        if (!by_tilt.isZero(0.0)) add_tilt_tangent({point, by_tilt}, blocks);
     }
 }
 

@@ -41,15 +41,28 @@ void add_block_tangents(const EquilibriumProblem& problem, const RigidTurns& tur
     }
 }
 
+void add_tilt_tangent(const TiltTangent& tilt, const ContactPoint& point, const RigidTurns& turns,
+                      const PairBlocks<Mat3>& blocks) {
+    const Vec3 force_a = turns.reduced_forces(tilt.force_a, point.block_a);
+    const Vec3 force_b = turns.reduced_forces(tilt.force_b, point.block_b);
+    const Vec3 row_a = turns.reduced_forces(tilt.row_a, point.block_a);
+    const Vec3 row_b = turns.reduced_forces(tilt.row_b, point.block_b);
+    blocks.aa += force_a * row_a.transpose();
+    blocks.ab += force_a * row_b.transpose();
+    blocks.ba += force_b * row_a.transpose();
+    blocks.bb += force_b * row_b.transpose();
+}
+
 void add_contact_tangents(const EquilibriumProblem& problem, const RigidTurns& turns, const Eigen::VectorXd& q,
                           TangentKind kind, BlockMatrix& matrix) {
     for (const ContactPoint& point : problem.body.placement->contacts) {
-        const Mat2 tangent = point_tangent(problem, point, q, kind);
-        if (tangent.isZero(0.0)) continue;
+        const auto [tangent, by_tilt] = point_tangent(problem, point, q, kind);
+        if (tangent.isZero(0.0) && by_tilt.isZero(0.0)) continue;
+        const PairBlocks blocks(matrix.rigid_values, *matrix.pattern, point.block_a, point.block_b);
         RigidPairMoments moments;
         moments.add(turns.lever(point.block_a, point.xi_a), turns.lever(point.block_b, point.xi_b));
-        add_rigid_pair_tangent(moments, point_stiffness(point.normal, point.weight, tangent),
-                               PairBlocks(matrix.rigid_values, *matrix.pattern, point.block_a, point.block_b));
+        add_rigid_pair_tangent(moments, point_stiffness(point.normal, point.weight, tangent), blocks);
+        if (!by_tilt.isZero(0.0)) add_tilt_tangent({point, by_tilt}, point, turns, blocks);
     }
 }
 

@@ -15,13 +15,15 @@ void RigidTurns::set(const BlockSystem& system, const Eigen::VectorXd& q) {
 void RigidTurns::reduce(const Eigen::VectorXd& forces, Eigen::VectorXd& reduced) const {
     reduced.resize(n_rigid_unknowns * n_blocks());
     for (int b = 0; b < n_blocks(); ++b) {
-        const double* const f = forces.data() + n_block_unknowns * b;
-        const double cosine = cosine_sine_[b].x();
-        const double sine = cosine_sine_[b].y();
-        reduced[n_rigid_unknowns * b] = f[0];
-        reduced[n_rigid_unknowns * b + 1] = f[1];
-        reduced[n_rigid_unknowns * b + 2] = -sine * f[2] + cosine * f[3] - cosine * f[4] - sine * f[5];
+        reduced.segment<n_rigid_unknowns>(n_rigid_unknowns * b) =
+            reduced_forces(forces.segment<n_block_unknowns>(n_block_unknowns * b), b);
     }
+}
+
+Vec3 RigidTurns::reduced_forces(const Vec6& f, int b) const {
+    const double cosine = cosine_sine_[b].x();
+    const double sine = cosine_sine_[b].y();
+    return {f[0], f[1], -sine * f[2] + cosine * f[3] - cosine * f[4] - sine * f[5]};
 }
 
 double RigidTurns::norm_of_magnitudes(const Eigen::VectorXd& magnitudes) const {

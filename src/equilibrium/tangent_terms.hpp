@@ -56,8 +56,20 @@ template <class Block> struct PairBlocks {
     return Eigen::Vector2d(law.normal_stiffness, law.shear_stiffness).asDiagonal();
 }
 
-/// The derivative of a contact point's traction with respect to (gap, slip) in a tangent of this kind (Pa/m).
-[[nodiscard]] Mat2 point_tangent(const EquilibriumProblem& problem, const ContactPoint& point, const Eigen::VectorXd& q,
-                                 TangentKind kind);
+/// The derivatives of a contact point's traction (normal, shear) in a tangent of some kind (Pa/m).
+struct PointTangent {
+    Mat2 by_motion = Mat2::Zero(); ///< with respect to (gap, slip)
+    Vec2 by_tilt = Vec2::Zero();   ///< with respect to the tilt of its overlap; in the exact tangent only
+};
+[[nodiscard]] PointTangent point_tangent(const EquilibriumProblem& problem, const ContactPoint& point,
+                                         const Eigen::VectorXd& q, TangentKind kind);
+
+/// The part of a point's tangent that the tilt of its overlap makes: forces on the numbers of the two blocks times a row over
+/// them, as affine blocks have them; of rank one.
+struct TiltTangent {
+    TiltTangent(const ContactPoint& point, const Vec2& by_tilt);
+    Vec6 force_a, force_b; ///< N/m per m of tilt
+    Vec6 row_a, row_b;     ///< tilt per unknown
+};
 
 } // namespace kluft

@@ -130,10 +130,16 @@ std::vector<double> load_magnitudes(const LoadedBody& body, const Eigen::VectorX
     return result;
 }
 
+ContactPiece piece_at(const InterfaceLaw& law, const ContactPoint& point, const Eigen::VectorXd& q) {
+    if (law.cohesion == 0.0) return {};
+    return {.from = point.piece.from, .to = point.piece.to, .tilt = tilt(point, q)};
+}
+
 PointTraction contact_traction(const std::vector<InterfaceLaw>& laws, const ContactPoint& point,
                                const Eigen::VectorXd& q) {
     const auto [gap, slip] = gap_and_slip(point, q);
-    return fracture_traction(laws[point.law], point.history, gap, slip);
+    const InterfaceLaw& law = laws[point.law];
+    return fracture_traction(law, point.history, gap, slip, piece_at(law, point, q));
 }
 
 PointTraction contact_traction(const LoadedBody& body, int i, const Eigen::VectorXd& q) {

@@ -91,9 +91,68 @@ TEST(InterfaceLaw, DirectShearRisesWithTheShearStiffnessToCoulombsLimit) {
 
 TEST(InterfaceLaw, CohesionVanishesContinuouslyAtOpening) {
     const InterfaceLaw law = joint();
-    EXPECT_NEAR(shear_limit(law, 1e-3).value, 0.0, 1e-2);
-    EXPECT_NEAR(shear_limit(law, law.cohesion_onset).value, law.cohesion + law.cohesion_onset * law.tan_friction, 1e-6);
-    EXPECT_NEAR(shear_limit(law, 1e6).value, law.cohesion + 1e6 * law.tan_friction, 1e-6);
+    const auto limit_at = [&](double p) {
+        return shear_limit(law, -(p + law.contact_rounding) / law.normal_stiffness);
+    };
+    EXPECT_NEAR(shear_limit(law, -1e-15).value, 0.0, 1e-2);
+    EXPECT_NEAR(limit_at(law.cohesion_onset).value, law.cohesion + law.cohesion_onset * law.tan_friction, 1e-6);
+    EXPECT_NEAR(limit_at(1e6).value, law.cohesion + 1e6 * law.tan_friction, 1e-6);
+}
+
+// The mean of c min(1, p/t_r) over the piece, by the midpoint rule on 10^5 parts; p linear between the pressures at its ends.
+TEST(InterfaceLaw, CohesionIsTheMeanOverThePieceAsFarAsItIsClosed) {
+    InterfaceLaw law = joint();
+    law.contact_rounding = 0.0;
+    const double gap = -1e-5; // p = 0.04 MPa = t_r
+    for (const double tilt : {-8e-5, -3e-5, -1e-6, 0.0, 1e-9, 2e-5, 6e-5, 1e-3}) {
+        const ContactPiece piece{.from = -1.0 / 3.0, .to = 0.5, .tilt = tilt};
+        constexpr int n_parts = 100000;
+        double mean = 0.0;
+        for (int i = 0; i < n_parts; ++i) {
+            const double along = piece.from + (piece.to - piece.from) * (i + 0.5) / n_parts;
+            const double pressure = std::max(0.0, -law.normal_stiffness * (gap + along * tilt));
+            mean += law.cohesion * std::min(1.0, pressure / law.cohesion_onset) / n_parts;
+        }
+        const double friction = -law.normal_stiffness * gap * law.tan_friction;
+        EXPECT_NEAR(shear_limit(law, gap, piece).value, mean + friction, 1e-7 * law.cohesion) << tilt;
+    }
+}
+
+TEST(InterfaceLaw, AnOpenPointCarriesTheCohesionOfTheClosedPartOfItsPiece) {
+    const InterfaceLaw law = joint();
+    const ContactPiece piece{.from = -0.5, .to = 0.0, .tilt = 1e-3}; // closed by half a millimetre at its other end
+    const auto traction = fracture_traction(law, {}, 0.0, 1e-2, piece);
+    EXPECT_EQ(traction.normal, 0.0);
+    EXPECT_EQ(traction.state, ContactState::sliding);
+    EXPECT_NEAR(traction.shear, law.cohesion, 0.02 * law.cohesion);
+    const auto away = fracture_traction(law, {}, 1e-3, 1e-2, piece);
+    EXPECT_EQ(away.state, ContactState::open);
+    EXPECT_EQ(away.shear, 0.0);
+}
+
+TEST(InterfaceLaw, TangentOfAPieceMatchesDifferences) {
+    InterfaceLaw law = joint();
+    law.tan_dilation = 0.1;
+    const double step = 1e-11;
+    for (const double tilt : {-8e-5, 1e-6, 5e-5}) {
+        for (const double gap : {-3e-5, -1.5e-5}) {
+            const ContactPiece piece{.from = -1.0 / 6.0, .to = 0.5, .tilt = tilt};
+            const auto at = [&](double g, double t) {
+                return fracture_traction(law, {2e4, 1e-7}, g, 2e-4, {.from = piece.from, .to = piece.to, .tilt = t});
+            };
+            const auto exact = at(gap, tilt);
+            const double scale = 2e-4 * law.normal_stiffness;
+            EXPECT_EQ(exact.state, ContactState::sliding);
+            EXPECT_NEAR(exact.tangent(0, 0), (at(gap + step, tilt).normal - at(gap - step, tilt).normal) / (2 * step),
+                        scale);
+            EXPECT_NEAR(exact.tangent(1, 0), (at(gap + step, tilt).shear - at(gap - step, tilt).shear) / (2 * step),
+                        scale);
+            EXPECT_NEAR(exact.by_tilt(0), (at(gap, tilt + step).normal - at(gap, tilt - step).normal) / (2 * step),
+                        scale);
+            EXPECT_NEAR(exact.by_tilt(1), (at(gap, tilt + step).shear - at(gap, tilt - step).shear) / (2 * step),
+                        scale);
+        }
+    }
 }
 
 // Dilatant shear at constant normal stiffness K, here infinite: the gap is fixed, so

@@ -139,7 +139,7 @@ TEST(EquilibriumProblem, SlidingPointsAndFollowerPressuresMakeTheExactTangentUns
     EXPECT_GT(skew(), 1e-4);
 }
 
-TEST(EquilibriumProblem, SymmetricTangentIsSymmetricAndHasNoNegativeEigenvalue) {
+TEST(SlowEquilibriumProblem, SymmetricTangentIsSymmetricAndHasNoNegativeEigenvalue) {
     for (const std::uint64_t seed : {1U, 2U}) {
         Body body(seed);
         body.add_contacts();
@@ -286,6 +286,12 @@ TEST(EquilibriumProblem, SparseTangentAgreesWithTheDenseSumOfItsParts) {
         const ContactPoint& point = problem.placement.contacts[i];
         add_point(point.weight, opening_at(point, point.xi_a, point.xi_b), point.normal, point.tangent,
                   contact_traction(problem.body, i, body.q).tangent);
+        const Shape here = opening_at(point, point.xi_a, point.xi_b);
+        const Shape whole_overlap =
+            opening_at(point, point.xi_a + point.piece.xi_a, point.xi_b + point.piece.xi_b) - here;
+        const Vec2 by_tilt = contact_traction(problem.body, i, body.q).by_tilt;
+        sum += point.weight * here.transpose() * (by_tilt(0) * point.normal + by_tilt(1) * point.tangent) *
+               (point.normal.transpose() * whole_overlap);
     }
     for (int b = 0; b < system.n_blocks(); ++b) {
         const Block& block = system.blocks[b];

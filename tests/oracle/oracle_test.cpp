@@ -225,7 +225,7 @@ Comparison expect_agreement(const std::string& name, const Scene& scene, int loa
 // ---- the formulation -----------------------------------------------------------------------------------------------
 
 Lagged lagged_at(const LoadedBody& body, const Eigen::VectorXd& q) {
-    return {coulomb_limits(body, normal_forces_at(body, q)), pressure_forces_at(body, q)};
+    return {coulomb_limits(body, normal_forces_at(body, q), q), pressure_forces_at(body, q)};
 }
 
 // Central differences with step h: error h^2/6 f''' and round-off of the energy over h, together below 1e-6.

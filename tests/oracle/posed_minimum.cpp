@@ -217,19 +217,63 @@ std::vector<Vec2> pressure_forces_at(const LoadedBody& body, const Eigen::Vector
     return forces;
 }
 
-std::vector<double> coulomb_limits(const LoadedBody& body, const std::vector<double>& normal_forces) {
-    const double least = least_force * largest(normal_forces);
+/// Integral of min(1, p+/onset) over a piece of the given length along which p is linear: the trapezoids between the places where
+/// p is 0 and where it is `onset`.
+double cohesive_length(double from, double to, double onset, double length) {
+    std::vector<double> places{0.0, 1.0};
+    for (const double kink : {0.0, onset}) {
+        const double place = (kink - from) / (to - from);
+        if (place > 0.0 && place < 1.0) places.push_back(place);
+    }
+    std::sort(places.begin(), places.end());
+    double sum = 0.0;
+    for (std::size_t i = 1; i < places.size(); ++i) {
+        const double middle = std::lerp(from, to, 0.5 * (places[i - 1] + places[i]));
+        const double share = middle >= onset ? (middle > 0.0 ? 1.0 : 0.0) : std::max(0.0, middle / onset);
+        sum += share * (places[i] - places[i - 1]);
+    }
+    return sum * length;
+}
+
+/// Per contact the cohesion's part of its limit (N/m): of its piece of the overlap, of a corner that of its own pressure.
+std::vector<double> cohesive_limits(const LoadedBody& body, const Eigen::VectorXd& q) {
+    const std::vector<ContactPoint>& points = body.placement->contacts;
+    const auto pressure = [&](const ContactPoint& point) {
+        return -(*body.laws)[point.law].normal_stiffness * gap_form(point, q).constant;
+    };
+    const auto same_overlap = [](const ContactKey& a, const ContactKey& b) {
+        return a.point >= 0 && b.point >= 0 && a.block_a == b.block_a && a.edge_a == b.edge_a &&
+               a.block_b == b.block_b && a.edge_b == b.edge_b;
+    };
     std::vector<double> limits;
-    for (std::size_t i = 0; i < body.placement->contacts.size(); ++i) {
-        const InterfaceLaw& law = (*body.laws)[body.placement->contacts[i].law];
-        const double weight = body.placement->contacts[i].weight;
-        const double onset = weight * law.cohesion_onset;
-        if (normal_forces[i] <= least) {
-            limits.push_back(0.0);
-            continue;
+    for (std::size_t first = 0; first < points.size();) {
+        std::size_t end = first + 1;
+        while (end < points.size() && same_overlap(points[first].key, points[end].key)) ++end;
+        const InterfaceLaw& law = (*body.laws)[points[first].law];
+        double length = 0.0;
+        for (std::size_t i = first; i < end; ++i) length += points[i].weight;
+        const double at_start = pressure(points[first]);
+        const double at_end = pressure(points[end - 1]);
+        double from = 0.0;
+        for (std::size_t i = first; i < end; ++i) {
+            const double to = from + points[i].weight / length;
+            limits.push_back(law.cohesion * cohesive_length(std::lerp(at_start, at_end, from),
+                                                            std::lerp(at_start, at_end, to), law.cohesion_onset,
+                                                            points[i].weight));
+            from = to;
         }
-        const double cohesion = normal_forces[i] >= onset ? 1.0 : normal_forces[i] / onset;
-        limits.push_back(normal_forces[i] * law.tan_friction + cohesion * weight * law.cohesion);
+        first = end;
+    }
+    return limits;
+}
+
+std::vector<double> coulomb_limits(const LoadedBody& body, const std::vector<double>& normal_forces,
+                                   const Eigen::VectorXd& q) {
+    const double least = least_force * largest(normal_forces);
+    std::vector<double> limits = cohesive_limits(body, q);
+    for (std::size_t i = 0; i < limits.size(); ++i) {
+        if (normal_forces[i] > least)
+            limits[i] += normal_forces[i] * (*body.laws)[body.placement->contacts[i].law].tan_friction;
     }
     return limits;
 }
@@ -299,7 +343,7 @@ OracleSolution solve_by_minimisation(const LoadedBody& body, const Eigen::Vector
     OracleSolution solution;
     solution.q = start;
     std::vector<double> normal_forces = normal_forces_at(body, start);
-    Lagged lagged{coulomb_limits(body, normal_forces), pressure_forces_at(body, start)};
+    Lagged lagged{coulomb_limits(body, normal_forces, start), pressure_forces_at(body, start)};
     // At first what has friction sticks: limits of the start may be too small to hold the body under larger loads.
     for (std::size_t i = 0; i < body.placement->contacts.size(); ++i) {
         const InterfaceLaw& law = (*body.laws)[body.placement->contacts[i].law];
@@ -327,11 +371,9 @@ OracleSolution solve_by_minimisation(const LoadedBody& body, const Eigen::Vector
 
         const auto pressure_forces = pressure_forces_at(body, solution.q);
         solution.last_change = change_of(normal_forces, solution.normal_forces, lagged, pressure_forces);
-        if (std::getenv("DBG"))
-            fprintf(stderr, "%d %d %.3e %s\n", k, minimum.iterations, solution.last_change, minimum.status.c_str());
         solution.converged = k > 1 && solution.last_change <= outer_tolerance;
         normal_forces = solution.normal_forces;
-        lagged = {coulomb_limits(body, normal_forces), pressure_forces};
+        lagged = {coulomb_limits(body, normal_forces, solution.q), pressure_forces};
         scales = {std::max(minimum.x.head(start.size()).cwiseAbs().maxCoeff(), 1e-6 * scales.length),
                   std::max(largest(normal_forces), 1e-6 * scales.force)};
     }

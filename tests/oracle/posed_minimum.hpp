@@ -32,8 +32,10 @@ struct PosedMinimum {
 [[nodiscard]] Eigen::VectorXd closest_unknowns(const PosedMinimum& posed, const LoadedBody& body, const Lagged& lagged,
                                                const Eigen::VectorXd& start, const Eigen::VectorXd& q);
 
-/// Largest shear force of each contact under given normal forces: Coulomb with the onset of cohesion, eq. (8) (N/m).
-[[nodiscard]] std::vector<double> coulomb_limits(const LoadedBody& body, const std::vector<double>& normal_forces);
+/// Largest shear force of each contact under given normal forces, with the cohesion of the closed part of its piece of the
+/// overlap at q: Coulomb with the onset of cohesion, eq. (8) (N/m).
+[[nodiscard]] std::vector<double> coulomb_limits(const LoadedBody& body, const std::vector<double>& normal_forces,
+                                                 const Eigen::VectorXd& q);
 
 /// Closing k_n w max(0, -gap) of the contacts at q (N/m).
 [[nodiscard]] std::vector<double> normal_forces_at(const LoadedBody& body, const Eigen::VectorXd& q);

@@ -5,7 +5,6 @@ import math
 import numpy as np
 
 from suite import figures
-from suite.case import order_of_convergence
 
 HEIGHT, COHESION, FRICTION = 10.0, 20e3, math.tan(math.radians(30))
 WEIGHT = 0.5 * HEIGHT**2 * 2500 * 10  # N/m, above a plane at 45 degrees
@@ -19,39 +18,32 @@ def factor(lost=0.0):
     return (COHESION * LENGTH * (1 - lost) + NORMAL * FRICTION) / DRIVING
 
 
-def equal(n):
-    return [HEIGHT * i / n for i in range(1, n)]
-
-
-def halved(n):
-    """Corners at 1/2, 3/4, 7/8 ... of the plane: the last piece is 2^-n of it."""
-    return [HEIGHT * (1 - 0.5**i) for i in range(1, n + 1)]
-
-
-def run_with(case, name, corners, onset):
+def run_with(case, name, pieces, onset=20.0, defaults=False):
+    """With the plane cut in equal pieces."""
+    corners = [HEIGHT * i / pieces for i in range(1, pieces)]
     block = {"name": "slope", "polygon": [[0, 0]] + [[x, x] for x in corners] + [[HEIGHT, HEIGHT], [0, HEIGHT]]}
-    return case.run(name, {"geometry.blocks.1": block, "interfaces.plane.cohesion_onset": onset, "output.fields": False})
+    settings = {} if defaults else {"interfaces.plane.cohesion_onset": onset}
+    return case.run(name, {"geometry.blocks.1": block, "output.fields": False, **settings}, defaults=defaults)
 
 
 def check(case):
-    pieces = [1, 2, 4, 8, 16]
-    by_equal = np.array([run_with(case, f"equal-{n}", equal(n), 20).summary["factor_of_safety"] for n in pieces])
-    last = 0.5 ** np.array([2, 4, 6, 8])
-    by_halves = np.array([run_with(case, f"halved-{n}", halved(n), 20).summary["factor_of_safety"] for n in (2, 4, 6, 8)])
-    fine = run_with(case, "halved-12", halved(12), 20)
-    case.expect("factor of safety, last piece L/4096", factor(), fine.summary["factor_of_safety"], 1e-4)
-    history = fine.histories
+    pieces = [1, 2, 5, 16]
+    runs = [run_with(case, f"pieces-{n}", n) for n in pieces]
+    found = [run.summary["factor_of_safety"] for run in runs]
+    for n, factor_found in zip(pieces, found):
+        case.expect(f"factor of safety, plane in {n} piece{'s' if n > 1 else ''}", factor(), factor_found, 1e-4)
+    history = runs[0].histories
     case.expect_worst("normal force on the plane, all steps", NORMAL / 1e3, history["plane.normal_force"][1:] / 1e3, 1e-6, "kN/m")
     case.expect_worst("shear force on the plane, all steps", DRIVING / 1e3, history["plane.shear_force"][1:] / 1e3, 1e-6, "kN/m")
-    case.expect_worst("with equal pieces, less c L/(6 n)", [factor(1 / (6 * n)) for n in pieces], by_equal, 1e-4)
-    for share in (32, 4):
-        onset = PEAK / share
-        found = run_with(case, f"onset-{share}", halved(12), onset).summary["factor_of_safety"]
-        case.expect(f"cohesion onset of {onset / 1e3:.4g} kPa", factor(0.5 / share), found, 1e-4)
-    draw(case, pieces, by_equal, last, by_halves, fine.summary["factor_of_safety"])
+    onsets = PEAK / np.array([128, 32, 8, 4])
+    of_onset = [run_with(case, f"onset-{onset:.0f}", 1, onset).summary["factor_of_safety"] for onset in onsets]
+    case.expect_worst("with a cohesion onset of up to a quarter of the pressure at the toe", factor(0.5 * onsets / PEAK), of_onset, 1e-4)
+    by_default = [run_with(case, f"pieces-{n}", n, defaults=True).summary["factor_of_safety"] for n in pieces]
+    case.expect_default("factor of safety, plane in 1 to 16 pieces", factor(), by_default)
+    draw(case, pieces, found, by_default, onsets, of_onset)
 
 
-def draw(case, pieces, by_equal, last, by_halves, fine):
+def draw(case, pieces, found, by_default, onsets, of_onset):
     figure, (sketch, plot) = case.figure()
     figures.block(sketch, [(-3, -2.5), (13, -2.5), (13, 10), (10, 10), (0, 0), (-3, 0)])
     figures.block(sketch, [(0, 0), (10, 10), (0, 10)], facecolor="#efe9df")
@@ -60,14 +52,11 @@ def draw(case, pieces, by_equal, last, by_halves, fine):
     figures.line(sketch, [(0, 0), (0.5 * 4, -0.5 * 4), (10, 10)], color=figures.SECOND)
     figures.label(sketch, (4.2, 1.7), "p", color=figures.SECOND)
     figures.arrow(sketch, (-1.5, 0), (-1.5, 10), "H", (-0.8, 0), figures.INK, "<|-|>")
-    first = 1.0 / np.array(pieces)
-    share = np.logspace(-3.8, 0, 50)
-    plot.loglog(share, [1 - factor(x / 6) / factor() for x in share], color=figures.INK, linewidth=1.0, label="a sixth of the last piece without cohesion")
-    plot.loglog(first, 1 - by_equal / factor(), "o", color=figures.FOUND, label=f"equal pieces, order {order_of_convergence(first, 1 - by_equal / factor()):.2f}")
-    plot.loglog(last, 1 - by_halves / factor(), "s", markersize=8, markerfacecolor="none", color=figures.SECOND, label="halved towards the top")
-    plot.loglog([0.5**12], [abs(1 - fine / factor())], "d", color=figures.THIRD, label=f"last piece L/4096: F = {fine:.5f}")
-    plot.axhline(1e-4, color=figures.PALE, linestyle="--", linewidth=0.9)
-    figures.label(plot, (3e-4, 1.4e-4), "tolerance", color=figures.PALE)
-    plot.set(xlabel="uppermost piece over the plane's length", ylabel="shortfall of the factor of safety", ylim=(1e-6, 0.2))
-    plot.legend(loc="upper left")
+    share = np.linspace(0, 0.27, 50)
+    plot.plot(share, [factor(0.5 * x) for x in share], color=figures.INK, linewidth=1.0, label="theory, less $c L t_r/(2 p_0)$")
+    plot.plot(onsets / PEAK, of_onset, "o", color=figures.FOUND, label="one piece")
+    plot.plot([20 / PEAK] * len(pieces), found, "s", markersize=8, markerfacecolor="none", color=figures.SECOND, label="1, 2, 5, 16 pieces")
+    plot.plot([0.01 * COHESION / PEAK] * len(pieces), by_default, "+", markersize=9, color=figures.THIRD, label="the same, defaults")
+    plot.set(xlabel="onset of the cohesion over the pressure at the toe", ylabel="factor of safety")
+    plot.legend(loc="lower left")
     case.save_figure(figure)

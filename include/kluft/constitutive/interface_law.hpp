@@ -14,7 +14,7 @@ struct InterfaceLaw {
     double tan_friction = 0.0;
     double cohesion = 0.0;
     double tan_dilation = 0.0;
-    double cohesion_onset = 0.0;    ///< t_r: c_eff = c min(1, p/t_r)
+    double cohesion_onset = 0.0;    ///< t_r: the cohesion is c min(1, p/t_r)
     double contact_rounding = 0.0;  ///< g_0 k_n: the pressure is rounded for -2 g_0 < gap < 0
     double friction_rounding = 0.0; ///< s: Coulomb's limit is rounded for |trial|/limit in 1 - s .. 1 + s
 };
@@ -25,11 +25,20 @@ struct PointHistory {
     double dilation = 0.0;    ///< opening that plastic slip has forced so far (m)
 };
 
-/// Traction at a point and its derivatives with respect to (gap, slip).
+/// The piece of an overlap whose cohesion a point carries: [from, to] from the point, over the overlap's length. Along it
+/// the gap is linear; without a piece the cohesion is that of the point itself.
+struct ContactPiece {
+    double from = 0.0;
+    double to = 0.0;
+    double tilt = 0.0; ///< by how much the gap grows over the whole overlap (m)
+};
+
+/// Traction at a point and its derivatives with respect to (gap, slip), and to the tilt of the overlap.
 struct PointTraction {
     double normal = 0.0;         ///< Pa, positive in tension
     double shear = 0.0;          ///< Pa
     Mat2 tangent = Mat2::Zero(); ///< d(normal, shear)/d(gap, slip), Pa/m
+    Vec2 by_tilt = Vec2::Zero(); ///< d(normal, shear)/d tilt, Pa/m: of the cohesion of a sliding point
     ContactState state = ContactState::locked;
     PointHistory history; ///< to keep if this becomes the equilibrium
 };
@@ -46,12 +55,14 @@ struct ContactPressure {
 /// Elastic energy of the contact pressure at a gap: the integral of p from there to zero (J/m2).
 [[nodiscard]] double contact_energy(const InterfaceLaw& law, double gap);
 
-/// Coulomb's limit c min(1, p/t_r) + p tan(phi) and its derivative with respect to p.
+/// Coulomb's limit p tan(phi) + the mean of c min(1, p/t_r) over the piece, at a gap less dilation (docs/theory.md 15), and its
+/// derivatives.
 struct ShearLimit {
-    double value = 0.0;
-    double slope = 0.0;
+    double value = 0.0; ///< Pa
+    double by_gap = 0.0;
+    double by_tilt = 0.0;
 };
-[[nodiscard]] ShearLimit shear_limit(const InterfaceLaw& law, double pressure);
+[[nodiscard]] ShearLimit shear_limit(const InterfaceLaw& law, double elastic_gap, const ContactPiece& piece = {});
 
 /// A bonded point: elastic in tension and shear. `start_shear` is the shear traction where slip = 0.
 [[nodiscard]] inline PointTraction bond_traction(const InterfaceLaw& law, double start_shear, double gap, double slip) {
@@ -64,8 +75,9 @@ struct ShearLimit {
 }
 
 /// A point of a fracture: no tension, Coulomb friction with rounding, dilation by plastic slip. `gap` is total,
-/// `slip` counts from where `start` was kept.
+/// `slip` counts from where `start` was kept. A point without pressure is open unless a part of its piece is closed and
+/// has cohesion.
 [[nodiscard]] PointTraction fracture_traction(const InterfaceLaw& law, const PointHistory& start, double gap,
-                                              double slip);
+                                              double slip, const ContactPiece& piece = {});
 
 } // namespace kluft

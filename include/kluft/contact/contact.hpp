@@ -39,6 +39,15 @@ struct ContactMemory {
     PointHistory history;
 };
 
+/// By how much the two points of a pair move on along the whole overlap, and the piece of it that the pair stands for.
+struct OverlapPiece {
+    Vec2 xi_a = Vec2::Zero();   ///< block coordinates
+    Vec2 xi_b = Vec2::Zero();   ///< block coordinates
+    Vec2 offset = Vec2::Zero(); ///< of X_b - X_a (m)
+    double from = 0.0;          ///< from the pair, over the overlap's length
+    double to = 0.0;
+};
+
 /// A pair of points of two blocks with a frame that stays fixed during a solve, so that gap and slip are linear in
 /// the unknowns and the tangent is exact.
 struct ContactPoint {
@@ -51,6 +60,7 @@ struct ContactPoint {
     Vec2 tangent = Vec2::Zero(); ///< normal turned by +90 degrees
     double weight = 0.0;         ///< length that the point stands for (m)
     double slip_start = 0.0;     ///< tangent . relative position where slip = 0 (m)
+    OverlapPiece piece;          ///< zero for a vertex
     int law = 0;                 ///< index of the interface law
     int interface = -1;          ///< the interface of a fracture's own two edges; -1 otherwise
     PointHistory history;        ///< at the start of the load step
@@ -60,6 +70,16 @@ struct ContactPoint {
 /// x_b - x_a at displacements q (m).
 [[nodiscard]] inline Vec2 relative_position(const ContactPoint& point, const Eigen::VectorXd& q) {
     return point.offset + displacement_at(q, point.block_b, point.xi_b) - displacement_at(q, point.block_a, point.xi_a);
+}
+
+/// By how much the gap grows over the whole overlap at displacements q (m).
+[[nodiscard]] inline double tilt(const ContactPoint& point, const Eigen::VectorXd& q) {
+    const OverlapPiece& piece = point.piece;
+    const Vec2 zero = Vec2::Zero();
+    const auto moved = [&](int block, const Vec2& along) {
+        return Vec2(displacement_at(q, block, along) - displacement_at(q, block, zero));
+    };
+    return point.normal.dot(piece.offset + moved(point.block_b, piece.xi_b) - moved(point.block_a, piece.xi_a));
 }
 
 } // namespace kluft

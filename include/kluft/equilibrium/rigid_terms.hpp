@@ -25,6 +25,8 @@ public:
     void reduce(const Eigen::VectorXd& forces, Eigen::VectorXd& reduced) const;
     /// The norm of |T|' magnitudes, sums of magnitudes of size 6 n_blocks.
     [[nodiscard]] double norm_of_magnitudes(const Eigen::VectorXd& magnitudes) const;
+    /// T' forces of block `b`.
+    [[nodiscard]] Vec3 reduced_forces(const Vec6& forces, int b) const;
     /// T' stiffness T of block `b`.
     [[nodiscard]] Mat3 reduced(const Mat6& stiffness, int b) const;
     /// The part -(R : f_D)/h of the stiffness against w that the forces f_D on the turning block make.
