@@ -1,6 +1,8 @@
 #include "kluft/equilibrium/newton_increment.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "kluft/core/stopwatch.hpp"
@@ -13,6 +15,7 @@ namespace {
 constexpr double linear_share = 0.3;            ///< of the tolerated residual, that a linear solve may leave
 constexpr double far_linear_residual = 0.05;    ///< of its right side: as many iterations as with less (measured)
 constexpr double largest_linear_residual = 0.1; ///< of its right side, near equilibrium
+constexpr double small_block = 4.0;             ///< times smaller than d: from there on its own size limits a block
 constexpr double travel_residual = 1e-8;        ///< of the border's column
 
 /// Takes the prescribed motions out of a tangent.
@@ -20,6 +23,9 @@ void make_free(const Constraints& constraints, BlockMatrix& matrix) {
     const BlockPattern& pattern = *matrix.pattern;
     project(constraints, matrix, matrix.trace() / (pattern.block_unknowns() * pattern.n_blocks()));
 }
+
+/// The spacing of hexagons as large as the block (m).
+double spacing_of(const Block& block) { return std::sqrt(2.0 * block.area / std::numbers::sqrt3); }
 
 /// The second bound of (31): far from equilibrium a linear solve need not be exact, near it it leaves less than what
 /// the iteration tolerates. `right_side`: its norm (N/m).
@@ -90,15 +96,16 @@ bool NewtonIncrement::solve_refined(const NewtonPoint& at) {
 /// Scales the increment by one factor for all blocks: it stays Newton's direction.
 void NewtonIncrement::limit_motions(const NewtonPoint& at) {
     const BlockSystem& system = *at.evaluator.problem().body.system;
-    const double limit = options_.motion_limit * system.spacing;
-    double largest = 0.0;
+    double largest = 0.0; // over its limit
     limited_.clear();
     for (int b = 0; b < system.n_blocks(); ++b) {
-        const double motion = at.evaluator.coordinates().motion(increment_, b);
-        if (motion > limit) limited_.push_back(b);
+        const double limit =
+            options_.motion_limit * std::min(system.spacing, small_block * spacing_of(system.blocks[b]));
+        const double motion = at.evaluator.coordinates().motion(increment_, b) / limit;
+        if (motion > 1.0) limited_.push_back(b);
         largest = std::max(largest, motion);
     }
-    if (largest > limit) increment_ *= limit / largest;
+    if (largest > 1.0) increment_ /= largest;
 }
 
 bool NewtonIncrement::find(const NewtonPoint& at, TangentKind kind) {

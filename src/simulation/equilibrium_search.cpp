@@ -8,7 +8,7 @@ namespace kluft {
 namespace {
 
 constexpr double eta_decay = 0.1;      ///< from round to round: what a body that stands leaves over falls with it
-constexpr int rounds_with_decay = 4;   ///< then it stays: what nothing else holds needs it
+constexpr int rounds_with_decay = 3;   ///< then it stays: what nothing else holds needs it
 constexpr int max_rounds = 40;         ///< of one search, as long as what is left over falls
 constexpr double share_of_solve = 0.1; ///< of what may be left over on a block: largest residual of a solve
 

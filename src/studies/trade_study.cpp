@@ -197,7 +197,7 @@ private:
         }
         if (cracks_) add_values("check interval", "cracks.every", {"1", "2", "5"});
         if (cracks_ && *own("cracks.update") == "event")
-            add_values("event tolerance", "cracks.event_tolerance", {"5e-2", "2e-2", "5e-3", "1e-3"});
+            add_values("event tolerance", "cracks.event_tolerance", {"2e-2", "1e-2", "2.5e-3", "1e-3"});
         add_values("residual tolerance", "solver.tolerance", {"1e-3", "1e-4", "1e-5", "1e-6", "1e-7"});
         add_values("detection interval", "solver.detection_every", {"1", "2", "5"});
         add_accuracy();

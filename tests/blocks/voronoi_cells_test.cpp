@@ -197,7 +197,7 @@ TEST(VoronoiCells, HaveNoPreferredDirections) {
     }
 }
 
-TEST(VoronoiCells, PassesMakeShortEdgesRarer) {
+TEST(SlowVoronoiCells, PassesMakeShortEdgesRarer) {
     double last = 1.0;
     for (const int relaxation : {0, 2, 8}) {
         const auto edges = voronoi_edges({.spacing = 1.0, .relaxation = relaxation}, box_of(40, 40), everywhere);

@@ -94,7 +94,7 @@ TEST(SlowExplicitSimulation, BondedHexagonsAreAsStiffAsInTheImplicitRun) {
     expect_closed_energy(run);
 }
 
-TEST(ExplicitSimulation, PotentialCracksFailAtTheStressOfTheImplicitRun) {
+TEST(SlowExplicitSimulation, PotentialCracksFailAtTheStressOfTheImplicitRun) {
     const std::vector<std::string> overrides{"geometry.fractures=[]", "materials.rock.cohesion=0.5 MPa",
                                              "materials.rock.friction_angle=30"};
     auto explicit_overrides = overrides;

@@ -73,7 +73,7 @@ private:
 };
 
 // The sizes of the load steps go on from the state alone.
-TEST(Repeatability, RunWithAnAccuracyGoesOnFromASavedStateAsIfItHadNotStopped) {
+TEST(SlowRepeatability, RunWithAnAccuracyGoesOnFromASavedStateAsIfItHadNotStopped) {
     SceneRun whole;
     whole.scene = read_scene(KLUFT_SOURCE_DIR "/models/quickstart.yaml",
                              {"solver.accuracy=0.01", "solver.repeatable=true", "stages.1.strain.value=0.01"});
@@ -95,7 +95,7 @@ TEST(Repeatability, RunWithAnAccuracyGoesOnFromASavedStateAsIfItHadNotStopped) {
 }
 
 // Noise is a number of each interface, however the crack comes to be checked.
-TEST(Repeatability, NoiseOfStrengthsRepeatsAndItsSeedMakesAnotherRun) {
+TEST(SlowRepeatability, NoiseOfStrengthsRepeatsAndItsSeedMakesAnotherRun) {
     auto noisy = to_first_cracks;
     noisy.insert(noisy.end(), {"cracks.strength_noise=0.05", "cracks.strength_seed=3"});
     const auto first = quick_start(noisy);
@@ -106,13 +106,13 @@ TEST(Repeatability, NoiseOfStrengthsRepeatsAndItsSeedMakesAnotherRun) {
 }
 
 // Without noise the seed is of no account.
-TEST(Repeatability, SeedOfNoNoiseChangesNoBit) {
+TEST(SlowRepeatability, SeedOfNoNoiseChangesNoBit) {
     auto seeded = to_first_cracks;
     seeded.emplace_back("cracks.strength_seed=9");
     expect_same_runs(quick_start(to_first_cracks), quick_start(seeded));
 }
 
-TEST(Repeatability, RunOfAnotherBodyInBetweenLeavesNothingBehind) {
+TEST(SlowRepeatability, RunOfAnotherBodyInBetweenLeavesNothingBehind) {
     const auto before = quick_start(to_first_cracks);
     (void)quick_start({"stages.1.steps=4", "geometry.tessellation.hexagons.spacing=0.05"});
     expect_same_runs(before, quick_start(to_first_cracks));

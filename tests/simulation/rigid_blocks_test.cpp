@@ -121,7 +121,7 @@ stages:
 
 // The same body, loads and strengths: rigid hexagons with the compliance in their interfaces are as stiff as affine ones
 // but for the halves of hexagons at the outline, which are not those of a lattice, and they crack.
-TEST(RigidBlocksRun, BodyOfRigidHexagonsDeformsAndCracksAboutAsAnAffineOne) {
+TEST(SlowRigidBlocksRun, BodyOfRigidHexagonsDeformsAndCracksAboutAsAnAffineOne) {
     const auto rigid = run_scene(hexagons_under_a_platen("rigid"));
     const auto affine = run_scene(hexagons_under_a_platen("affine"));
     ASSERT_EQ(rigid.report.status, RunStatus::done) << rigid.report.diagnosis;
@@ -209,7 +209,7 @@ TEST(RigidBlocksRun, RigidHexagonsOnGivenStiffnessesAreAsStiffAsAffineOnes) {
 
 // 1/(2K) and 1/(4G) of the blocks in series, by hand: with k_n d = 1 GPa, k_s d = 0.5 GPa of the joint and blocks of
 // (19) to (22), E = 1 GPa, nu = 0.2, k_n d/E = 10, r = 0.5.
-TEST(RigidBlocksRun, OnlyTheNetAndItsBrokenEdgesCarryTheComplianceOfBlocks) {
+TEST(SlowRigidBlocksRun, OnlyTheNetAndItsBrokenEdgesCarryTheComplianceOfBlocks) {
     const Model model = run_scene(hexagons_under_a_platen("rigid"), {"stages.1.steps=1"}).model;
     const double d = 0.08;
     const double bulk = 1e9 / (1.2 * 0.6), shear = 1e9 / 1.2; // 2K, 2G of the rock
@@ -228,7 +228,7 @@ TEST(RigidBlocksRun, OnlyTheNetAndItsBrokenEdgesCarryTheComplianceOfBlocks) {
     EXPECT_EQ(model.law_types[2], 1);
 }
 
-TEST(RigidBlocksRun, RigidHexagonsHaveTheRocksModuliWithAnyStiffnessRatio) {
+TEST(SlowRigidBlocksRun, RigidHexagonsHaveTheRocksModuliWithAnyStiffnessRatio) {
     const auto stiffness = [](const std::vector<std::string>& overrides) {
         return run_scene(hexagons_under_a_platen("rigid"), overrides).model.laws[0].normal_stiffness;
     };

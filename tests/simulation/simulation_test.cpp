@@ -338,7 +338,7 @@ solver: {tolerance: 1e-10, balance: 1e-9}
     EXPECT_NEAR(resumed.last().axial_stress, whole.last().axial_stress, 1e-6 * whole.last().axial_stress);
 }
 
-TEST(Simulation, SameSceneTwiceGivesTheSameBits) {
+TEST(SlowSimulation, SameSceneTwiceGivesTheSameBits) {
     std::ifstream file(KLUFT_SOURCE_DIR "/models/quickstart.yaml");
     const std::string scene{std::istreambuf_iterator<char>(file), {}};
     const auto first = run_scene(scene);

@@ -28,7 +28,7 @@ std::string polygon(double width, double height, double x, double y, double angl
 std::string scene_beside(double size, int n, double friction_angle, const std::string& more_stages) {
     std::string blocks = fmt::format("    - {{name: plane, polygon: {}, support: fixed}}\n",
                                      polygon(4 * small, small, 0, -small * std::sqrt(2.0), dip));
-    blocks += fmt::format("    - {{name: small, polygon: {}}}\n", polygon(small, small, 0, 0, dip));
+    blocks += fmt::format("    - {{name: small, polygon: {}}}\n", polygon(1.5 * small, small / 1.5, 0, 0, dip));
     const double x = 10.0 * small;
     blocks += fmt::format("    - {{name: ground, polygon: {}, support: fixed}}\n",
                           polygon(1.2 * n * size, size, x, -size, 0));
@@ -53,6 +53,8 @@ TEST_P(SmallBlock, FallsBesideLargeOnesAboveItsFrictionAngle) {
     EXPECT_EQ(run.report.status, RunStatus::no_equilibrium) << run.report.diagnosis;
     ASSERT_EQ(run.report.falling.size(), 1U);
     EXPECT_EQ(run.report.falling.front().block, "small");
+    EXPECT_LT(run.report.falling.front().direction.y(), -0.5);
+    if (GetParam() > 10.0 * small) return; // beside much larger blocks it is off the plane when it is given up
     EXPECT_NEAR(run.report.falling.front().direction.x(), -std::cos(dip), 0.02);
     EXPECT_NEAR(run.report.falling.front().direction.y(), -std::sin(dip), 0.02);
 }
@@ -69,10 +71,11 @@ TEST_P(SmallBlock, HasItsOwnFactorOfSafety) {
         GetParam(), 10, 50, ", {name: reduce, strength_reduction: {from: 1, to: 2, tolerance: 0.001}, steps: 10}"));
     ASSERT_TRUE(run.report.results.factor_of_safety) << run.report.diagnosis;
     const double expected = std::tan(50.0 * std::numbers::pi / 180.0) / std::tan(dip);
-    EXPECT_NEAR(*run.report.results.factor_of_safety, expected, 2e-3 * expected);
+    EXPECT_NEAR(*run.report.results.factor_of_safety, expected, 1e-3 * expected);
 }
 
-INSTANTIATE_TEST_SUITE_P(BesideBlocksOf, SmallBlock, ::testing::Values(small, 10.0 * small, 30.0 * small),
+INSTANTIATE_TEST_SUITE_P(BesideBlocksOf, SmallBlock,
+                         ::testing::Values(small, 10.0 * small, 100.0 * small, 1000.0 * small),
                          [](const auto& info) { return fmt::format("{:.0f}_times_its_size", info.param / small); });
 
 } // namespace

@@ -37,6 +37,13 @@ def check(case):
     rise = plastic[slipped] * math.tan(PSI) / (1 / SPRING + 1 / NORMAL_STIFFNESS)
     case.expect_worst("constant stiffness: rise of the normal stress", rise / 1e6, (normal[slipped] - normal[0]) / 1e6, 1e-6, "MPa")
     case.expect_worst("constant stiffness: shear over normal stress = tan phi", math.tan(PHI), shear[slipped] / normal[slipped], 1e-6)
+    plastic, opening, normal, shear = joint_of(case.run("constant-stress", defaults=True))
+    slipped = plastic > 2e-9  # the friction's rounding takes the first nanometre
+    case.expect_default("constant stress: rate of opening over rate of plastic slip", math.tan(PSI),
+                        np.diff(opening[slipped]) / np.diff(plastic[slipped]))
+    case.expect_default("constant stress: shear stress at slip", NORMAL * math.tan(PHI) / 1e6, shear[slipped] / 1e6, "MPa")
+    plastic, _, normal, shear = joint_of(case.run("constant-stiffness", scene="stiffness.yaml", defaults=True))
+    case.expect_default("constant stiffness: shear over normal stress", math.tan(PHI), (shear / normal)[plastic > 1e-9])
     draw(case, free, held)
 
 

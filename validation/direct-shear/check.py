@@ -24,6 +24,10 @@ def check(case):
                       [abs(faces["shear_traction"][0] / faces["slip"][0]) / 1e12 for faces in bonded], 1e-6, "TPa/m")
     case.expect("peak", PEAK / 1e6, force[before].max() / 1e6, 1e-6, "MPa")
     case.expect("residual", RESIDUAL / 1e6, force[after][-1] / 1e6, 1e-6, "MPa")
+    plain = case.run("shear", defaults=True).equilibria
+    bonded_rows = plain["cracks_tension"] + plain["cracks_shear"] == 0
+    case.expect_default("peak and residual", [PEAK / 1e6, RESIDUAL / 1e6],
+                        [plain["axial_stress"][bonded_rows].max() / 1e6, plain["axial_stress"][-1] / 1e6], "MPa")
     last = run.interfaces()
     case.expect("traction on the interface at the end", RESIDUAL / 1e6, abs(last["shear_traction"][0]) / 1e6, 1e-6, "MPa")
     case.expect_same("mode of the crack", "shear", str(run.cracks["mode"][0]))

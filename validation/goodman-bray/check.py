@@ -65,12 +65,12 @@ def bisected_limit():
     return low
 
 
-def moving(case, friction, stiffness):
+def moving(case, friction, stiffness, defaults=False):
     """Forces P_n of blocks 4 to 13 (N/m) while they topple, and the run."""
     run = case.run(f"moving-{friction:.6f}-{stiffness:g}", {
         "interfaces.joint.friction_angle": math.degrees(math.atan(friction)),
         "interfaces.joint.normal_stiffness": stiffness, "interfaces.joint.shear_stiffness": stiffness,
-        "stages.1.displacement.value": -3e-4 * 1e11 / stiffness, "output.fields": False}, "moving.yaml")
+        "stages.1.displacement.value": -3e-4 * 1e11 / stiffness, "output.fields": False}, "moving.yaml", defaults=defaults)
     return {n: run.histories[f"p{n}.normal_force"][-1] for n in range(3, 13)}, run
 
 
@@ -90,6 +90,8 @@ def check(case):
     joints = runs[-1][1].histories
     ratio = [abs(joints[f"p{n}.shear_force"][-1]) / joints[f"p{n}.normal_force"][-1] for n in range(4, 13)]
     case.expect_worst("their friction is mobilised: Q/P over tan phi", 1.0, np.array(ratio) / limit, 5e-3, digits=5)
+    forces = moving(case, limit, stiffnesses[-1], True)[0]
+    case.expect_default("P12 to P3 of toppling blocks", target / 1e3, [forces[n] / 1e3 for n in numbers], "kN/m")
     bearing = root(lambda friction: moving(case, friction, 1e11)[0][3] - sliding_resistance(friction), 0.76, 0.81)
     case.expect("tan phi at which three sliding blocks bear them", limit, bearing, 5e-3, digits=5)
     whole = case.run("whole", {"output.fields": False}).summary["factor_of_safety"]

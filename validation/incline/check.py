@@ -11,9 +11,10 @@ FRICTION = 30.0
 WEIGHT = 4.0 * 1.0 * 2500 * 10  # N/m
 
 
-def run_at(case, slope):
+def run_at(case, slope, defaults=False):
     angle = math.radians(slope)
-    return case.run(f"slope-{slope:.5f}", {"analysis.gravity": [10 * math.sin(angle), -10 * math.cos(angle)]}, may_fail=True)
+    return case.run(f"slope-{slope:.5f}", {"analysis.gravity": [10 * math.sin(angle), -10 * math.cos(angle)]}, may_fail=True,
+                    defaults=defaults)
 
 
 def forces(run):
@@ -38,6 +39,8 @@ def check(case):
     case.expect("slope at which it slides", FRICTION, 0.5 * (low + high), 0.01, "deg", absolute=True)
     sliding = {slope: run_at(case, slope) for slope in (30.01, 35, 40, 45)}
     case.expect_same("in equilibrium at 30.01, 35, 40, 45 deg", [False] * 4, [run.balanced for run in sliding.values()])
+    by_default = bisect(lambda slope: run_at(case, slope, True).balanced, 29.0, 31.0, 0.002)
+    case.expect_default("slope at which it slides: tangent", math.tan(math.radians(FRICTION)), math.tan(math.radians(0.5 * sum(by_default))))
     draw(case, slopes, found, 0.5 * (low + high), sliding)
 
 

@@ -77,6 +77,9 @@ def check(case):
         case.expect(f"slope, {name}", wanted, got, 1e-6, "GPa/m")
     case.expect_worst("stress on the platen over its largest, all load steps", expected / expected.max(), found / expected.max(), 1e-6,
                       absolute=True)
+    by_default = case.run("cycle", defaults=True).history["axial_stress"]
+    case.expect_default("largest and least stress on the platen", [expected.max() / 1e3, expected[-1] / 1e3],
+                        [by_default.max() / 1e3, by_default[-1] / 1e3], "kPa")
     draw(case, travel, expected, found)
 
 

@@ -23,10 +23,10 @@ def at_failure(run):
     return table["axial_stress"][before], table["lateral_stress"][before], run.cracks["mode"][0]
 
 
-def pressed(case, lateral, inward):
+def pressed(case, lateral, inward, defaults=False):
     sides = {"stages.0.pressure.left": lateral, "stages.0.pressure.right": lateral, "stages.0.pressure.top": max(lateral, 0.0)}
     return at_failure(case.run(f"lateral-{lateral:g}-{'in' if inward else 'out'}",
-                               {**sides, "stages.1.displacement.value": 1.5e-5 if inward else -1.5e-5}))
+                               {**sides, "stages.1.displacement.value": 1.5e-5 if inward else -1.5e-5}, defaults=defaults))
 
 
 def check(case):
@@ -40,6 +40,8 @@ def check(case):
         if mode != "shear":
             case.expect_same(f"mode at p3 = {lateral / 1e6:g} MPa", "shear", str(mode))
     case.expect_worst("p1 on the line, all", [strength(p3) / 1e6 for p3, _ in points], [p1 / 1e6 for _, p1 in points], 1e-6, "MPa")
+    plain = [pressed(case, lateral, True, defaults=True)[0] for lateral, _ in points]
+    case.expect_default("p1 on the line, all", [strength(p3) / 1e6 for p3, _ in points], np.array(plain) / 1e6, "MPa")
     torn = []
     for lateral in (0.0, 0.1e6, 0.2e6):
         axial, beside, mode = pressed(case, lateral, False)

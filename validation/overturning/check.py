@@ -29,14 +29,14 @@ def corner(stiffness):
     return WEIGHT * (WIDTH / 2 - HEIGHT / 2 * 12 * WEIGHT / (stiffness * WIDTH**2)) / ARM
 
 
-def limit(case, stiffness, friction, low, high):
+def limit(case, stiffness, friction, low, high, defaults=False):
     """The push (N/m) between a run that finds equilibrium and one that does not."""
 
     def stands(share):
         run = case.run(f"k-{stiffness:g}-phi-{friction:g}-{share:.6f}", {
             "interfaces.joint.normal_stiffness": stiffness, "interfaces.joint.shear_stiffness": stiffness,
             "interfaces.joint.friction_angle": friction, "stages.1.pressure.push": share * RIGID / STRIP,
-            "output.fields": False}, may_fail=True)
+            "output.fields": False}, may_fail=True, defaults=defaults)
         return run.balanced
 
     low, high = bisect(stands, low, high, 2e-5)
@@ -51,6 +51,9 @@ def check(case):
     friction = 15.0  # tan 15 deg < b/(2a)
     sliding = limit(case, 1e10, friction, 0.7, 0.9)
     case.expect("push that slides it, phi 15 deg", WEIGHT * math.tan(math.radians(friction)) / 1e3, sliding / 1e3, 5e-3, "kN/m", digits=6)
+    by_default = [limit(case, 1e10, 45.0, 0.95, 1.01, True), limit(case, 1e10, friction, 0.7, 0.9, True)]
+    case.expect_default("pushes that overturn and slide it", [RIGID / 1e3, WEIGHT * math.tan(math.radians(friction)) / 1e3],
+                        np.array(by_default) / 1e3, "kN/m")
     draw(case, stiffnesses, pushes)
 
 

@@ -41,6 +41,8 @@ def check(case):
     for beta in (40, 50, 60, 70, 80):
         case.expect(f"p1 - p3 at slip, beta {beta} deg", strength(beta) / 1e6, found[angles.index(beta)] / 1e6, 1e-5, "MPa")
     case.expect_worst("p1 - p3 at slip, all", strength(np.array(angles)) / 1e6, np.array(found) / 1e6, 1e-5, "MPa")
+    by_default = [case.run(f"beta-{beta}", scene_of(beta), defaults=True).history["differential_stress"][-1] for beta in angles]
+    case.expect_default("p1 - p3 at slip, all", strength(np.array(angles)) / 1e6, np.array(by_default) / 1e6, "MPa")
     for beta in (0, 10, 20, 30):
         run = case.run(f"beta-{beta}", scene_of(beta))
         loaded = run.history["differential_stress"][-1] > HIGHEST

@@ -8,11 +8,14 @@ import time
 from dataclasses import asdict, dataclass
 
 import numpy as np
+import yaml
 
 from suite import figures
 from suite.fields import Fields
 
 NO_EQUILIBRIUM = 3
+DEFAULT_TOLERANCE = 5e-3  # of rows with the program's defaults
+NUMERICAL_KEYS = ("contact_rounding", "friction_rounding", "cohesion_onset")  # of interfaces
 
 
 class RunFailed(Exception):
@@ -108,6 +111,21 @@ def overrides_of(values):
     return words
 
 
+def with_defaults(scene, target):
+    """A copy of the scene without any numerical setting: no `solver`, of `cracks` the criterion alone, no roundings."""
+    content = yaml.safe_load(scene.read_text(encoding="utf-8"))
+    content.pop("solver", None)
+    criterion = content.pop("cracks", {}).get("criterion")
+    if criterion:
+        content["cracks"] = {"criterion": criterion}
+    for interface in content["interfaces"].values():
+        for key in NUMERICAL_KEYS:
+            interface.pop(key, None)
+    copy = target / scene.name
+    copy.write_text(yaml.safe_dump(content, sort_keys=False), encoding="utf-8")
+    return copy
+
+
 class Case:
     """One case at work: collects its rows and makes its figure."""
 
@@ -119,13 +137,15 @@ class Case:
         self.rows = []
         self.seconds = 0.0  # in the program
 
-    def run(self, name, overrides=None, scene="scene.yaml", may_fail=False):
-        """Runs a scene with overrides. Without `may_fail` a run that finds no equilibrium ends the check."""
-        target = self.output / name
+    def run(self, name, overrides=None, scene="scene.yaml", may_fail=False, defaults=False):
+        """Runs a scene with overrides. Without `may_fail` a run that finds no equilibrium ends the check. `defaults`: with
+        the program's defaults in place of all numerical settings of the scene."""
+        target = self.output / (f"defaults-{name}" if defaults else name)
         target.mkdir(parents=True, exist_ok=True)
         for stale in ("summary.json", "history.csv"):
             (target / stale).unlink(missing_ok=True)
-        command = [str(self.program), "run", str(self.directory / scene), "-o", str(target), "--quiet"]
+        path = with_defaults(self.directory / scene, self.output) if defaults else self.directory / scene
+        command = [str(self.program), "run", str(path), "-o", str(target), "--quiet"]
         command += overrides_of({"output.pictures": False, **(overrides or {})})
         start = time.monotonic()
         done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
@@ -153,6 +173,13 @@ class Case:
         worst = int(np.argmax(np.where(np.isnan(errors), np.inf, errors)))
         return self.expect(f"{quantity} (worst of {expected.size})", float(expected.flat[worst]),
                            float(found.flat[worst]), tolerance, unit, absolute, digits)
+
+    def expect_default(self, quantity, expected, found, unit="", digits=5):
+        """A row for the worst of one or many numbers that were found with the program's defaults."""
+        name = f"{quantity}, defaults"
+        if np.size(found) == 1:
+            return self.expect(name, float(np.ravel(expected)[0]), float(np.ravel(found)[0]), DEFAULT_TOLERANCE, unit, digits=digits)
+        return self.expect_worst(name, expected, found, DEFAULT_TOLERANCE, unit, digits=digits)
 
     def expect_same(self, quantity, expected, found):
         """A row for texts or counts that have to be the same."""

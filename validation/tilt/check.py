@@ -55,6 +55,10 @@ def check(case):
         case.expect_worst(f"{kinematics}: T = W sin at rest, over W", pull[rest, 0] / 10, shear / (10 * MASS), 1e-6, absolute=True)
         case.expect_worst(f"{kinematics}: slip at rest", 1e6 * at_rest[2:], 1e6 * slip[2:], 1e-6 if kinematics == "rigid" else 1e-3, "um")
         results[kinematics] = slope, slip
+        run = case.run(kinematics, {"analysis.kinematics": kinematics, "output.fields": False}, may_fail=True, defaults=True)
+        pull = gravity(run.histories)[run.history["balanced"] == 1]
+        last = 1.5 * pull[-1, 0] / pull[-1, 1] - 0.5 * pull[-2, 0] / pull[-2, 1]
+        case.expect_default(f"{kinematics}: tangent of that slope", math.tan(math.radians(FRICTION)), last)
     draw(case, results)
 
 

@@ -30,7 +30,7 @@ def limit(half_span):
     return 2 * THICKNESS * share, gravity_at(2 * THICKNESS * share, half_span)
 
 
-def run_with(case, pieces, half_span):
+def run_with(case, pieces, half_span, defaults=False):
     heights = [i * THICKNESS / pieces for i in range(pieces + 1)]
     blocks = [{"name": name, "polygon": [[x, y] for y in heights] + [[x - half_span, y] for y in reversed(heights)]}
               for name, x in (("left", half_span), ("right", 2 * half_span))]
@@ -39,7 +39,7 @@ def run_with(case, pieces, half_span):
     expected = limit(half_span)[1]
     run = case.run(f"pieces-{pieces}-span-{half_span:g}", {
         "geometry.blocks": ends + blocks, "stages.0.gravity": 0.96 * expected, "stages.1.gravity": 1.04 * expected,
-        "stages.1.steps": 80, "output.fields": False}, may_fail=True)
+        "stages.1.steps": 80, "output.fields": False}, may_fail=True, defaults=defaults)
     histories = run.histories
     ends = np.array([0.0, 0.96, 1.04]) * expected
     stage = histories["stage"].astype(int)
@@ -60,6 +60,8 @@ def check(case):
     case.expect(f"g at which it snaps through, L/t = 20, {pieces} pieces", limit(half_span)[1], fine["limit"], 5e-3, "m/s2", digits=5)
     case.expect_worst("g at the sag found, up to 97 %", gravity_at(fine["sag"], half_span)[before], fine["g"][before], 5e-3, "m/s2", digits=5)
     case.expect_worst("thrust at the sag found", thrust_at(fine["sag"], half_span) / 1e3, fine["thrust"] / 1e3, 5e-3, "kN/m", digits=5)
+    by_default = run_with(case, pieces, half_span, True)
+    case.expect_default(f"g at which it snaps through, {pieces} pieces", limit(half_span)[1], by_default["limit"], "m/s2")
     counts = np.array([2, 4, 8])
     coarse = [run_with(case, n, half_span)["limit"] for n in counts]
     spans = np.array([5.0, 10.0])

@@ -9,18 +9,22 @@ from suite import figures
 
 def check(case):
     angles = [15, 30, 45, 60, 75]
-    found, along = [], []
+    found, along, by_default = [], [], []
     for angle in angles:
         slope = math.tan(math.radians(angle))
         half = 1.1 / slope
-        run = case.run(f"alpha-{angle}", {"geometry.domain.rectangle": {"width": 2 * half + 2, "height": 2, "origin": [-half - 1, -1]},
-                                          "geometry.fractures.0.trace": [[-half, 1.1], [0, 0], [half, 1.1]]})
+        scene = {"geometry.domain.rectangle": {"width": 2 * half + 2, "height": 2, "origin": [-half - 1, -1]},
+                 "geometry.fractures.0.trace": [[-half, 1.1], [0, 0], [half, 1.1]]}
+        run = case.run(f"alpha-{angle}", scene)
         weight = 2500 * 10 / slope  # of the triangle of height 1
         faces = run.interfaces()
         force = -faces["normal_traction"] * faces.lengths() / weight
         case.expect_worst(f"N/W on both faces, alpha {angle} deg", 1 / (2 * math.cos(math.radians(angle))), force, 1e-6)
         found.append(force)
         along.append(np.abs(faces["shear_traction"] * faces.lengths() / weight).max())
+        faces = case.run(f"alpha-{angle}", scene, defaults=True).interfaces()
+        by_default.append(-faces["normal_traction"] * faces.lengths() / weight * 2 * math.cos(math.radians(angle)))
+    case.expect_default("N over W / (2 cos alpha), all", 1.0, by_default)
     case.expect_worst("T/W on the faces", np.zeros(len(along)), along, 1e-6, absolute=True)
     figure, (sketch, plot) = case.figure()
     figures.block(sketch, [(-1.6, -0.5), (1.6, -0.5), (1.6, 1), (1, 1), (0, 0), (-1, 1), (-1.6, 1)])

@@ -27,8 +27,9 @@ struct NewtonPoint {
 };
 
 struct NewtonOptions {
-    bool reuse = true;          ///< of the factor; false: the tangent itself is factorized anew
-    double motion_limit = 0.04; ///< largest change of a block's u or D, relative to the lattice spacing
+    bool reuse = true; ///< of the factor; false: the tangent itself is factorized anew
+    double motion_limit =
+        0.04; ///< largest change of a block's u or D, relative to d, and to 4 times the d of hexagons of its size
 };
 
 /// Finds increments one after the other, and keeps the factor in between.

@@ -20,9 +20,9 @@ enum class CrackUpdate {
 struct CrackOptions {
     CrackCriterion criterion = CrackCriterion::principal_stress;
     CrackUpdate update = CrackUpdate::event;
-    int every = 1;                 ///< load steps between two checks
-    double event_tolerance = 2e-2; ///< of f at an event
-    StrengthNoise strength_noise;  ///< of the potential cracks
+    int every = 1;                   ///< load steps between two checks
+    double event_tolerance = 2.5e-3; ///< of f at an event
+    StrengthNoise strength_noise;    ///< of the potential cracks
 };
 
 enum class Tangent {
@@ -35,7 +35,7 @@ struct SolverOptions {
     double balance = 1e-3;   ///< largest share of the mass-like term in F_ref of a balanced step
     double accuracy = 0.0;   ///< of the history, relative; the load steps follow from it. 0: as many as the stages say
     int detection_every = 1; ///< load steps between two detections of contacts; always after a crack
-    double viscosity = 0.05; ///< eta H^2/E of the mass-like term
+    double viscosity = 5e-3; ///< eta H^2/E of the mass-like term
     int max_iterations = 12; ///< open-close iterations per attempt
     int max_unbalanced_steps = 10; ///< successive unbalanced steps that end a run
     Tangent tangent = Tangent::unsymmetric;
