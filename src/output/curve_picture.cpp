@@ -450,8 +450,7 @@ void add_peak(const RunCurve& run, const StepRecord& peak, bool alone, PlottedCu
     const auto& rows = run.equilibria.empty() ? run.history : run.equilibria;
     curve.peak = plotted(peak);
     curve.peak_reached = curve_numbers(rows, {}, run.platen_stage, Plane::strain).peak_reached;
-    const std::string values =
-        fmt::format("\u03c3\u2081 \u2212 \u03c3\u2083 = {:#.3g} MPa at {:.2f} %", curve.peak->y(), curve.peak->x());
+    const std::string values = fmt::format("differential {:#.3g} MPa at {:#.3g} %", curve.peak->y(), curve.peak->x());
     if (alone) {
         curve.peak_text = {values, fmt::format("axial {:#.3g} MPa", peak.axial_stress / mega)};
         if (!curve.peak_reached) curve.peak_text.emplace_back("still rising");

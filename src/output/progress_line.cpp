@@ -22,6 +22,9 @@ double fraction_of(const Progress& progress) {
     return progress.n_stages > 0 ? (progress.stage + progress.load_factor) / progress.n_stages : 0.0;
 }
 
+/// What is rounded to 0.000 has no sign.
+double without_sign_of_zero(double stress) { return std::abs(stress) < 5e-4 ? 0.0 : stress; }
+
 int terminal_columns() {
     winsize size{};
     return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
@@ -42,8 +45,8 @@ std::string progress_text(const Progress& progress, std::optional<double> second
     const std::string left = seconds_left ? fmt::format(", {} left", readable_time(*seconds_left)) : "";
     return fmt::format("stage {}  step {} ({:.0f} %{})  strain {:.3f} %  axial {:.3f} MPa  cracks {}  iterations {}",
                        progress.stage, step, std::floor(100.0 * fraction_of(progress)), left,
-                       100.0 * progress.axial_strain, progress.axial_stress / 1e6, progress.cracks,
-                       progress.open_close_iterations);
+                       100.0 * progress.axial_strain, without_sign_of_zero(progress.axial_stress / 1e6),
+                       progress.cracks, progress.open_close_iterations);
 }
 
 ProgressLine::ProgressLine(std::function<void(std::string_view)> write, bool terminal, int columns,

@@ -42,15 +42,16 @@ std::string description(const Model& model, const std::vector<MovingBlock>& movi
 }
 
 std::string description(const Model& model, const Failure& failure) {
-    std::string text =
-        failure.what.empty() ? fmt::format("residual {:.2g} of the forces", failure.residual_ratio) : failure.what;
+    std::string text = failure.what;
+    if (text.empty()) text = description(model, failure.moving);
+    if (text.empty()) {
+        text = fmt::format("residual {:.2g} of the forces", failure.residual_ratio);
+        if (failure.worst_block >= 0) text += ", worst is " + block_description(model.system, failure.worst_block);
+    }
     if (failure.strength_factor != 1.0)
         text += fmt::format("; with the strengths divided by {:.6g}", failure.strength_factor);
     if (failure.nothing_holds) text += "; nothing holds the body, which has neither a support nor a platen";
     for (const std::string& cause : failure.causes) text += "; " + cause;
-    if (!failure.moving.empty()) return text + "; " + description(model, failure.moving);
-    if (failure.worst_block >= 0 && failure.what.empty())
-        text += "; worst is " + block_description(model.system, failure.worst_block);
     return text;
 }
 

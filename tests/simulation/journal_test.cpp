@@ -213,8 +213,8 @@ TEST(Failure, NamesTheBlockWithItsInterfaces) {
     const Model model = posed::two_bonded_blocks(1e5);
     const std::string text =
         description(model, Failure{.worst_block = 1, .residual_ratio = 0.5, .strength_factor = 1.25});
-    EXPECT_EQ(text, "residual 0.5 of the forces; with the strengths divided by 1.25; worst is block " +
-                        text.substr(text.find("block ") + 6));
+    EXPECT_THAT(text, StartsWith("residual 0.5 of the forces, worst is block "));
+    EXPECT_THAT(text, ::testing::EndsWith("; with the strengths divided by 1.25"));
     EXPECT_THAT(text, ::testing::HasSubstr("at (0.5, 1.5), area 1 m2, interfaces 0"));
     EXPECT_THAT(description(model, Failure{.nothing_holds = true}),
                 ::testing::HasSubstr("neither a support nor a platen"));
