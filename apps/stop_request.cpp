@@ -10,6 +10,7 @@ void listen_for_stop() {
     const auto request_stop = [](int) { stop_requested = true; };
     std::signal(SIGINT, request_stop);
     std::signal(SIGTERM, request_stop);
+    std::signal(SIGXFSZ, SIG_IGN); // a file that may not grow is a full disk: the write fails
 }
 
 } // namespace kluft

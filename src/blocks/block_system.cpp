@@ -1,8 +1,11 @@
 #include "kluft/blocks/block_system.hpp"
 
 #include <cmath>
+#include <numbers>
 
 namespace kluft {
+
+double spacing_of(const Block& block) { return std::sqrt(2.0 * block.area / std::numbers::sqrt3); }
 
 void compute_block_moments(const std::vector<Vec2>& vertices, Block& block) {
     block.area = 0.0;

@@ -1,12 +1,12 @@
 #include "kluft/contact/detection.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <span>
 #include <utility>
 
 #include "kluft/contact/broad_phase.hpp"
+#include "kluft/contact/overlap_rule.hpp"
 #include "kluft/kinematics/affine.hpp"
 
 namespace kluft {
@@ -28,9 +28,6 @@ constexpr double deepest_of_thickness = 0.5;
 constexpr double largest_fragment = 0.25; ///< of a cell of the net
 /// Length that a vertex stands for, as a part of min(edge, h): decides convergence, not strength (measured).
 constexpr double vertex_weight = 0.2;
-
-/// Gauss-Lobatto: exact for a linear gap on a closed overlap, with points at both corners.
-constexpr std::array<double, 3> lobatto_weights{1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0};
 
 /// An edge that can touch another block, in its current position.
 struct CurrentEdge {
@@ -128,7 +125,7 @@ public:
         : system_(system), surfaces_(surfaces), q_(q), reach_(reach) {}
 
     /// Makes room for the points of so many overlaps.
-    void expect(std::size_t n_overlaps) { points_.reserve(overlap_positions.size() * n_overlaps); }
+    void expect(std::size_t n_overlaps) { points_.reserve(least_overlap_points * n_overlaps); }
 
     void run(int a, std::span<const CurrentEdge> edges_a, int b, std::span<const CurrentEdge> edges_b) {
         bonded_pair_ = bonded(a, b);
@@ -189,6 +186,14 @@ private:
         return surfaces_.friction[law_a] <= surfaces_.friction[law_b] ? law_a : law_b;
     }
 
+    /// Those of the edge that wants more of them.
+    [[nodiscard]] int points_between(const Edge& a, const Edge& b) const {
+        const auto on = [&](const Edge& e) {
+            return e.interface < 0 ? surfaces_.outline_points : surfaces_.n_points[e.interface];
+        };
+        return std::max(on(a), on(b));
+    }
+
     ContactPoint point_between(int a, const CurrentEdge& edge_a, double s_a, int b, const CurrentEdge& edge_b,
                                double s_b) const {
         const Edge& side_a = reference(a, edge_a.edge);
@@ -239,6 +244,8 @@ private:
         const bool own = side_a.interface >= 0 && side_a.interface == reference(b, edge_b.edge).interface;
         if (std::min(gap_low, gap_high) > reach_) return;
         if (std::min(gap_low, gap_high) < (own ? deepest_own_ : deepest_)) return;
+        if (!own && -std::min(gap_low, gap_high) > overlap)
+            return; // a corner that has sunk into a face beside this one
 
         const double at = low + (gap_low < gap_high ? 0.25 : 0.75) * overlap; // nearer to the deeper end
         if (gap_at(at) < doubtful_) {
@@ -249,26 +256,28 @@ private:
 
         overlapping_.emplace_back(edge_a.edge, edge_b.edge);
         const std::size_t first = points_.size();
-        for (int k = 0; k < 3; ++k) {
-            const double tau = low + overlap_positions[k] * overlap;
+        const OverlapRule rule = overlap_rule(points_between(side_a, reference(b, edge_b.edge)));
+        for (std::size_t k = 0; k < rule.positions.size(); ++k) {
+            const double tau = low + rule.positions[k] * overlap;
             ContactPoint point = point_between(a, edge_a, tau / extent_a, b, edge_b, 1.0 - (tau - start_b) / extent_b);
-            point.weight = lobatto_weights[k] * overlap;
-            point.key.point = k;
+            point.weight = rule.weights[k] * overlap;
+            point.along = rule.positions[k];
+            point.key.point = static_cast<int>(k);
             finish(point, along);
             points_.push_back(point);
         }
-        set_pieces(std::span(points_).subspan(first));
+        set_pieces(rule, std::span(points_).subspan(first));
     }
 
     /// The pieces of an overlap are as long as the weights of its points (15).
-    static void set_pieces(std::span<ContactPoint> points) {
+    static void set_pieces(const OverlapRule& rule, std::span<ContactPoint> points) {
         const ContactPoint& start = points.front();
         const ContactPoint& end = points.back();
         double from = 0.0;
         for (std::size_t k = 0; k < points.size(); ++k) {
-            const double to = from + lobatto_weights[k];
+            const double to = from + rule.weights[k];
             points[k].piece = {end.xi_a - start.xi_a, end.xi_b - start.xi_b, end.offset - start.offset,
-                               from - overlap_positions[k], to - overlap_positions[k]};
+                               from - rule.positions[k], to - rule.positions[k]};
             from = to;
         }
     }
@@ -291,16 +300,31 @@ private:
         return std::ranges::find(overlapping_, pair) != overlapping_.end();
     }
 
+    /// Whether a vertex is carried by a face next to the given edge around a convex corner of the target: an edge of the vertex
+    /// overlaps that face. Against the edge it would catch where blocks side by side have sunk by different amounts.
+    [[nodiscard]] bool is_carried_around_corner(const CurrentEdge& leaving, const CurrentEdge& edge,
+                                                std::span<const CurrentEdge> edges, bool swapped) const {
+        const auto is_next = [&](const CurrentEdge& first, const CurrentEdge& second) {
+            return second.arriving == first.edge && cross(first.direction, second.direction) > 0.0;
+        };
+        return std::ranges::any_of(edges, [&](const CurrentEdge& face) {
+            if (!is_next(face, edge) && !is_next(edge, face)) return false;
+            return overlap_covers(leaving.edge, face.edge, swapped) ||
+                   overlap_covers(leaving.arriving, face.edge, swapped);
+        });
+    }
+
     /// Vertices of `owner` (the start of each of its edges) against the edges of `target`; `swapped` if the owner is the
     /// higher block.
     void append_vertices(int owner, std::span<const CurrentEdge> leaving_edges, int target,
                          std::span<const CurrentEdge> edges, bool swapped) {
         for (const auto& leaving : leaving_edges) {
-            for (const auto& edge : edges) append_vertex(owner, leaving, target, edge, swapped);
+            for (const auto& edge : edges) append_vertex(owner, leaving, target, edge, edges, swapped);
         }
     }
 
-    void append_vertex(int owner, const CurrentEdge& leaving, int target, const CurrentEdge& edge, bool swapped) {
+    void append_vertex(int owner, const CurrentEdge& leaving, int target, const CurrentEdge& edge,
+                       std::span<const CurrentEdge> edges, bool swapped) {
         const Vec2 outward = right_normal(edge.direction);
         const Vec2 from_edge = leaving.start - edge.start;
         const double gap = outward.dot(from_edge);
@@ -309,6 +333,7 @@ private:
         const double s = edge.direction.dot(from_edge) / edge.length;
         if (s < 0.0 || s > 1.0) return;
         if (outward.dot(leaving.end - leaving.start) < 0.0 || outward.dot(leaving.before - leaving.start) < 0.0) return;
+        if (is_carried_around_corner(leaving, edge, edges, swapped)) return;
         const Edge& target_edge = reference(target, edge.edge);
         const int vertex = reference(owner, leaving.edge).start;
         if (vertex == target_edge.start || vertex == target_edge.end) return;

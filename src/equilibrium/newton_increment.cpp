@@ -1,8 +1,6 @@
 #include "kluft/equilibrium/newton_increment.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "kluft/core/stopwatch.hpp"
@@ -23,9 +21,6 @@ void make_free(const Constraints& constraints, BlockMatrix& matrix) {
     const BlockPattern& pattern = *matrix.pattern;
     project(constraints, matrix, matrix.trace() / (pattern.block_unknowns() * pattern.n_blocks()));
 }
-
-/// The spacing of hexagons as large as the block (m).
-double spacing_of(const Block& block) { return std::sqrt(2.0 * block.area / std::numbers::sqrt3); }
 
 /// The second bound of (31): far from equilibrium a linear solve need not be exact, near it it leaves less than what
 /// the iteration tolerates. `right_side`: its norm (N/m).

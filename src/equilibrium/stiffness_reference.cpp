@@ -84,8 +84,9 @@ void StiffnessReference::collect(const EquilibriumProblem& problem, const Eigen:
             patch.change.stiffness.topLeftCorner<2, 2>() += stiffness;
             continue;
         }
-        if (point.key.point != 1) set_rows(problem, q, point, point.key.point, patch.change);
-        add_at(overlap_positions[point.key.point], stiffness, patch.change.stiffness);
+        if (point.along == 0.0) set_rows(problem, q, point, 0, patch.change);
+        if (point.along == 1.0) set_rows(problem, q, point, 2, patch.change);
+        add_at(point.along, stiffness, patch.change.stiffness);
     }
 }
 

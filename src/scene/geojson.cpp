@@ -15,6 +15,8 @@ namespace {
 
 using nlohmann::json;
 
+constexpr double farthest = 1e9; ///< m from the origin, as of lengths in a scene
+
 /// Where in a file something is said, as the errors name it.
 struct Place {
     std::string file;
@@ -83,7 +85,8 @@ Vec2 point_of(const json& position, const Place& place) {
         position.is_array() && position.size() >= 2 && position[0].is_number() && position[1].is_number();
     if (!sound) place.fail(fmt::format("expected a position [x, y], got {}", position.dump()));
     const Vec2 point(position[0].get<double>(), position[1].get<double>());
-    if (!point.allFinite()) place.fail(fmt::format("the position {} is not finite", position.dump()));
+    if (!(point.lpNorm<Eigen::Infinity>() <= farthest))
+        place.fail(fmt::format("expected a position within {:g} m, got {}", farthest, position.dump()));
     return point;
 }
 

@@ -16,6 +16,8 @@ namespace kluft {
 
 namespace {
 
+constexpr double smallest_size = 1e-12; ///< m: below it squares of a body's lengths lose their digits
+
 /// Beyond this something is wrong with the unit, and squares of it would leave the range of a double.
 double largest(Measure measure) {
     switch (measure) {
@@ -44,6 +46,9 @@ std::string number_problem(const SceneNode& node, Measure measure, const Range& 
     if (!reading.value) return found_text(node) + reading.problem;
     if (!inside(*reading.value, to_si(range.least, measure), to_si(range.most, measure), range))
         return found_text(node);
+    const bool is_size = measure == Measure::length && range.open_below && range.least == 0.0;
+    if (is_size && *reading.value < smallest_size)
+        return fmt::format("{}, which is below {:g} m", found_text(node), smallest_size);
     if (std::abs(*reading.value) > largest(measure))
         return fmt::format("{}, which is beyond {:g} {}", found_text(node), largest(measure), unit_name(measure));
     return {};

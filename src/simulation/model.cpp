@@ -7,6 +7,7 @@
 
 #include "kluft/blocks/block_search.hpp"
 #include "kluft/constitutive/strength_envelope.hpp"
+#include "kluft/contact/overlap_rule.hpp"
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/kinematics/material_point.hpp"
 #include "kluft/simulation/stage_loads.hpp"
@@ -223,6 +224,10 @@ Model build_model(BlockSystem system, const ModelInput& input) {
         }
         model.has_potential_cracks = true;
     }
+    std::vector<const InterfaceLaw*> fracture_laws;
+    for (const Interface& interface : system.interfaces)
+        fracture_laws.push_back(&model.laws[model.fracture_law[interface.interface_type]]);
+    model.overlap_points = overlap_points(system, fracture_laws);
     model.system = std::move(system);
     refuse_contradicting_supports(model);
     return model;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "kluft/contact/overlap_rule.hpp"
+
 namespace kluft {
 
 namespace {
@@ -37,11 +39,14 @@ DetectedContacts detected_contacts(const Model& model, const BodyState& body) {
     for (const Interface& interface : model.system.interfaces) {
         surfaces.law.push_back(model.fracture_law[interface.interface_type]);
     }
+    surfaces.n_points = model.overlap_points;
     for (const InterfaceLaw& law : model.laws) surfaces.friction.push_back(law.tan_friction);
     const auto fracture = std::ranges::find(model.bonds, 0);
     surfaces.default_law = fracture != model.bonds.end() ? static_cast<int>(fracture - model.bonds.begin()) : 0;
-    if (model.system.outline_type >= 0) surfaces.default_law = model.fracture_law[model.system.outline_type];
     surfaces.outlines_meet = may_outlines_meet(model);
+    if (surfaces.outlines_meet) surfaces.default_law = model.fracture_law[model.system.outline_type];
+    if (surfaces.outlines_meet && model.laws[surfaces.default_law].cohesion > 0.0)
+        surfaces.outline_points = most_overlap_points;
     return detect_contacts(model.system, surfaces, body.displacement, contact_reach * model.system.spacing,
                            body.contacts);
 }

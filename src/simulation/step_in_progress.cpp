@@ -18,7 +18,8 @@ namespace kluft {
 
 namespace {
 
-constexpr int easy_iterations = 6; ///< of a solve after which the mass-like term of a relaxation falls
+constexpr double clear_motion = 0.1; ///< of a block in a load step, in spacings of hexagons of its size
+constexpr int easy_iterations = 6;   ///< of a solve after which the mass-like term of a relaxation falls
 
 /// Detects the contacts of surfaces that may touch.
 DetectedContacts detect(StepInProgress& p) {
@@ -51,6 +52,17 @@ bool has_surfaces_to_meet(const Model& model, const BodyState& body) {
     return may_outlines_meet(model) || std::ranges::any_of(body.interfaces, [](InterfaceStatus status) {
                return status != InterfaceStatus::potential_crack;
            });
+}
+
+/// Where blocks have moved away in the load step they go on in that direction, whatever pushes them at the moment.
+std::vector<MovingBlock> moving_on(const StepInProgress& p, std::vector<MovingBlock> moving) {
+    const Eigen::VectorXd moved = p.displacement() - p.from.body.displacement;
+    for (MovingBlock& each : moving) {
+        const Vec2 motion = moved.segment<2>(n_block_unknowns * each.block);
+        if (motion.norm() > clear_motion * spacing_of(p.bench.model.system.blocks[each.block]))
+            each.direction = motion.normalized();
+    }
+    return moving;
 }
 
 /// The largest stresses so far, which errors of the history are relative to.
@@ -190,7 +202,7 @@ void fail(StepInProgress& p, const Equilibrium& found, double residual_ratio, Fa
                 .strength_factor = found.strength_factor,
                 .nothing_holds = p.bench.loads.constraints().rows().empty(),
                 .causes = likely_causes(p.bench.model, p.loads_at(found.load_factor).loads, found.verdict.moving),
-                .moving = found.verdict.moving};
+                .moving = moving_on(p, found.verdict.moving)};
 }
 
 void keep_rate(StepInProgress& p) {

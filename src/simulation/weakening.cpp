@@ -4,6 +4,7 @@
 
 #include "kluft/contact/bonds.hpp"
 #include "kluft/contact/contact.hpp"
+#include "kluft/contact/overlap_rule.hpp"
 #include "kluft/simulation/measurements.hpp"
 #include "kluft/simulation/placement.hpp"
 #include "kluft/simulation/strength_reduction.hpp"
@@ -57,10 +58,11 @@ CrackRecord weaken(const Model& model, const CrackCandidate& candidate, State& s
     const bool tension = candidate.index.tension_governs;
     state.body.interfaces[i] = tension ? InterfaceStatus::tension_crack : InterfaceStatus::shear_crack;
     const bool ordered = interface.block_a < interface.block_b;
-    for (int point = 0; point < static_cast<int>(overlap_positions.size()); ++point) {
-        const double along_a = overlap_positions[point];
+    const OverlapRule rule = overlap_rule(model.overlap_points[i]);
+    for (std::size_t point = 0; point < rule.positions.size(); ++point) {
+        const double along_a = rule.positions[point];
         ContactMemory memory;
-        memory.key = key_of_own_edges(interface, point);
+        memory.key = key_of_own_edges(interface, static_cast<int>(point));
         memory.history.shear_trial =
             bond_shear_at(&state.body.bond_shear[n_bond_points * i], ordered ? along_a : 1.0 - along_a);
         state.body.contacts.push_back(memory);

@@ -216,7 +216,13 @@ TEST(ExplicitSimulation, PlatenVelocityIsWhatTheSceneSays) {
         return run.history.back().motion->time_steps - run.history[1].motion->time_steps;
     };
     EXPECT_NEAR(in_platen_stage(slow), 10 * in_platen_stage(fast), 0.1 * in_platen_stage(slow));
-    EXPECT_LT(slow.history.back().motion->platen_imbalance, fast.history.back().motion->platen_imbalance);
+    const auto largest_imbalance = [](const SceneRun& run) {
+        double largest = 0.0;
+        for (const StepRecord& row : run.history)
+            if (row.stage == 1) largest = std::max(largest, row.motion->platen_imbalance);
+        return largest;
+    };
+    EXPECT_LT(largest_imbalance(slow), largest_imbalance(fast));
     EXPECT_LT(slow.history.back().motion->platen_imbalance, 0.02);
     EXPECT_TRUE(slow.report.warnings.empty());
     EXPECT_EQ(run_at("1 km/s").report.warnings.size(), 1U) << "a load step takes one time step at least";

@@ -53,8 +53,6 @@ TEST_P(SmallBlock, FallsBesideLargeOnesAboveItsFrictionAngle) {
     EXPECT_EQ(run.report.status, RunStatus::no_equilibrium) << run.report.diagnosis;
     ASSERT_EQ(run.report.falling.size(), 1U);
     EXPECT_EQ(run.report.falling.front().block, "small");
-    EXPECT_LT(run.report.falling.front().direction.y(), -0.5);
-    if (GetParam() > 10.0 * small) return; // beside much larger blocks it is off the plane when it is given up
     EXPECT_NEAR(run.report.falling.front().direction.x(), -std::cos(dip), 0.02);
     EXPECT_NEAR(run.report.falling.front().direction.y(), -std::sin(dip), 0.02);
 }

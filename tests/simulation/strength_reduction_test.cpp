@@ -198,5 +198,48 @@ TEST(StrengthReduction, PlanarSlopeHasTheFactorOfSafetyOfLimitEquilibrium) {
     }
 }
 
+/// A block of `width` by `height` on a joint of k_n = 1e12 Pa/m that dips; gravity is turned in its place. Weight 25 kN/m3.
+std::string cohesive_block(double width, double height, double dip, int pieces) {
+    std::string top_of_base;
+    for (int i = pieces; i >= 0; --i) top_of_base += fmt::format(", [{:.17g}, 0]", width * i / pieces);
+    return fmt::format(R"(
+kluft: 1
+analysis: {{plane: stress, gravity: [{}, {}]}}
+materials: {{rock: {{density: 2500, youngs_modulus: 1e14, poissons_ratio: 0}}}}
+interfaces: {{joint: {{kind: fracture, normal_stiffness: 1e12, shear_stiffness: 1e12, friction_angle: 30, cohesion: 20 kPa}}}}
+geometry:
+  blocks:
+    - {{name: base, polygon: [[-5, -1], [{}, -1], [{}, 0]{}, [-5, 0]], support: fixed}}
+    - {{name: block, polygon: [[0, 0], [{}, 0], [{}, {}], [0, {}]]}}
+stages:
+  - {{name: weight}}
+  - {{name: reduction, strength_reduction: {{from: 0.5, to: 3, tolerance: 1e-4}}, steps: 10}}
+)",
+                       10 * std::sin(dip * degree), -10 * std::cos(dip * degree), width + 5, width + 5, top_of_base,
+                       width, width, height, height);
+}
+
+// Only the closed part of a joint has cohesion. The resultant meets the joint at e = h/2 tan(dip) from its middle; without tension
+// the closed part is L = 3 (b/2 - e) long where e > b/6, and F = (N tan(phi) + c L)/T.
+TEST(StrengthReduction, PartlyOpenJointHasTheCohesionOfItsClosedPart) {
+    struct Case {
+        double width, height, dip;
+    };
+    for (const auto& [width, height, dip] :
+         {Case{3.0, 1.5, 45.0}, Case{2.0, 2.0, 40.0}, Case{4.0, 1.0, 30.0}, Case{2.0, 1.9, 35.0}}) {
+        const double weight = 25e3 * width * height;
+        const double e = 0.5 * height * std::tan(dip * degree);
+        const double closed = e > width / 6 ? 3 * (width / 2 - e) : width;
+        const double expected = (weight * std::cos(dip * degree) * std::tan(30 * degree) + 20e3 * closed) /
+                                (weight * std::sin(dip * degree));
+        for (const int pieces : {1, 4}) {
+            const auto run = run_scene(cohesive_block(width, height, dip, pieces));
+            ASSERT_TRUE(run.report.results.factor_of_safety) << run.report.diagnosis;
+            EXPECT_NEAR(*run.report.results.factor_of_safety, expected, 0.01 * expected)
+                << width << " x " << height << ", " << pieces;
+        }
+    }
+}
+
 } // namespace
 } // namespace kluft

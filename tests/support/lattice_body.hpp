@@ -90,6 +90,7 @@ inline ContactSurfaces surfaces_of(const BlockSystem& system, const std::vector<
         surfaces.bonded.push_back(is_bond_type[interface.interface_type]);
         surfaces.law.push_back(interface.interface_type);
     }
+    surfaces.n_points.assign(system.interfaces.size(), 3);
     for (const InterfaceLaw& law : laws) surfaces.friction.push_back(law.tan_friction);
     return surfaces;
 }

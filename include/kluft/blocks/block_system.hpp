@@ -90,6 +90,9 @@ struct BlockSystem {
     return system.vertices[edge.end];
 }
 
+/// The spacing of hexagons as large as the block (m).
+[[nodiscard]] double spacing_of(const Block& block);
+
 /// Area, centroid, size and second moment of a block from its edges (Green's theorem over the loops).
 void compute_block_moments(const std::vector<Vec2>& vertices, Block& block);
 

@@ -1,7 +1,6 @@
 // Identity, frame and memory of contact points.
 #pragma once
 
-#include <array>
 #include <compare>
 
 #include <Eigen/Core>
@@ -13,7 +12,7 @@
 
 namespace kluft {
 
-/// Who touches whom: an edge of block a against an edge of block b (point 0, 1, 2 of the overlap), or a vertex of
+/// Who touches whom: an edge of block a against an edge of block b (the points of their overlap, from 0 on), or a vertex of
 /// block a (the start of edge_a) against an edge of block b (point -1).
 struct ContactKey {
     int block_a = 0;
@@ -24,9 +23,6 @@ struct ContactKey {
 
     auto operator<=>(const ContactKey&) const = default;
 };
-
-/// Where the points 0, 1, 2 stand in an overlap: Lobatto's rule.
-inline constexpr std::array<double, 3> overlap_positions{0.0, 0.5, 1.0};
 
 /// Key of a point of an interface's own two edges, the lower block first.
 [[nodiscard]] inline ContactKey key_of_own_edges(const Interface& i, int point) {
@@ -59,6 +55,7 @@ struct ContactPoint {
     Vec2 normal = Vec2::Zero();  ///< from a to b
     Vec2 tangent = Vec2::Zero(); ///< normal turned by +90 degrees
     double weight = 0.0;         ///< length that the point stands for (m)
+    double along = 0.0;          ///< place in the overlap, 0 to 1; of a vertex 0
     double slip_start = 0.0;     ///< tangent . relative position where slip = 0 (m)
     OverlapPiece piece;          ///< zero for a vertex
     int law = 0;                 ///< index of the interface law

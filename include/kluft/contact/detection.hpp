@@ -26,7 +26,9 @@ namespace kluft {
 struct ContactSurfaces {
     std::vector<char> bonded;     ///< per interface: 1 while it is a bond
     std::vector<int> law;         ///< per interface: its law as a fracture (index into the interface laws)
+    std::vector<int> n_points;    ///< per interface: points of an overlap along it (overlap_points)
     std::vector<double> friction; ///< per law: tan(phi), to choose between the laws of two surfaces
+    int outline_points = 3;       ///< of an overlap of two surfaces of the outline
     int default_law = 0;          ///< of two surfaces of the domain's outline that meet
     bool outlines_meet = false;   ///< also those of two blocks that have no fracture inside the body
 };

@@ -29,6 +29,7 @@ struct Model {
     std::vector<InterfaceStiffness> given_stiffness; ///< per law: as the scene has it, without compliance of blocks
     std::vector<char> bonds;                         ///< per interface type: 1 for a potential crack
     std::vector<int> fracture_law;   ///< per interface type: the law after failure, its own for a fracture
+    std::vector<int> overlap_points; ///< per interface: points of an overlap of two blocks along it
     std::vector<Strength> strengths; ///< per interface; of use for potential cracks only
     LoadProgram loads;
     std::vector<MaterialPoint> force_points; ///< where LoadProgram::forces act
