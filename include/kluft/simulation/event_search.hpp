@@ -29,6 +29,11 @@ inline constexpr int quick_event_trials = 12; ///< then the interval is halved: 
 inline constexpr int max_event_trials = 60;
 inline constexpr double largest_useful_index = 10.0; ///< a strength of zero makes f infinite
 
+/// Where in the bracket the next trial of a search is made.
+[[nodiscard]] inline double event_trial(const Bracket& bracket, int trial) {
+    return trial < quick_event_trials ? bracket.propose(0.01) : bracket.low + 0.5 * bracket.width();
+}
+
 /// The first event in (from, end.load_factor]. `index_of(equilibrium)` and `index_at_start()` evaluate the index, each
 /// under the loads of its own load factor; `find_at(load_factor, share, end)` searches an equilibrium between the start
 /// (share 0) and `end` (share 1). Illinois on the load factor; a search without a balanced result ends it.
@@ -40,7 +45,7 @@ EventCut<Equilibrium> first_event(const EventGoal& goal, double from, Equilibriu
     Bracket bracket{from, end.load_factor, index_at_start() - goal.index, at_end - goal.index};
     if (bracket.g_low >= 0.0) return {std::move(end)};
     for (int i = 0; i < max_event_trials && bracket.width() > goal.least_width; ++i) {
-        const double at = i < quick_event_trials ? bracket.propose(0.01) : bracket.low + 0.5 * bracket.width();
+        const double at = event_trial(bracket, i);
         Equilibrium next = find_at(at, (at - from) / (bracket.high - from), end);
         if (!next.balanced) break;
         const double g = index_of(next) - goal.index;
