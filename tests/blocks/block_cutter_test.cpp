@@ -495,7 +495,7 @@ TEST_P(RandomCut, IsAPartition) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, RandomCut, testing::Range(0, 120));
+INSTANTIATE_TEST_SUITE_P(SlowSeeds, RandomCut, testing::Range(0, 120));
 
 // Star-shaped outlines with acute corners in and out, and holes.
 TEST_P(RandomCut, OfABentDomainWithHolesIsAPartition) {
@@ -544,7 +544,7 @@ TEST_P(TurnedHexagons, ArePartitionsAtAnyOffsetAndJitter) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Degrees, TurnedHexagons, testing::Range(0, 31));
+INSTANTIATE_TEST_SUITE_P(SlowDegrees, TurnedHexagons, testing::Range(0, 31));
 
 // The net has the period (d, 0) along its rows: whole periods away it cuts the same blocks.
 TEST(BlockCutter, HexagonsAreTheSameAfterWholePeriodsOfTheirOffset) {

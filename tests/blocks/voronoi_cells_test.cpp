@@ -295,7 +295,7 @@ TEST_P(VoronoiCut, WithFracturesIsAPartition) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, VoronoiCut, testing::Range(0, 40));
+INSTANTIATE_TEST_SUITE_P(SlowSeeds, VoronoiCut, testing::Range(0, 40));
 
 } // namespace
 } // namespace kluft
