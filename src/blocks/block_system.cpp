@@ -1,11 +1,22 @@
 #include "kluft/blocks/block_system.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 namespace kluft {
 
+namespace {
+
+constexpr double small_block = 4.0; ///< times smaller than the net's cells: from there on its own size limits a block
+
+} // namespace
+
 double spacing_of(const Block& block) { return std::sqrt(2.0 * block.area / std::numbers::sqrt3); }
+
+double motion_scale(const BlockSystem& system, const Block& block) {
+    return std::min(system.spacing, small_block * spacing_of(block));
+}
 
 void compute_block_moments(const std::vector<Vec2>& vertices, Block& block) {
     block.area = 0.0;

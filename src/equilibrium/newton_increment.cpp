@@ -13,7 +13,6 @@ namespace {
 constexpr double linear_share = 0.3;            ///< of the tolerated residual, that a linear solve may leave
 constexpr double far_linear_residual = 0.05;    ///< of its right side: as many iterations as with less (measured)
 constexpr double largest_linear_residual = 0.1; ///< of its right side, near equilibrium
-constexpr double small_block = 4.0;             ///< times smaller than d: from there on its own size limits a block
 constexpr double travel_residual = 1e-8;        ///< of the border's column
 
 /// Takes the prescribed motions out of a tangent.
@@ -94,8 +93,7 @@ void NewtonIncrement::limit_motions(const NewtonPoint& at) {
     double largest = 0.0; // over its limit
     limited_.clear();
     for (int b = 0; b < system.n_blocks(); ++b) {
-        const double limit =
-            options_.motion_limit * std::min(system.spacing, small_block * spacing_of(system.blocks[b]));
+        const double limit = options_.motion_limit * motion_scale(system, system.blocks[b]);
         const double motion = at.evaluator.coordinates().motion(increment_, b) / limit;
         if (motion > 1.0) limited_.push_back(b);
         largest = std::max(largest, motion);

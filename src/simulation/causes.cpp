@@ -5,58 +5,27 @@
 #include <optional>
 #include <set>
 
-#include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
-#include "kluft/kinematics/rigid.hpp"
+#include "kluft/simulation/placement.hpp"
+#include "kluft/simulation/whole_body.hpp"
 
 namespace kluft {
 
 namespace {
 
-constexpr double not_held = 1e-9;     ///< of the largest eigenvalue: a motion of the body that no row resists
 constexpr double no_resultant = 1e-6; ///< of the magnitudes of the loads
 constexpr double whole_body = 0.9;    ///< of the area of the blocks: if so much moves, the body does
 constexpr double suspicious_strain = 0.05;
 
-/// The body as one piece: a motion is (u_x, u_y, w) about the middle of its box, w a turn times its extent.
-struct WholeBody {
-    explicit WholeBody(const BlockSystem& system)
-        : middle(0.5 * (system.lower + system.upper)), extent((system.upper - system.lower).maxCoeff()) {}
-    /// direction . displacement of the place x for each of the three motions.
-    [[nodiscard]] Vec3 row(const Vec2& x, const Vec2& direction) const {
-        return {direction.x(), direction.y(), cross(x - middle, direction) / extent};
-    }
-    Vec2 middle;
-    double extent;
-};
-
-/// The motions that no prescribed displacement and no fixed block resists.
-std::vector<Vec3> free_motions(const Model& model, const WholeBody& body, const Constraints& constraints) {
-    Mat3 resistance = Mat3::Zero();
+/// Of prescribed displacements and fixed blocks against motions of the whole body.
+Mat3 resistance(const Model& model, const WholeBody& body, const Constraints& constraints) {
+    Mat3 sum = Mat3::Zero();
     for (const PrescribedDisplacement& held : constraints.rows()) {
-        const Block& block = model.system.blocks[held.block];
-        const Vec3 row = body.row(block.centroid + block.size * held.xi, held.direction);
-        resistance += row * row.transpose();
+        const Vec3 row = body.row(model.system, held);
+        sum += row * row.transpose();
     }
-    const Eigen::SelfAdjointEigenSolver<Mat3> eigen(resistance);
-    std::vector<Vec3> motions;
-    for (int i = 0; i < 3; ++i) {
-        if (eigen.eigenvalues()[i] <= not_held * eigen.eigenvalues().maxCoeff())
-            motions.emplace_back(eigen.eigenvectors().col(i));
-    }
-    return motions;
-}
-
-LoadedBody without_contacts(const Model& model, const Loads& loads) {
-    LoadedBody body;
-    body.kinematics = model.kinematics;
-    body.system = &model.system;
-    body.moduli = &model.moduli;
-    body.densities = &model.densities;
-    body.laws = &model.laws;
-    body.loads = &loads;
-    return body;
+    return sum;
 }
 
 /// Forces and moment of the loads on the body before it moved.
@@ -132,9 +101,11 @@ std::optional<std::string> soft_body(const Model& model, const Loads& loads, con
 
 } // namespace
 
-std::vector<std::string> likely_causes(const Model& model, const Loads& loads, const std::vector<MovingBlock>& moving) {
+std::vector<std::string> likely_causes(const Model& model, const LoadsAt& at, const std::vector<MovingBlock>& moving) {
     const WholeBody body(model.system);
-    const LoadedBody loaded = without_contacts(model, loads);
+    const Loads& loads = at.loads;
+    const Placement without_contacts;
+    const LoadedBody loaded = loaded_body(model, without_contacts, at);
     const Eigen::VectorXd at_rest =
         Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n_block_unknowns) * model.system.n_blocks());
     Eigen::VectorXd forces;
@@ -145,7 +116,7 @@ std::vector<std::string> likely_causes(const Model& model, const Loads& loads, c
 
     std::vector<std::string> causes;
     const bool as_a_whole = !loads.constraints.rows().empty() && moves_as_a_whole(model.system, moving);
-    for (const Vec3& motion : free_motions(model, body, loads.constraints)) {
+    for (const Vec3& motion : free_motions(resistance(model, body, loads.constraints))) {
         const double force = motion.dot(sum);
         if (std::abs(force) > no_resultant * magnitude)
             causes.push_back(push_in_words(model, loads, motion, force));

@@ -51,7 +51,6 @@ std::string description(const Model& model, const Failure& failure) {
     if (failure.strength_factor != 1.0)
         text += fmt::format("; with the strengths divided by {:.6g}", failure.strength_factor);
     if (failure.nothing_holds) text += "; nothing holds the body, which has neither a support nor a platen";
-    for (const std::string& cause : failure.causes) text += "; " + cause;
     return text;
 }
 

@@ -26,6 +26,12 @@ std::vector<FallingBlock> falling_blocks(const Model& model, const State& state,
     return falling;
 }
 
+std::string listed(const std::vector<std::string>& causes) {
+    std::string text;
+    for (const std::string& cause : causes) text += "; " + cause;
+    return text;
+}
+
 } // namespace
 
 Journal::Journal(const Model& model, const State& state, StepObserver& observer, int n_steps,
@@ -92,6 +98,7 @@ RunReport Journal::ended(const State& state, const StageEnd& end) const {
     if (!end.failure) {
         std::string why = fmt::format("stage {} ends out of balance", state.at.stage);
         if (!end.moving.empty()) why += ": " + description(model_, end.moving);
+        why += listed(end.causes);
         RunReport report = cut_short(RunStatus::unbalanced, std::move(why));
         report.falling = falling_blocks(model_, state, end.moving);
         return report;
@@ -99,7 +106,7 @@ RunReport Journal::ended(const State& state, const StageEnd& end) const {
     const bool has_stood = state.at.stage > 0 || state.at.step_in_stage > 0; // through a whole load step
     const bool past_limit = end.failure->may_be_collapse() && is_platen_loaded_by_stress(stage) && has_stood;
     std::string why = fmt::format("no equilibrium in stage {} at load step {}: {}", state.at.stage, end.step,
-                                  description(model_, *end.failure));
+                                  description(model_, *end.failure) + listed(end.causes));
     if (end.factor_of_safety) why = fmt::format("factor of safety {:.6g}; beyond it {}", *end.factor_of_safety, why);
     RunReport report = cut_short(end.factor_of_safety || past_limit ? RunStatus::collapsed : RunStatus::no_equilibrium,
                                  std::move(why));

@@ -81,6 +81,7 @@ void begin_load_step(const StepBench& bench) {
 StageEnd commit_regular_step(const StepBench& bench, Step step, bool last_of_stage, State& state) {
     Failure failure{.worst_block = step.worst_block,
                     .residual_ratio = step.worst_share,
+                    .load_factor = step.in_place.at.load_factor,
                     .strength_factor = step.in_place.at.strength_factor,
                     .moving = step.moving};
     StageEnd end;

@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
-
 #include "kluft/core/disjoint_sets.hpp"
+#include "kluft/simulation/whole_body.hpp"
 
 namespace kluft {
 
@@ -29,20 +28,15 @@ DisjointSets bonded_groups(const BlockSystem& system, const std::vector<char>& b
 
 bool is_held(const BlockSystem& system, const std::vector<char>& bonded, const Constraints& constraints) {
     DisjointSets groups = bonded_groups(system, bonded);
-    std::vector<Eigen::Matrix3d> grams(system.blocks.size(), Eigen::Matrix3d::Zero());
-    const Vec2 centre = 0.5 * (system.lower + system.upper);
-    const double size = (system.upper - system.lower).maxCoeff();
-    for (const auto& row : constraints.rows()) {
-        if (row.rate != 0.0) continue; // the platen travels
-        const Block& block = system.blocks[row.block];
-        const Vec2 arm = (block.centroid + block.size * row.xi - centre) / size;
-        const Eigen::Vector3d motion(row.direction.x(), row.direction.y(), cross(arm, row.direction));
-        grams[groups.root(row.block)] += motion * motion.transpose();
+    std::vector<Mat3> resistance(system.blocks.size(), Mat3::Zero());
+    const WholeBody body(system);
+    for (const auto& held : constraints.rows()) {
+        if (held.rate != 0.0) continue; // the platen travels
+        const Vec3 row = body.row(system, held);
+        resistance[groups.root(held.block)] += row * row.transpose();
     }
     for (int b = 0; b < system.n_blocks(); ++b) {
-        if (groups.root(b) != b) continue;
-        const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(grams[b]);
-        if (eigen.eigenvalues()[0] <= 1e-9 * std::max(1e-300, eigen.eigenvalues()[2])) return false;
+        if (groups.root(b) == b && !free_motions(resistance[b]).empty()) return false;
     }
     return true;
 }

@@ -17,8 +17,7 @@ constexpr int easy_relaxation = 4;        ///< iterations of a step after which 
 constexpr int max_relaxation_attempts = 250;
 constexpr int max_moving_attempts = 25;           ///< of a relaxation that must come to rest, whose share does not fall
 constexpr double least_relaxation_progress = 0.9; ///< of the share in as many attempts
-constexpr double collapse_motion = 0.5;           ///< of a block in one load step, in lattice spacings ...
-constexpr double small_block = 4.0;               ///< ... or in so many spacings of hexagons of its own size
+constexpr double collapse_motion = 0.5;           ///< of a block in one load step (motion_scale)
 
 /// Whether the largest share left over on a block falls, with patience.
 class RelaxationProgress {
@@ -47,8 +46,8 @@ bool is_falling(const StepInProgress& p) {
     if (!is_loaded_by_stress(p.bench.stage(p.from))) return false;
     const Eigen::VectorXd moved = p.displacement() - p.from.body.displacement;
     for (int b = 0; b < system.n_blocks(); ++b) {
-        const double spacing = std::min(system.spacing, small_block * spacing_of(system.blocks[b]));
-        if (moved.segment<2>(n_block_unknowns * b).norm() > collapse_motion * spacing) return true;
+        const double far = collapse_motion * motion_scale(system, system.blocks[b]);
+        if (moved.segment<2>(n_block_unknowns * b).norm() > far) return true;
     }
     return false;
 }

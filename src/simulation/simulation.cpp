@@ -5,6 +5,7 @@
 #include "kluft/assembly/blas.hpp"
 #include "kluft/contact/bonds.hpp"
 #include "kluft/simulation/accurate_steps.hpp"
+#include "kluft/simulation/causes.hpp"
 #include "kluft/simulation/fixed_steps.hpp"
 #include "kluft/simulation/load_step.hpp"
 #include "kluft/simulation/strength_search.hpp"
@@ -57,6 +58,15 @@ StageEnd run_stage(const StepBench& bench, State& state) {
     return run_fixed_steps(bench, state);
 }
 
+/// What the loads say of why a stage has ended out of balance.
+std::vector<std::string> causes_of(const StepBench& bench, const State& state, const StageEnd& end) {
+    const bool balanced = !end.failure && state.unbalanced_in_succession == 0;
+    if (balanced) return {};
+    const double load_factor = end.failure ? end.failure->load_factor : 1.0;
+    const LoadsAt at = loads_at(bench.model, bench.loads, state.at.stage, load_factor);
+    return likely_causes(bench.model, at, end.failure ? end.failure->moving : end.moving);
+}
+
 /// The next stage starts from the loads at the end of this one.
 void end_stage(const StepBench& bench, Eigen::VectorXd forces, State& state) {
     if (forces.size() == 0) forces = measure_state(bench, state, 1.0).measured.forces; // resumed at the end of a stage
@@ -95,6 +105,7 @@ RunReport run_simulation(const Model& model, const CrackOptions& cracks, const S
             if (state.at.step == 0 && state.at.stage == 0) tell_initial_state(bench, state);
             StageEnd end = run_stage(bench, state);
             const bool last = state.at.stage + 1 == static_cast<int>(model.loads.stages.size());
+            end.causes = causes_of(bench, state, end);
             if (end.failure || last || state.unbalanced_in_succession > 0) return journal.ended(state, end);
             end_stage(bench, std::move(end.forces), state);
         }

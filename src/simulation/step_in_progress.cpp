@@ -6,7 +6,6 @@
 
 #include "kluft/core/stopwatch.hpp"
 #include "kluft/kinematics/rigid.hpp"
-#include "kluft/simulation/causes.hpp"
 #include "kluft/simulation/mass_term.hpp"
 #include "kluft/simulation/measurements.hpp"
 #include "kluft/simulation/placement.hpp"
@@ -149,9 +148,8 @@ bool move_body(StepInProgress& p, const PlacedState& placed, const LoadsAt& at, 
     Step& step = p.step;
     const LoadedBody body = loaded_body(p.bench.model, placed.placement, at);
     if (auto flaw = flaw_of_displacements(body, q); !flaw.empty()) {
-        step.failure = Failure{.kind = FailureKind::broken_body,
-                               .causes = likely_causes(p.bench.model, at.loads, {}),
-                               .what = std::move(flaw)};
+        step.failure =
+            Failure{.kind = FailureKind::broken_body, .load_factor = at.load_factor, .what = std::move(flaw)};
         return false;
     }
     if (step.lost_contact.empty()) step.lost_contact = lost_contact(body, q);
@@ -195,14 +193,13 @@ Measured measure(const StepInProgress& p, const PlacedState& placed, const Loads
 }
 
 void fail(StepInProgress& p, const Equilibrium& found, double residual_ratio, FailureKind kind) {
-    p.step.failure =
-        Failure{.kind = kind,
-                .worst_block = found.worst_block,
-                .residual_ratio = residual_ratio,
-                .strength_factor = found.strength_factor,
-                .nothing_holds = p.bench.loads.constraints().rows().empty(),
-                .causes = likely_causes(p.bench.model, p.loads_at(found.load_factor).loads, found.verdict.moving),
-                .moving = moving_on(p, found.verdict.moving)};
+    p.step.failure = Failure{.kind = kind,
+                             .worst_block = found.worst_block,
+                             .residual_ratio = residual_ratio,
+                             .load_factor = found.load_factor,
+                             .strength_factor = found.strength_factor,
+                             .nothing_holds = p.bench.loads.constraints().rows().empty(),
+                             .moving = moving_on(p, found.verdict.moving)};
 }
 
 void keep_rate(StepInProgress& p) {

@@ -42,11 +42,12 @@ TEST(Causes, PressuresThatDoNotBalanceAreNamed) {
 
 TEST(Causes, LoadsThatTurnTheBodyAreNamed) {
     const Model model = run_two_blocks("{bottom: {support: pinned}}", "{pressure: {top: 0}}").model;
-    Loads loads;
+    LoadsAt at;
+    Loads& loads = at.loads;
     loads.pressures.assign(model.system.boundaries.size(), 0.0);
     loads.point_loads = {{.block = 1, .xi = {0.5, 0.0}, .force = {0.0, 1e5}},
                          {.block = 1, .xi = {-0.5, 0.0}, .force = {0.0, -1e5}}};
-    const auto causes = likely_causes(model, loads, {});
+    const auto causes = likely_causes(model, at, {});
     ASSERT_EQ(causes.size(), 1U);
     EXPECT_THAT(causes.front(), HasSubstr("turn the body"));
 }
@@ -57,7 +58,7 @@ TEST(Causes, LoadsThatAreHeldHaveNone) {
         State state = initial_state(model);
         return enter_stage(model, state);
     }();
-    EXPECT_TRUE(likely_causes(model, loads_at(model, stage, 0, 1.0).loads, {}).empty());
+    EXPECT_TRUE(likely_causes(model, loads_at(model, stage, 0, 1.0), {}).empty());
 }
 
 TEST(Causes, AModulusWithoutItsUnitIsSuspected) {

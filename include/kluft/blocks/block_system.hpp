@@ -93,6 +93,10 @@ struct BlockSystem {
 /// The spacing of hexagons as large as the block (m).
 [[nodiscard]] double spacing_of(const Block& block);
 
+/// The spacing that motions of a block are measured by: the net's, of blocks much smaller than its cells four times their
+/// own (m).
+[[nodiscard]] double motion_scale(const BlockSystem& system, const Block& block);
+
 /// Area, centroid, size and second moment of a block from its edges (Green's theorem over the loops).
 void compute_block_moments(const std::vector<Vec2>& vertices, Block& block);
 

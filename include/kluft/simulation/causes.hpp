@@ -5,15 +5,15 @@
 #include <vector>
 
 #include "kluft/blocks/moving_block.hpp"
-#include "kluft/loading/loaded_body.hpp"
 #include "kluft/simulation/model.hpp"
+#include "kluft/simulation/stage_loads.hpp"
 
 namespace kluft {
 
 /// In words, the likeliest first: that the loads push or turn the body as a whole in a way that neither a support nor a platen
 /// holds, with the pressures; that nothing holds a body of which all blocks move (`moving`); that the loads are stresses of
 /// more than a twentieth of the modulus. Empty where nothing is found.
-[[nodiscard]] std::vector<std::string> likely_causes(const Model& model, const Loads& loads,
+[[nodiscard]] std::vector<std::string> likely_causes(const Model& model, const LoadsAt& at,
                                                      const std::vector<MovingBlock>& moving);
 
 } // namespace kluft

@@ -17,11 +17,11 @@ enum class FailureKind {
 
 struct Failure {
     FailureKind kind = FailureKind::no_equilibrium;
-    int worst_block = -1;            ///< with the largest residual; -1 where none was computed
-    double residual_ratio = 0.0;     ///< what is left, over F_ref
+    int worst_block = -1;        ///< with the largest residual; -1 where none was computed
+    double residual_ratio = 0.0; ///< what is left, over F_ref
+    double load_factor = 1.0;
     double strength_factor = 1.0;    ///< F that strengths were divided by
     bool nothing_holds = false;      ///< the body, which has neither a support nor a platen
-    std::vector<std::string> causes; ///< that are likely, in words
     std::vector<MovingBlock> moving; ///< blocks that are not balanced, the worst first
     std::string what;                ///< in place of the residual, of a broken body or a motion
 

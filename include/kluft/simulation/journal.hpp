@@ -31,6 +31,7 @@ struct StageEnd {
     std::optional<double> factor_of_safety; ///< the failure is what was looked for
     std::vector<MovingBlock> moving;        ///< after a last load step that is not balanced
     Eigen::VectorXd forces; ///< at the end, internal - external without the supports' (N/m); empty without a load step
+    std::vector<std::string> causes; ///< of an end out of balance that are likely, in words
 };
 
 /// What a committed load step counts as.

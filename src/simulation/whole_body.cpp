@@ -1,0 +1,35 @@
+#include "kluft/simulation/whole_body.hpp"
+
+#include <Eigen/Eigenvalues>
+
+namespace kluft {
+
+namespace {
+
+constexpr double not_held = 1e-9; ///< of the largest eigenvalue: a motion that no row resists
+
+} // namespace
+
+WholeBody::WholeBody(const BlockSystem& system)
+    : middle(0.5 * (system.lower + system.upper)), extent((system.upper - system.lower).maxCoeff()) {}
+
+Vec3 WholeBody::row(const Vec2& x, const Vec2& direction) const {
+    return {direction.x(), direction.y(), cross(x - middle, direction) / extent};
+}
+
+Vec3 WholeBody::row(const BlockSystem& system, const PrescribedDisplacement& held) const {
+    const Block& block = system.blocks[held.block];
+    return row(block.centroid + block.size * held.xi, held.direction);
+}
+
+std::vector<Vec3> free_motions(const Mat3& resistance) {
+    const Eigen::SelfAdjointEigenSolver<Mat3> eigen(resistance);
+    std::vector<Vec3> motions;
+    for (int i = 0; i < 3; ++i) {
+        if (eigen.eigenvalues()[i] <= not_held * eigen.eigenvalues().maxCoeff())
+            motions.emplace_back(eigen.eigenvectors().col(i));
+    }
+    return motions;
+}
+
+} // namespace kluft
