@@ -107,10 +107,14 @@ void Constraints::correction(const Eigen::VectorXd& q, Eigen::VectorXd& dq) cons
     }
 }
 
-int Constraints::contradicting_row(const std::vector<double>& rates) const {
+void Constraints::move_to(double load_factor) {
+    for (PrescribedDisplacement& row : rows_) row.target = row.start + load_factor * row.velocity;
+}
+
+int Constraints::contradicting_row() const {
     for (const ConstrainedBlock& c : blocks_) {
         Eigen::VectorXd wanted(c.rows.size());
-        for (std::size_t i = 0; i < c.rows.size(); ++i) wanted[i] = rates[c.rows[i]];
+        for (std::size_t i = 0; i < c.rows.size(); ++i) wanted[i] = rows_[c.rows[i]].velocity + rows_[c.rows[i]].rate;
         const double largest = wanted.lpNorm<Eigen::Infinity>();
         const Vec6 motion =
             kinematics_ == Kinematics::rigid ? Vec6(c.motion * (c.rigid_inverse * wanted)) : Vec6(c.inverse * wanted);
@@ -174,6 +178,15 @@ void Constraints::add_reactions(Eigen::VectorXd& residual) const {
             add_force(residual, c.block, row.xi, -along[i] * row.direction);
         }
     }
+}
+
+std::vector<double> Constraints::row_forces(const Eigen::VectorXd& residual) const {
+    std::vector<double> forces(rows_.size());
+    for (const ConstrainedBlock& c : blocks_) {
+        const Eigen::VectorXd along = multipliers(c, residual);
+        for (std::size_t i = 0; i < c.rows.size(); ++i) forces[c.rows[i]] = along[i];
+    }
+    return forces;
 }
 
 Vec2 Constraints::reaction(const Eigen::VectorXd& residual, int boundary) const {

@@ -22,6 +22,7 @@ template <class Visit> void for_each_surface_load(const LoadedBody& body, const 
         if (pressure != 0.0) visit(edge.block, edge.xi_middle, pressure_force(edge, pressure, q));
     }
     for (const PointLoad& load : body.loads->point_loads) visit(load.block, load.xi, load.force);
+    for (const PointLoad& load : body.loads->friction) visit(load.block, load.xi, load.force);
 }
 
 /// Sums the forces and, where they are wanted, their magnitudes.

@@ -15,7 +15,7 @@ namespace kluft {
 
 namespace {
 
-constexpr int format_version = 6;
+constexpr int format_version = 7;
 constexpr std::string_view format_name = "kluft state";
 
 /// What went wrong inside HDF5; the callers add the file's name.
@@ -158,6 +158,17 @@ struct Writer {
         write_array(file, (std::string(name) + "_keys").c_str(), keys.data(), keys.size());
         write_array(file, (std::string(name) + "_histories").c_str(), histories.data(), histories.size());
     }
+    /// Five integers and three numbers each.
+    void operator()(const char* name, const std::vector<PlatenPoint>& v) {
+        std::vector<int> keys;
+        std::vector<double> numbers;
+        for (const PlatenPoint& p : v) {
+            keys.insert(keys.end(), {p.boundary, p.block, p.vertex, p.is_laid ? 1 : 0, static_cast<int>(p.contact)});
+            numbers.insert(numbers.end(), {p.reach, p.along, p.friction});
+        }
+        write_array(file, (std::string(name) + "_keys").c_str(), keys.data(), keys.size());
+        write_array(file, (std::string(name) + "_numbers").c_str(), numbers.data(), numbers.size());
+    }
     void operator()(const char* name, const std::vector<std::pair<int, int>>& v) {
         std::vector<int> numbers;
         for (const auto& [a, b] : v) numbers.insert(numbers.end(), {a, b});
@@ -194,6 +205,18 @@ struct Reader {
             const int* const key = &keys[5 * i];
             v[i].key = {key[0], key[1], key[2], key[3], key[4]};
             v[i].history = {histories[2 * i], histories[2 * i + 1]};
+        }
+    }
+    void operator()(const char* name, std::vector<PlatenPoint>& v) {
+        const auto keys = read_array<int>(file, (std::string(name) + "_keys").c_str());
+        const auto numbers = read_array<double>(file, (std::string(name) + "_numbers").c_str());
+        if (keys.size() % 5 != 0 || keys.size() / 5 * 3 != numbers.size()) throw Hdf5Failure{name};
+        v.resize(keys.size() / 5);
+        for (std::size_t i = 0; i < v.size(); ++i) {
+            const int* const key = &keys[5 * i];
+            const double* const number = &numbers[3 * i];
+            v[i] = {key[0],    key[1],    key[2],   key[3] != 0, static_cast<PlatenContact>(key[4]),
+                    number[0], number[1], number[2]};
         }
     }
     void operator()(const char* name, std::vector<std::pair<int, int>>& v) {

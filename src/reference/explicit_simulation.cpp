@@ -97,7 +97,11 @@ private:
 
     void begin_stage() {
         begin_step();
-        motion_.loads().constraints = loads_->constraints();
+        PlatenHold hold = hold_of(model_, *loads_, work().body);
+        motion_.loads().constraints = std::move(hold.constraints);
+        motion_.loads().platens = loads_->platens();
+        motion_.loads().platen_points = std::move(hold.points);
+        motion_.loads().friction = std::move(hold.friction);
         motion_.loads().pressure_edges = loads_->edges();
         motion_.add_detection_energy(detect());
         if (has_platen_velocity() && platen_time() < motion_.time_step()) {

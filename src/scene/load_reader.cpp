@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -36,7 +38,7 @@ public:
     void read_stage(const SceneSection& section) {
         Stage stage;
         stage.name = section.given_text("name").value_or(fmt::format("stage {}", loads_.stages.size()));
-        stage.platens = static_cast<Platens>(section.choice("platens"));
+        stage.platen_friction = platen_friction(section);
         stage.steps = section.count("steps");
         if (section.has("pressure")) read_pressure(section.section("pressure"), stage);
         stage.gravity = section.given_gravity("gravity");
@@ -114,9 +116,28 @@ private:
             const auto name = platen.given_text("boundary");
             const auto boundary = name ? boundary_index(platen, "boundary", *name) : std::nullopt;
             if (!boundary) continue;
-            stage.motion = PlatenMotion{static_cast<PlatenControl>(i), *boundary, platen.number("value")};
+            stage.motion =
+                PlatenMotion{static_cast<PlatenControl>(i), *boundary, platen.number("value"), platen.boolean("glued")};
             check_platen(platen, *name, stage);
+            if (stage.motion->value < 0.0 && !stage.motion->glued && !was_moved(*boundary))
+                context_.warn(
+                    platen, "value",
+                    "the platen leaves the body, which it holds in tension only if it is glued (glued: true)");
         }
+    }
+
+    /// In an earlier stage: a platen may go back from where it has pressed.
+    [[nodiscard]] bool was_moved(int boundary) const {
+        return std::ranges::any_of(
+            loads_.stages, [&](const Stage& stage) { return stage.motion && stage.motion->boundary == boundary; });
+    }
+
+    /// tan of the friction angle.
+    static double platen_friction(const SceneSection& stage) {
+        const SceneNode* node = stage.value("platens");
+        if (node != nullptr && node->is_mapping()) return std::tan(stage.section("platens").number("friction_angle"));
+        constexpr int rough = 1;
+        return stage.choice("platens") == rough ? std::numeric_limits<double>::infinity() : 0.0;
     }
 
     /// The loads stay: it is not the first stage, and has none of its own.
@@ -149,8 +170,6 @@ private:
         if (stage.pressure.contains(stage.motion->boundary))
             context_.fail(platen, "boundary",
                           fmt::format("expected a boundary without a pressure in the same stage, found '{}'", name));
-        if (support(stage.motion->boundary) != Support::none)
-            context_.fail(platen, "boundary", fmt::format("expected a boundary without a support, found '{}'", name));
     }
 
     const std::vector<std::string>& boundaries_;

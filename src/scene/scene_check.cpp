@@ -91,6 +91,12 @@ public:
         case KeyType::mapping:
             check_mapping(node, rule.path, path, expected_text(rule));
             break;
+        case KeyType::choice_or_mapping:
+            if (node.is_mapping())
+                check_mapping(node, rule.path, path, expected_text(rule));
+            else
+                check_scalar(node, rule, path);
+            break;
         case KeyType::named:
             check_named(node, rule, path);
             break;
@@ -256,7 +262,7 @@ std::string scalar_problem(const SceneNode& node, const KeyRule& rule) {
     if (rule.type == KeyType::number) return number_problem(node, rule.measure, rule.range);
     if (rule.type == KeyType::integer) return integer_problem(node, rule.range);
     if (!node.is_scalar()) return found_text(node);
-    if (rule.type == KeyType::choice) return choice_problem(node, rule);
+    if (rule.type == KeyType::choice || rule.type == KeyType::choice_or_mapping) return choice_problem(node, rule);
     if (rule.type == KeyType::boolean)
         return !node.quoted && (node.text == "true" || node.text == "false") ? std::string{} : found_text(node);
     return text_problem(node);

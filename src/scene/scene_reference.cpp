@@ -101,10 +101,10 @@ std::string shown_path(std::string_view path) {
 
 std::string shown_type(const KeyRule& rule) {
     if (rule.type == KeyType::mapping) return "mapping";
-    if (rule.type == KeyType::choice) {
+    if (rule.type == KeyType::choice || rule.type == KeyType::choice_or_mapping) {
         std::string text;
         for (const auto& choice : rule.choices) text += fmt::format("{}`{}`", text.empty() ? "" : ", ", choice);
-        return text;
+        return rule.type == KeyType::choice ? text : text + " or mapping";
     }
     return expected_text(rule);
 }
@@ -158,6 +158,8 @@ Json value_schema(const KeyRule& rule) {
         return Json{{"type", Json::array({"string", "number", "boolean"})}};
     case KeyType::choice:
         return Json{{"enum", rule.choices}};
+    case KeyType::choice_or_mapping:
+        return Json{{"anyOf", Json::array({Json{{"enum", rule.choices}}, mapping_schema(rule.path)})}};
     case KeyType::point:
         return point_schema(rule);
     case KeyType::points:

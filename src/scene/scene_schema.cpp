@@ -548,6 +548,10 @@ std::vector<KeyRule> loading_rules() {
          .measure = Measure::length,
          .required = true,
          .doc = "Inward displacement in this stage."},
+        {.path = "stages.#.displacement.glued",
+         .type = KeyType::boolean,
+         .fallback = "false",
+         .doc = "Both platens hold the body in tension too."},
         {.path = "stages.#.strain", .type = KeyType::mapping, .doc = "The same, given as engineering strain."},
         {.path = "stages.#.strain.boundary", .type = KeyType::text, .required = true, .doc = "What is moved."},
         {.path = "stages.#.strain.value",
@@ -555,6 +559,10 @@ std::vector<KeyRule> loading_rules() {
          .range = {.least = -0.5, .most = 0.5},
          .required = true,
          .doc = "Displacement in this stage as a fraction of the body's length."},
+        {.path = "stages.#.strain.glued",
+         .type = KeyType::boolean,
+         .fallback = "false",
+         .doc = "Both platens hold the body in tension too."},
         {.path = "stages.#.stress", .type = KeyType::mapping, .doc = "The same, controlled by the platen's stress."},
         {.path = "stages.#.stress.boundary", .type = KeyType::text, .required = true, .doc = "What is moved."},
         {.path = "stages.#.stress.value",
@@ -562,11 +570,27 @@ std::vector<KeyRule> loading_rules() {
          .measure = Measure::stress,
          .required = true,
          .doc = "Mean stress on the platen at the end of the stage."},
+        {.path = "stages.#.stress.glued",
+         .type = KeyType::boolean,
+         .fallback = "false",
+         .doc = "Both platens hold the body in tension too."},
         {.path = "stages.#.platens",
-         .type = KeyType::choice,
+         .type = KeyType::choice_or_mapping,
          .choices = {"smooth", "rough"},
          .fallback = "smooth",
-         .doc = "`smooth` platens leave the tangential motion free, to `rough` ones the body sticks."},
+         .doc =
+             "Platens are rigid half-planes that the body touches and leaves and that no block enters. `smooth` ones "
+             "leave "
+             "the tangential motion free, to `rough` ones the body sticks where it touches them, and on those with a "
+             "friction_angle it slides by Coulomb's law. The platen opposite to the moved one is rough where its "
+             "boundary has a `fixed` support, and one vertex near its middle does not move along it if it is smooth "
+             "and has no `smooth` support."},
+        {.path = "stages.#.platens.friction_angle",
+         .type = KeyType::number,
+         .measure = Measure::angle,
+         .range = below_ninety,
+         .required = true,
+         .doc = "Of the platens against the body."},
         {.path = "stages.#.strength_reduction",
          .type = KeyType::mapping,
          .doc = "Seeks the factor of safety. Loads stay; tan(phi) and cohesion of fractures, and of the strength of "
@@ -857,6 +881,8 @@ std::string expected_text(const KeyRule& rule) {
         return "text";
     case KeyType::choice:
         return rule.choices.size() == 1 ? rule.choices[0] : "one of " + listed(rule.choices);
+    case KeyType::choice_or_mapping:
+        return fmt::format("one of {}, or a mapping of {}", listed(rule.choices), listed(child_keys(rule.path)));
     case KeyType::point:
         return "a point [x, y]" + unit;
     case KeyType::points:

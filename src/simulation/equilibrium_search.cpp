@@ -7,9 +7,11 @@ namespace kluft {
 
 namespace {
 
-constexpr double eta_decay = 0.1;      ///< from round to round: what a body that stands leaves over falls with it
-constexpr int rounds_with_decay = 3;   ///< then it stays: what nothing else holds needs it
-constexpr int max_rounds = 40;         ///< of one search, as long as what is left over falls
+constexpr double eta_decay = 0.1;    ///< from round to round: what a body that stands leaves over falls with it
+constexpr int rounds_with_decay = 3; ///< then it stays: what nothing else holds needs it
+constexpr int max_rounds = 40;       ///< of one search, as long as what is left over falls
+constexpr int rounds_that_open = 12; ///< points of platens: then they may only close
+constexpr int max_platen_rounds = 24;
 constexpr double share_of_solve = 0.1; ///< of what may be left over on a block: largest residual of a solve
 
 OpenCloseOptions open_close_options(const SolverOptions& solver) {
@@ -55,8 +57,37 @@ void EquilibriumSearch::order_for(std::vector<std::pair<int, int>> near_pairs) {
     linear_.analyze(pattern_);
 }
 
-Equilibrium EquilibriumSearch::find(EquilibriumProblem problem, Eigen::VectorXd guess, const BlockGoal& balance,
-                                    bool unloaded) {
+/// Repeats solves with other points on the platens until these agree with what is found.
+template <class Solve> Equilibrium EquilibriumSearch::find_touching(const EquilibriumProblem& problem, Solve solve) {
+    EquilibriumProblem held = problem;
+    Loads loads = *problem.body.loads;
+    held.body.loads = &loads;
+    Equilibrium found = solve(held, nullptr);
+    bool changed = false;
+    for (int round = 0; found.converged(); ++round) {
+        if (!update_platen_points(held.body, found.displacement, round < rounds_that_open, loads)) break;
+        changed = true;
+        hold_by_platens(held.body, found.displacement, loads);
+        const int iterations = found.iterations;
+        found = solve(held, &found);
+        found.iterations += iterations;
+        found.balanced = found.balanced && round < max_platen_rounds;
+        if (round == max_platen_rounds) break;
+    }
+    if (changed) found.hold = {std::move(loads.platen_points), std::move(loads.constraints), std::move(loads.friction)};
+    return found;
+}
+
+Equilibrium EquilibriumSearch::find(const EquilibriumProblem& problem, const Eigen::VectorXd& guess,
+                                    const BlockGoal& balance, bool unloaded) {
+    if (problem.body.loads->platens.empty()) return find_held(problem, guess, balance, unloaded);
+    return find_touching(problem, [&](const EquilibriumProblem& held, const Equilibrium* last) {
+        return find_held(held, last != nullptr ? last->displacement : guess, balance, unloaded && last == nullptr);
+    });
+}
+
+Equilibrium EquilibriumSearch::find_held(EquilibriumProblem problem, Eigen::VectorXd guess, const BlockGoal& balance,
+                                         bool unloaded) {
     Equilibrium found;
     found.displacement = std::move(guess);
     found.summary = open_close_.solve(problem, pattern_, found.displacement,
@@ -94,6 +125,13 @@ void EquilibriumSearch::settle(EquilibriumProblem& problem, const BlockGoal& bal
 }
 
 Equilibrium EquilibriumSearch::move_on(const EquilibriumProblem& problem, const BlockGoal& balance, bool unloaded) {
+    if (problem.body.loads->platens.empty()) return move_held(problem, balance, unloaded);
+    return find_touching(problem, [&](const EquilibriumProblem& held, const Equilibrium* last) {
+        return move_held(held, balance, unloaded && last == nullptr);
+    });
+}
+
+Equilibrium EquilibriumSearch::move_held(const EquilibriumProblem& problem, const BlockGoal& balance, bool unloaded) {
     Equilibrium moved;
     moved.displacement = problem.start;
     moved.summary = open_close_.solve(

@@ -52,11 +52,13 @@ void add_mechanics(const Model& model, Digest& digest) {
 }
 
 void add_stage(const Stage& stage, Digest& digest) {
-    digest.add(stage.steps, static_cast<int>(stage.platens));
+    digest.add(stage.steps, stage.platen_friction);
     for (const auto& [boundary, pressure] : stage.pressure) digest.add(boundary, pressure);
     if (stage.gravity) digest.add(stage.gravity->x(), stage.gravity->y());
     for (const auto& [i, force] : stage.forces) digest.add(i, force.x(), force.y());
-    if (stage.motion) digest.add(static_cast<int>(stage.motion->control), stage.motion->boundary, stage.motion->value);
+    if (stage.motion)
+        digest.add(static_cast<int>(stage.motion->control), stage.motion->boundary, stage.motion->value,
+                   static_cast<int>(stage.motion->glued));
     if (!stage.strength_reduction) return;
     const StrengthReduction& reduction = *stage.strength_reduction;
     digest.add(reduction.from, reduction.to, reduction.tolerance);

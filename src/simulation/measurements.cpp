@@ -57,20 +57,24 @@ Gauges make_gauges(const Model& model) {
     return gauges;
 }
 
-Strains measure_strains(const Model& model, const Gauges& gauges, const Eigen::VectorXd& q,
+Strains measure_strains(const Model& model, const Gauges& gauges, const Loads& loads, const Eigen::VectorXd& q,
                         const Eigen::VectorXd& reference) {
     Strains strains;
     if (gauges.moved < 0) return strains;
-    const Eigen::VectorXd change = reference.size() == q.size() ? Eigen::VectorXd(q - reference) : q;
-    const auto closure = [&](int a, int b, const Vec2& normal) {
-        double shortening = -normal.dot(mean_displacement(model.system, change, a));
-        if (b >= 0) shortening += normal.dot(mean_displacement(model.system, change, b));
-        return shortening;
+    const Eigen::VectorXd from = reference.size() == q.size() ? reference : Eigen::VectorXd::Zero(q.size());
+    const Eigen::VectorXd change = q - from;
+    const double travel = platen_travel(loads, q);
+    const auto outward = [&](int boundary) {
+        const auto platen = std::ranges::find(loads.platens, boundary, &Platen::boundary);
+        if (platen == loads.platens.end())
+            return boundary_frame(model.system, boundary).normal.dot(mean_displacement(model.system, change, boundary));
+        const double until_stage =
+            mean_reach(*platen, loads.platen_points) - mean_reach(*platen, laid_points(model.system, *platen, from));
+        return until_stage + platen->moved + platen->rate * travel;
     };
-    strains.axial = closure(gauges.moved, gauges.opposite, gauges.axial_normal) / gauges.length;
-    if (gauges.lateral.size() == 2) {
-        strains.lateral = closure(gauges.lateral[0], gauges.lateral[1], gauges.lateral_normal) / gauges.width;
-    }
+    const auto shortening = [&](int a, int b) { return -outward(a) - (b >= 0 ? outward(b) : 0.0); };
+    strains.axial = shortening(gauges.moved, gauges.opposite) / gauges.length;
+    if (gauges.lateral.size() == 2) strains.lateral = shortening(gauges.lateral[0], gauges.lateral[1]) / gauges.width;
     return strains;
 }
 
@@ -123,8 +127,8 @@ StepRecord measure_step(const Model& model, const Gauges& gauges, const State& s
     record.step = state.at.step + 1;
     record.stage = state.at.stage;
     record.load_factor = state.at.load_factor;
-    const Strains strains = measure_strains(model, gauges, q, state.strain_zero);
-    const Strains total = measure_strains(model, gauges, q, Eigen::VectorXd());
+    const Strains strains = measure_strains(model, gauges, *body.loads, q, state.strain_zero);
+    const Strains total = measure_strains(model, gauges, *body.loads, q, Eigen::VectorXd());
     record.axial_strain = strains.axial;
     record.lateral_strain = strains.lateral;
     record.volumetric_strain = strains.axial + strains.lateral;

@@ -6,14 +6,6 @@
 
 namespace kluft {
 
-namespace {
-
-/// Largest opening at which a contact point is kept, relative to the lattice spacing. Twice this is less than the
-/// distance of hexagons that are not neighbours, so that an undeformed net has no pairs but its own.
-constexpr double contact_reach = 0.1;
-
-} // namespace
-
 std::vector<char> bonded_interfaces(const BodyState& body) {
     std::vector<char> bonded(body.interfaces.size());
     std::ranges::transform(body.interfaces, bonded.begin(),

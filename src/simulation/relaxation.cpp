@@ -84,13 +84,13 @@ bool is_harmless(Equilibrium& moved, const BlockGoal& balance) {
 enum class Outcome { stuck, moved, balanced, failed };
 
 /// Judges a step that was taken, and moves the body along if it counts.
-Outcome judge(StepInProgress& p, const PlacedState& placed, const LoadsAt& at, RelaxationProgress& progress,
-              const Equilibrium& last, Equilibrium& moved) {
+Outcome judge(StepInProgress& p, const PlacedState& placed, RelaxationProgress& progress, const Equilibrium& last,
+              Equilibrium& moved) {
     if (!is_harmless(moved, p.goal.balance)) return Outcome::stuck;
     moved.verdict = judge_blocks(moved.blocks, last.blocks.left.empty() ? nullptr : &last.blocks, p.goal.balance);
     moved.balanced = moved.verdict.balanced() && moved.viscous_share <= p.goal.balance.share;
     if (moved.balanced) return Outcome::balanced;
-    if (!move_body(p, placed, at, moved.displacement)) return Outcome::failed;
+    if (!move_body(p, placed, moved)) return Outcome::failed;
     const bool must_rest = p.goal.must_rest || is_loaded_by_stress(p.bench.stage(p.from));
     const bool moves_on = must_rest && !progress.falls(moved.verdict.error);
     if (!moves_on && !is_falling(p)) return Outcome::moved;
@@ -130,7 +130,7 @@ Equilibrium relax(StepInProgress& p, PlacedState& placed, const LoadsAt& at, con
     RelaxationProgress progress;
     for (int attempt = 0; attempt < max_relaxation_attempts; ++attempt) {
         Equilibrium moved = move_on(p, placed, at, factors);
-        const Outcome outcome = judge(p, placed, at, progress, last, moved);
+        const Outcome outcome = judge(p, placed, progress, last, moved);
         if (outcome == Outcome::balanced) p.step.end.memory.viscosity_factor = factors;
         if (outcome == Outcome::stuck && !grow_mass(moved.summary.restless, factors))
             fail(p, moved, moved.summary.residual_ratio, FailureKind::no_equilibrium);
@@ -160,11 +160,11 @@ void hold_balanced_part(Step& step) {
 Equilibrium recover(StepInProgress& p, PlacedState& placed, const Equilibrium& failed, double load_factor) {
     hold_balanced_part(p.step);
     const LoadsAt at = p.loads_at(load_factor);
-    if (failed.converged() && !move_body(p, placed, at, failed.displacement)) return failed;
+    if (failed.converged() && !move_body(p, placed, failed)) return failed;
     Equilibrium found = relax(p, placed, at, failed.summary.restless);
     if (p.failed() || !p.goal.must_rest) return found;
     if (found.balanced) { // with the mass-like term of a relaxation: it must stand without it too
-        if (!move_body(p, placed, at, found.displacement)) return found;
+        if (!move_body(p, placed, found)) return found;
         placed = place(p);
         found = find_at(p, placed, load_factor, p.displacement());
     }

@@ -58,19 +58,24 @@ StageEnd run_stage(const StepBench& bench, State& state) {
     return run_fixed_steps(bench, state);
 }
 
+LoadsAt loads_at(const StepBench& bench, const State& state, double load_factor) {
+    return kluft::loads_at(bench.model, bench.loads, hold_of(bench.model, bench.loads, state.body), state.at.stage,
+                           load_factor);
+}
+
 /// What the loads say of why a stage has ended out of balance.
 std::vector<std::string> causes_of(const StepBench& bench, const State& state, const StageEnd& end) {
     const bool balanced = !end.failure && state.unbalanced_in_succession == 0;
     if (balanced) return {};
     const double load_factor = end.failure ? end.failure->load_factor : 1.0;
-    const LoadsAt at = loads_at(bench.model, bench.loads, state.at.stage, load_factor);
+    const LoadsAt at = loads_at(bench, state, load_factor);
     return likely_causes(bench.model, at, end.failure ? end.failure->moving : end.moving);
 }
 
 /// The next stage starts from the loads at the end of this one.
 void end_stage(const StepBench& bench, Eigen::VectorXd forces, State& state) {
     if (forces.size() == 0) forces = measure_state(bench, state, 1.0).measured.forces; // resumed at the end of a stage
-    const LoadsAt at = loads_at(bench.model, bench.loads, state.at.stage, 1.0);
+    const LoadsAt at = loads_at(bench, state, 1.0);
     const RunCosts costs = bench.journal.costs();
     leave_stage(bench.model, bench.loads, at.loads, forces, state);
     state.costs = costs;

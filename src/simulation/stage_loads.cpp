@@ -1,5 +1,8 @@
 #include "kluft/simulation/stage_loads.hpp"
 
+#include <algorithm>
+#include <iterator>
+#include <limits>
 #include <optional>
 #include <set>
 #include <utility>
@@ -55,67 +58,46 @@ std::optional<std::pair<int, int>> middle_vertex(const BlockSystem& system, int 
     return nearest;
 }
 
-/// The platen that a stage moves, and what all boundaries are held by meanwhile.
-struct MovedPlaten {
-    std::vector<Support> supports;    ///< one per boundary
-    int boundary = -1;                ///< -1 without one
-    Vec2 velocity = Vec2::Zero();     ///< per unit of load factor (m), or per unit of a travel that is unknown
-    std::optional<PlatenForce> force; ///< of a platen under stress
-    [[nodiscard]] Vec2 velocity_of(int i) const { return i == boundary ? velocity : Vec2(Vec2::Zero()); }
-};
-
-MovedPlaten platen_of(const Model& model, const Stage& stage) {
-    MovedPlaten platen;
-    platen.supports = model.loads.supports;
-    if (!stage.motion) return platen;
-    const BlockSystem& system = model.system;
-    const int moved = platen.boundary = stage.motion->boundary;
-    const int fixed = opposite_boundary(system, moved);
-    const Support kind = stage.platens == Platens::rough ? Support::fixed : Support::smooth;
-    platen.supports[moved] = kind;
-    if (fixed >= 0 && kind == Support::fixed) platen.supports[fixed] = Support::fixed;
-    if (fixed >= 0 && platen.supports[fixed] == Support::none) platen.supports[fixed] = Support::pinned;
-    const Vec2 inward = -boundary_frame(system, moved).normal;
-    double distance = stage.motion->value;
-    if (stage.motion->control == PlatenControl::strain) distance *= distance_across(system, moved);
-    platen.velocity = distance * inward;
-    if (stage.motion->control == PlatenControl::stress) {
-        platen.velocity = inward;
-        platen.force = width_across(system, moved);
-    }
-    return platen;
+double friction_of(const Support support, double of_platens) {
+    return support == Support::fixed ? std::numeric_limits<double>::infinity() : of_platens;
 }
 
-/// Prescribed displacements with their targets at load factor 0 and the rates of these per unit of load factor.
-struct PrescribedRows {
-    std::vector<PrescribedDisplacement> rows;
-    std::vector<double> start_targets; ///< m
-    std::vector<double> target_rates;  ///< m
+/// The platen that a stage moves and the one opposite to it, which a support may make rough.
+std::vector<Platen> platens_of(const Model& model, const Stage& stage) {
+    if (!stage.motion) return {};
+    const BlockSystem& system = model.system;
+    const int boundary = stage.motion->boundary;
+    Platen moved{.boundary = boundary,
+                 .normal = boundary_frame(system, boundary).normal,
+                 .tan_friction = stage.platen_friction,
+                 .glued = stage.motion->glued};
+    double distance = stage.motion->value;
+    if (stage.motion->control == PlatenControl::strain) distance *= distance_across(system, boundary);
+    const bool by_stress = stage.motion->control == PlatenControl::stress;
+    (by_stress ? moved.rate : moved.velocity) = by_stress ? -1.0 : -distance;
+    const int opposite = opposite_boundary(system, boundary);
+    if (opposite < 0) return {moved};
+    const Platen fixed{.boundary = opposite,
+                       .normal = boundary_frame(system, opposite).normal,
+                       .tan_friction = friction_of(model.loads.supports[opposite], stage.platen_friction),
+                       .glued = stage.motion->glued};
+    return {moved, fixed};
+}
 
-    void add(const PrescribedDisplacement& row, double rate) {
-        rows.push_back(row);
-        start_targets.push_back(row.target);
-        target_rates.push_back(rate);
-    }
-};
-
-/// A vertex of a held boundary follows its support: along the normal, and along the boundary too if it `sticks`.
-void add_vertex(const MovedPlaten& platen, int boundary, int block, const Vec2& xi, const Vec2& start,
-                const Vec2& normal, bool sticks, PrescribedRows& prescribed) {
-    const auto prescribe = [&](const Vec2& direction) {
-        const double rate = direction.dot(platen.velocity_of(boundary));
-        prescribed.add({block, xi, direction, boundary, direction.dot(start), platen.force ? rate : 0.0},
-                       platen.force ? 0.0 : rate);
-    };
-    prescribe(normal);
-    if (sticks) prescribe(Vec2(-normal.y(), normal.x()));
+/// A vertex that does not move along a direction.
+PrescribedDisplacement held(const BlockSystem& system, int boundary, int block, int vertex, const Vec2& direction,
+                            const Eigen::VectorXd& start) {
+    PrescribedDisplacement row{block, block_coordinates(system.blocks[block], system.vertices[vertex]), direction,
+                               boundary};
+    row.start = row.target = direction.dot(displacement_at(start, block, row.xi));
+    return row;
 }
 
 /// The rows of the support of one boundary, each vertex of a block once.
-void add_support(const BlockSystem& system, const MovedPlaten& platen, int boundary, const Eigen::VectorXd& start,
-                 PrescribedRows& prescribed) {
+void add_support(const BlockSystem& system, Support support, int boundary, const Eigen::VectorXd& start,
+                 std::vector<PrescribedDisplacement>& rows) {
     const Vec2 normal = boundary_frame(system, boundary).normal;
-    const Support support = platen.supports[boundary];
+    const Vec2 tangent(-normal.y(), normal.x());
     const auto pin = support == Support::pinned ? middle_vertex(system, boundary) : std::nullopt;
     std::set<std::pair<int, int>> done; // (block, vertex)
     for (const auto& [b, e] : system.boundaries[boundary].edges) {
@@ -123,22 +105,43 @@ void add_support(const BlockSystem& system, const MovedPlaten& platen, int bound
         const Edge& edge = system.blocks[b].edges[e];
         for (const int vertex : {edge.start, edge.end}) {
             if (!done.emplace(b, vertex).second) continue;
-            const Vec2 xi = block_coordinates(system.blocks[b], system.vertices[vertex]);
+            rows.push_back(held(system, boundary, b, vertex, normal, start));
             const bool sticks = support == Support::fixed || pin == std::pair(b, vertex);
-            add_vertex(platen, boundary, b, xi, displacement_at(start, b, xi), normal, sticks, prescribed);
+            if (sticks) rows.push_back(held(system, boundary, b, vertex, tangent, start));
         }
     }
 }
 
+/// On smooth platens the body would drift: a vertex near the middle of the fixed one does not move along it, unless the
+/// scene says that the boundary has a smooth support.
+void add_pin(const Model& model, const Platen& platen, const Eigen::VectorXd& start,
+             std::vector<PrescribedDisplacement>& rows) {
+    const Support support = model.loads.supports[platen.boundary];
+    if (platen.tan_friction > 0.0 || support == Support::smooth) return;
+    const auto pin = middle_vertex(model.system, platen.boundary);
+    if (pin) rows.push_back(held(model.system, platen.boundary, pin->first, pin->second, platen.tangent(), start));
+}
+
 /// Three points of a fixed block do not move.
-void add_fixed_blocks(const BlockSystem& system, PrescribedRows& prescribed) {
+void add_fixed_blocks(const BlockSystem& system, std::vector<PrescribedDisplacement>& rows) {
     for (int b = 0; b < system.n_blocks(); ++b) {
         if (!system.blocks[b].fixed) continue;
         for (const Vec2& xi : {Vec2(0.0, 0.0), Vec2(1.0, 0.0), Vec2(0.0, 1.0)}) {
             for (const Vec2& direction : {Vec2(1.0, 0.0), Vec2(0.0, 1.0)})
-                prescribed.add({b, xi, direction, no_boundary}, 0.0);
+                rows.push_back({b, xi, direction, no_boundary});
         }
     }
+}
+
+/// Platens that are there already keep their points; those of others are gone.
+void lay_platens(const StageLoads& loads, std::vector<PlatenPoint>& points) {
+    const auto is_present = [](const auto& platens, int boundary) {
+        return std::ranges::any_of(platens, [&](const auto& each) { return each.boundary == boundary; });
+    };
+    std::erase_if(points, [&](const PlatenPoint& point) { return !is_present(loads.platens(), point.boundary); });
+    const std::vector<PlatenPoint> before = points;
+    std::ranges::copy_if(loads.platen_points(), std::back_inserter(points),
+                         [&](const PlatenPoint& point) { return !is_present(before, point.boundary); });
 }
 
 } // namespace
@@ -148,27 +151,34 @@ StageLoads::StageLoads(const Model& model, const StageStart& start, const Stage&
     const BlockSystem& system = model.system;
     const int n = static_cast<int>(system.boundaries.size());
     for (const auto& [boundary, pressure] : stage.pressure) end_pressure_[boundary] = pressure;
-    const MovedPlaten platen = platen_of(model, stage);
-    platen_force_ = platen.force;
-    if (platen_force_) {
-        start_platen_stress_ = start_pressure_[platen.boundary];
+    if (is_platen_loaded_by_stress(stage)) {
+        platen_force_ = width_across(system, stage.motion->boundary);
+        start_platen_stress_ = start_pressure_[stage.motion->boundary];
         end_platen_stress_ = stage.motion->value;
     }
-
-    PrescribedRows prescribed;
+    platens_ = platens_of(model, stage);
+    std::vector<PrescribedDisplacement> rows;
     held_.assign(n, 0);
     for (int boundary = 0; boundary < n; ++boundary) {
-        if (platen.supports[boundary] == Support::none) continue;
+        const auto platen = std::ranges::find(platens_, boundary, &Platen::boundary);
+        const Support support = model.loads.supports[boundary];
+        if (platen == platens_.end() && support == Support::none) continue;
         held_[boundary] = 1;
         start_pressure_[boundary] = end_pressure_[boundary] = 0.0;
-        add_support(system, platen, boundary, start.displacement, prescribed);
+        if (platen == platens_.end()) {
+            add_support(system, support, boundary, start.displacement, rows);
+            continue;
+        }
+        if (platen != platens_.begin()) add_pin(model, *platen, start.displacement, rows);
+        for (const PlatenPoint& point : laid_points(system, *platen, start.displacement)) {
+            append_rows(system, *platen, point, static_cast<int>(platen_points_.size()), rows);
+            platen_points_.push_back(point);
+        }
+        platen->face = face_of(system, *platen, platen_points_);
     }
-    add_fixed_blocks(system, prescribed);
-    start_targets_ = std::move(prescribed.start_targets);
-    target_rates_ = std::move(prescribed.target_rates);
-    constraints_ = model.kinematics == Kinematics::rigid
-                       ? Constraints(std::move(prescribed.rows), system, start.displacement)
-                       : Constraints(std::move(prescribed.rows));
+    add_fixed_blocks(system, rows);
+    constraints_ = model.kinematics == Kinematics::rigid ? Constraints(std::move(rows), system, start.displacement)
+                                                         : Constraints(std::move(rows));
     for (int boundary = 0; boundary < n; ++boundary) {
         if (start_pressure_[boundary] == 0.0 && end_pressure_[boundary] == 0.0) continue;
         const auto more = pressure_edges(system, boundary);
@@ -190,18 +200,9 @@ std::optional<PlatenForce> StageLoads::platen_force(double load_factor) const {
     return force;
 }
 
-void StageLoads::set_targets(Constraints& constraints, double load_factor) const {
-    for (std::size_t i = 0; i < start_targets_.size(); ++i) {
-        constraints.set_target(static_cast<int>(i), start_targets_[i] + load_factor * target_rates_[i]);
-    }
-}
-
 const PrescribedDisplacement* StageLoads::contradicting_row() const {
-    std::vector<double> rates = target_rates_;
-    const auto& rows = constraints_.rows();
-    for (std::size_t i = 0; i < rates.size(); ++i) rates[i] += rows[i].rate;
-    const int row = constraints_.contradicting_row(rates);
-    return row < 0 ? nullptr : &rows[row];
+    const int row = constraints_.contradicting_row();
+    return row < 0 ? nullptr : &constraints_.rows()[row];
 }
 
 void refuse_contradicting_supports(const Model& model) {
@@ -228,9 +229,13 @@ void refuse_contradicting_supports(const Model& model) {
     }
 }
 
-LoadsAt loads_at(const Model& model, const StageLoads& stage_loads, int stage, double load_factor) {
+LoadsAt loads_at(const Model& model, const StageLoads& stage_loads, const PlatenHold& hold, int stage,
+                 double load_factor) {
     LoadsAt at;
-    at.loads.constraints = stage_loads.constraints();
+    at.loads.constraints = hold.constraints;
+    at.loads.platen_points = hold.points;
+    at.loads.friction = hold.friction;
+    at.loads.platens = stage_loads.platens();
     at.loads.pressure_edges = stage_loads.edges();
     move_loads(model, stage_loads, stage, load_factor, at.loads);
     at.load_factor = load_factor;
@@ -242,7 +247,8 @@ LoadsAt loads_at(const Model& model, const StageLoads& stage_loads, int stage, d
 void move_loads(const Model& model, const StageLoads& stage_loads, int stage, double load_factor, Loads& loads) {
     loads.pressures = stage_loads.pressures(load_factor);
     loads.platen_force = stage_loads.platen_force(load_factor);
-    stage_loads.set_targets(loads.constraints, load_factor);
+    loads.constraints.move_to(load_factor);
+    for (Platen& platen : loads.platens) platen.moved = load_factor * platen.velocity;
     loads.gravity = between(gravity_after(model, stage - 1), gravity_after(model, stage), load_factor);
     loads.point_loads.clear();
     for (int i = 0; i < static_cast<int>(model.force_points.size()); ++i) {
@@ -258,7 +264,23 @@ StageLoads enter_stage(const Model& model, State& state) {
         state.stage_start.displacement = state.body.displacement;
         if (stage.motion && state.strain_zero.size() == 0) state.strain_zero = state.body.displacement;
     }
-    return {model, state.stage_start, stage};
+    StageLoads loads(model, state.stage_start, stage);
+    if (state.at.is_at_stage_start()) lay_platens(loads, state.body.platen_points);
+    return loads;
+}
+
+PlatenHold hold_of(const Model& model, const StageLoads& stage_loads, const BodyState& state) {
+    if (state.platen_points == stage_loads.platen_points())
+        return {stage_loads.platen_points(), stage_loads.constraints(), {}};
+    Loads loads;
+    loads.constraints = stage_loads.constraints();
+    loads.platens = stage_loads.platens();
+    loads.platen_points = state.platen_points;
+    LoadedBody body;
+    body.kinematics = model.kinematics;
+    body.system = &model.system;
+    hold_by_platens(body, state.displacement, loads);
+    return {std::move(loads.platen_points), std::move(loads.constraints), std::move(loads.friction)};
 }
 
 void leave_stage(const Model& model, const StageLoads& stage_loads, const Loads& loads, const Eigen::VectorXd& forces,
@@ -269,6 +291,11 @@ void leave_stage(const Model& model, const StageLoads& stage_loads, const Loads&
         if (stage_loads.is_held(i)) end[i] = boundary_stress(loads, forces, i, true, frame.length, frame.normal);
     }
     state.stage_start.boundary_pressure = std::move(end); // from here on nothing throws
+    const double travel = platen_travel(loads, state.body.displacement);
+    for (PlatenPoint& point : state.body.platen_points) {
+        const auto platen = std::ranges::find(loads.platens, point.boundary, &Platen::boundary);
+        point.reach += platen->moved + platen->rate * travel;
+    }
     ++state.at.stage;
     state.at.step_in_stage = 0;
     state.at.load_factor = 0.0;

@@ -90,7 +90,7 @@ FieldRecord fields_of_state(const Model& model, const State& state) {
     placement.contacts = detected_contacts(model, state.body).points;
     State copy = state;
     const StageLoads loads = enter_stage(model, copy);
-    const LoadsAt at = loads_at(model, loads, state.at.stage, state.at.load_factor);
+    const LoadsAt at = loads_at(model, loads, hold_of(model, loads, copy.body), state.at.stage, state.at.load_factor);
     return field_record(model, state, loaded_body(model, placement, at));
 }
 

@@ -40,7 +40,7 @@ double event_index(const StepInProgress& p, const Placement& placement, const Lo
 }
 
 double index_of(const StepInProgress& p, const PlacedState& placed, const Equilibrium& found) {
-    return event_index(p, placed.placement, p.loads_at(found.load_factor), found.displacement);
+    return event_index(p, placed.placement, p.loads_at(found), found.displacement);
 }
 
 /// A mapped fracture slips for the first time only once.

@@ -28,6 +28,14 @@ DetectedContacts detect(StepInProgress& p) {
     return detected_contacts(p.bench.model, p.step.end.body);
 }
 
+/// Vertices that have come near a platen become points of it.
+void watch_platens(StepInProgress& p) {
+    if (p.hold.points.empty()) return;
+    LoadsAt at = p.loads_at(p.load_factor());
+    add_near_points(p.bench.model.system, p.displacement(), contact_reach * p.bench.model.system.spacing, at.loads);
+    p.hold.points = std::move(at.loads.platen_points);
+}
+
 /// Bonds in the frames of the state beside the given contacts.
 PlacedState placed_with(StepInProgress& p, DetectedContacts contacts) {
     const auto& [model, cracks, solver, loads, search, journal, stop] = p.bench;
@@ -41,7 +49,7 @@ PlacedState placed_with(StepInProgress& p, DetectedContacts contacts) {
     search.require_pairs(placed.placement.contacts, std::move(contacts.near_pairs));
     const std::vector<char> bonded = bonded_interfaces(body);
     const bool separated = std::ranges::find(bonded, 0) != bonded.end();
-    const bool needs_mass = separated || !is_held(model.system, bonded, loads.constraints());
+    const bool needs_mass = separated || !is_held(model.system, bonded, p.hold.constraints);
     if (needs_mass && solver.viscosity > 0.0)
         placed.eta = mass_coefficients(model, solver.viscosity, p.step.end.memory.viscosity_factor);
     return placed;
@@ -80,7 +88,7 @@ void note_stresses(StepInProgress& p, const LoadedBody& body) {
 } // namespace
 
 StepInProgress begin_step(const StepBench& bench, const State& from, const StepGoal& goal) {
-    StepInProgress p{bench, from, goal, {}};
+    StepInProgress p{bench, from, goal, {}, hold_of(bench.model, bench.loads, from.body)};
     p.step.end = from;
     p.step.end.is_settled = true;
     p.step.row = goal.row;
@@ -102,6 +110,7 @@ PlacedState place(StepInProgress& p) {
     memory.steps_since_detection = 0;
     memory.kept_points.clear();
     const bool meet = has_surfaces_to_meet(p.bench.model, p.step.end.body);
+    watch_platens(p);
     return placed_with(p, meet ? detect(p) : DetectedContacts{});
 }
 
@@ -144,8 +153,10 @@ Equilibrium find_at(StepInProgress& p, const PlacedState& placed, double load_fa
     return found;
 }
 
-bool move_body(StepInProgress& p, const PlacedState& placed, const LoadsAt& at, const Eigen::VectorXd& q) {
+bool move_body(StepInProgress& p, const PlacedState& placed, const Equilibrium& found) {
     Step& step = p.step;
+    const LoadsAt at = p.loads_at(found);
+    const Eigen::VectorXd& q = found.displacement;
     const LoadedBody body = loaded_body(p.bench.model, placed.placement, at);
     if (auto flaw = flaw_of_displacements(body, q); !flaw.empty()) {
         step.failure =
@@ -155,13 +166,16 @@ bool move_body(StepInProgress& p, const PlacedState& placed, const LoadsAt& at, 
     if (step.lost_contact.empty()) step.lost_contact = lost_contact(body, q);
     keep_histories(body, q, step.end.body);
     step.end.body.displacement = q;
+    if (found.hold) p.hold = *found.hold;
+    keep_slips(p.bench.model.system, q, at.loads.platens, p.hold.points);
+    step.end.body.platen_points = p.hold.points;
     return true;
 }
 
 void reach(StepInProgress& p, PlacedState placed, const Equilibrium& found) {
     Step& step = p.step;
-    LoadsAt at = p.loads_at(found.load_factor);
-    if (!move_body(p, placed, at, found.displacement)) return;
+    LoadsAt at = p.loads_at(found);
+    if (!move_body(p, placed, found)) return;
     step.end.at.load_factor = found.load_factor;
     Measured measured = measure(p, placed, at, found);
     step.row = std::move(measured.row);

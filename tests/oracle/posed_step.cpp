@@ -61,7 +61,7 @@ void PosedStep::pose(const Scene& scene) {
     placement_.bonds = placed_bonds(model_, before_.body);
     auto contacts = detected_contacts(model_, before_.body);
     placement_.contacts = std::move(contacts.points);
-    at_ = loads_at(model_, loads, before_.at.stage, after_.at.load_factor);
+    at_ = loads_at(model_, loads, hold_of(model_, loads, after_.body), before_.at.stage, after_.at.load_factor);
     problem_.body = loaded_body(model_, placement_, at_);
 
     const double height = (model_.system.upper - model_.system.lower).maxCoeff();

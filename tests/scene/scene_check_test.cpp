@@ -249,8 +249,6 @@ INSTANTIATE_TEST_SUITE_P(
                                              "boundaries are bottom, right, top, left, found a list of 1"},
         Refusal{"stages.1.stress={boundary: right, value: 1}",
                 "stages.1.stress: expected one platen in a stage, found stress beside strain"},
-        Refusal{"stages.1.strain.boundary=bottom",
-                "stages.1.strain.boundary: expected a boundary without a support, found 'bottom'"},
         Refusal{"geometry.fractures.0.trace=[[0, 0], [0, 0], [1, 1]]",
                 "geometry.fractures.0.trace: expected successive points to differ, found points 0 and 1 (counted from "
                 "0) equal"},

@@ -152,7 +152,7 @@ TEST(SceneReader, ReadsSupportsAndStages) {
     EXPECT_EQ(loads.stages[1].motion->control, PlatenControl::strain);
     EXPECT_EQ(loads.stages[1].motion->boundary, 2);
     EXPECT_EQ(loads.stages[1].motion->value, 0.015);
-    EXPECT_EQ(loads.stages[1].platens, Platens::rough);
+    EXPECT_TRUE(std::isinf(loads.stages[1].platen_friction));
     EXPECT_EQ(loads.stages[2].motion->control, PlatenControl::displacement);
     EXPECT_EQ(loads.stages[2].motion->value, 0.003);
     EXPECT_EQ(loads.stages[2].steps, 1);
@@ -219,7 +219,7 @@ TEST(SceneReader, LeavesDefaultsWhereTheSceneSaysNothing) {
     EXPECT_EQ(lattice.jitter, HexagonLattice{}.jitter);
     EXPECT_EQ(scene.loads.stages[0].name, "stage 0");
     EXPECT_EQ(scene.loads.stages[0].steps, Stage{}.steps);
-    EXPECT_EQ(scene.loads.stages[0].platens, Stage{}.platens);
+    EXPECT_EQ(scene.loads.stages[0].platen_friction, Stage{}.platen_friction);
 }
 
 TEST(SceneReader, GravityIsANumberDownwardsOrAVector) {

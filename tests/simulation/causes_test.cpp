@@ -54,11 +54,10 @@ TEST(Causes, LoadsThatTurnTheBodyAreNamed) {
 
 TEST(Causes, LoadsThatAreHeldHaveNone) {
     const Model model = run_two_blocks("{bottom: {support: fixed}}", "{pressure: {top: 1 MPa, left: 2 MPa}}").model;
-    const StageLoads stage = [&] {
-        State state = initial_state(model);
-        return enter_stage(model, state);
-    }();
-    EXPECT_TRUE(likely_causes(model, loads_at(model, stage, 0, 1.0), {}).empty());
+    State state = initial_state(model);
+    const StageLoads stage = enter_stage(model, state);
+    const LoadsAt at = loads_at(model, stage, hold_of(model, stage, state.body), 0, 1.0);
+    EXPECT_TRUE(likely_causes(model, at, {}).empty());
 }
 
 TEST(Causes, AModulusWithoutItsUnitIsSuspected) {

@@ -44,8 +44,8 @@ const std::vector<Loading> loadings{
     {"forces", "bottom",
      "stages: [{{forces: {{a: {{point: [0.11, 0.74], force: [0, 6e5]}}, b: {{point: [0.29, 0.74], force: [0, 6e5]}}}}, "
      "steps: {}}}]"},
-    {"strain_of_a_platen", "bottom", "stages: [{{strain: {{boundary: top, value: -4e-4}}, steps: {}}}]"},
-    {"stress_of_a_platen", "bottom", "stages: [{{stress: {{boundary: top, value: -4 MPa}}, steps: {}}}]"},
+    {"strain_of_a_platen", "bottom", "stages: [{{strain: {{boundary: top, value: -4e-4, glued: true}}, steps: {}}}]"},
+    {"stress_of_a_platen", "bottom", "stages: [{{stress: {{boundary: top, value: -4 MPa, glued: true}}, steps: {}}}]"},
 };
 
 class FirstCrack : public ::testing::TestWithParam<std::tuple<Loading, std::string>> {

@@ -204,7 +204,7 @@ geometry:
   fractures: [{name: seam, trace: [[-1, 1], [2, 1]], interface: bond}]
   reference_spacing: 1.0
 boundaries: {bottom: {support: smooth}}
-stages: [{name: pull, strain: {boundary: top, value: -2e-4}, platens: smooth, steps: 5}]
+stages: [{name: pull, strain: {boundary: top, value: -2e-4, glued: true}, platens: smooth, steps: 5}]
 cracks: {event_tolerance: 1e-3}
 )";
 

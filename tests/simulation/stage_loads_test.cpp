@@ -161,7 +161,7 @@ TEST(StageLoads, PlatenMovesInwardInProportionToTheLoadFactor) {
         const StageLoads loads = loads_of(model, state);
         Constraints constraints = loads.constraints();
         for (const double factor : {0.0, 0.25, 1.0}) {
-            loads.set_targets(constraints, factor);
+            constraints.move_to(factor);
             for (const Row& row : rows_on(model, constraints, boundary, axis)) {
                 EXPECT_NEAR(row.target, 0.005 + factor * travel, 1e-15) << motion;
                 EXPECT_EQ(row.rate, 0.0);

@@ -34,7 +34,10 @@ struct PrescribedDisplacement {
     Vec2 direction = Vec2::Zero();
     int boundary = 0; ///< whose support it is; -1 for a fixed block
     double target = 0.0;
-    double rate = 0.0; ///< not zero: moves with a rigid platen whose travel is unknown
+    double rate = 0.0;     ///< not zero: moves with a rigid platen whose travel is unknown
+    double start = 0.0;    ///< target at the start of the stage (m)
+    double velocity = 0.0; ///< of the target per unit of load factor (m)
+    int platen_point = -1; ///< the point of a platen that it holds
 };
 
 /// The force on a rigid platen that its travel follows from: stress times the current width.
@@ -70,19 +73,22 @@ public:
     [[nodiscard]] const std::vector<PrescribedDisplacement>& rows() const { return rows_; }
     /// In ascending order.
     [[nodiscard]] const std::vector<ConstrainedBlock>& blocks() const { return blocks_; }
-    void set_target(int row, double target) { rows_[row].target = target; }
+    /// Sets the targets of a load factor.
+    void move_to(double load_factor);
 
     /// Least-norm change of q that fulfils the rows (zero where they hold), with the travel that is nearest to q. Where
     /// rows of a block contradict each other it is the least-squares compromise.
     void correction(const Eigen::VectorXd& q, Eigen::VectorXd& dq) const;
-    /// The first row of a block whose rows cannot all change at these rates, one per row; -1 if there is none.
-    [[nodiscard]] int contradicting_row(const std::vector<double>& rates) const;
+    /// The first row of a block whose rows cannot all change at their velocities; -1 if there is none.
+    [[nodiscard]] int contradicting_row() const;
     /// Least-norm motion of the n unknowns for unit travel; zero without a travelling platen.
     [[nodiscard]] Eigen::VectorXd travel_motion(Eigen::Index n) const;
     /// Removes the constrained part of a vector of unknowns or forces.
     void project(Eigen::VectorXd& v) const;
     /// The same for a vector of one block.
     void project(int block, Vec6& v) const;
+    /// The force that each row exerts on its block along its direction, of such a residual (N/m).
+    [[nodiscard]] std::vector<double> row_forces(const Eigen::VectorXd& residual) const;
     /// Force that the support of `boundary` exerts on the body when `residual` = internal - other external forces, six
     /// per block in either kinematics.
     [[nodiscard]] Vec2 reaction(const Eigen::VectorXd& residual, int boundary) const;

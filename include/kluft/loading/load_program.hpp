@@ -10,19 +10,15 @@
 
 namespace kluft {
 
-enum class Platens {
-    smooth, ///< the motion normal to the platen is prescribed, the tangential one free
-    rough   ///< both are prescribed: the vertices stick to the platen
-};
-
 enum class PlatenControl { displacement, strain, stress };
 
-/// What moves a boundary in a stage. The opposite boundary is held by a fixed platen of the same kind.
+/// What moves a boundary in a stage. The opposite boundary rests on a fixed platen of the same kind.
 struct PlatenMotion {
     PlatenControl control = PlatenControl::strain;
     int boundary = 0;   ///< index into GeometrySpec::boundaries
     double value = 0.0; ///< m (displacement), fraction of the body's length (strain) or Pa (stress), reached at the end
                         ///< of the stage, counted from the stage's start for displacement and strain
+    bool glued = false; ///< both platens hold the body in tension too
 };
 
 /// A dead load: a force of constant direction on a material point of a block.
@@ -50,7 +46,7 @@ struct Stage {
     std::optional<Vec2> gravity; ///< at the end of the stage (m/s2); without it as before, in the first stage that of
                                  ///< the model
     std::optional<PlatenMotion> motion;
-    Platens platens = Platens::smooth;
+    double platen_friction = 0.0; ///< tan of the friction angle of the platens; infinite: the body sticks to them
     std::optional<StrengthReduction> strength_reduction;
     int steps = 1;
 };

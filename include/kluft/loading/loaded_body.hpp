@@ -14,6 +14,7 @@
 #include "kluft/contact/contact.hpp"
 #include "kluft/kinematics/rigid.hpp"
 #include "kluft/loading/boundary_loads.hpp"
+#include "kluft/loading/platen.hpp"
 
 namespace kluft {
 
@@ -38,6 +39,9 @@ struct Loads {
     std::vector<PointLoad> point_loads;
     Vec2 gravity = Vec2::Zero();             ///< m/s2; fixed blocks have no weight
     std::optional<PlatenForce> platen_force; ///< on the platen whose travel is unknown
+    std::vector<Platen> platens;
+    std::vector<PlatenPoint> platen_points; ///< those that touch are rows of the constraints
+    std::vector<PointLoad> friction;        ///< of the platens on the sliding points
 };
 
 /// A body in one placement under one load. It refers to its parts, which must outlive it: bodies under different loads
@@ -64,7 +68,8 @@ void body_forces(const LoadedBody& body, const Eigen::VectorXd& q, BodyForces& r
 void body_forces(const LoadedBody& body, const Eigen::VectorXd& q, BodyForces& result,
                  std::vector<PointTraction>& tractions);
 
-/// The external forces at q alone: weights, pressures and point loads, without the supports' (N/m).
+/// The external forces at q alone: weights, pressures, point loads and the friction of platens, without the supports'
+/// (N/m).
 void external_forces(const LoadedBody& body, const Eigen::VectorXd& q, Eigen::VectorXd& result);
 
 /// The sum of the magnitudes of weight, pressures and point loads at q, per block (N/m).

@@ -11,19 +11,20 @@
 namespace kluft {
 
 enum class KeyType {
-    mapping,  ///< of the keys below it in the table
-    named,    ///< a mapping of names that the scene chooses
-    list,     ///< of the items below it in the table
-    number,   ///< with or without a unit
-    integer,  ///<
-    boolean,  ///< true or false
-    text,     ///<
-    choice,   ///< one of `choices`
-    point,    ///< [x, y]
-    points,   ///< [[x, y], ...]
-    integers, ///< [0, 1, ...]
-    texts,    ///< [name, ...]
-    gravity   ///< a number or [x, y]
+    mapping,           ///< of the keys below it in the table
+    named,             ///< a mapping of names that the scene chooses
+    list,              ///< of the items below it in the table
+    number,            ///< with or without a unit
+    integer,           ///<
+    boolean,           ///< true or false
+    text,              ///<
+    choice,            ///< one of `choices`
+    choice_or_mapping, ///< one of them, or a mapping of the keys below it in the table
+    point,             ///< [x, y]
+    points,            ///< [[x, y], ...]
+    integers,          ///< [0, 1, ...]
+    texts,             ///< [name, ...]
+    gravity            ///< a number or [x, y]
 };
 
 /// Bounds of a number in its plain unit (degrees for angles).

@@ -1,6 +1,7 @@
 // The search for one equilibrium: open-close iteration, repeated until the mass-like term no longer changes the answer.
 #pragma once
 
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "kluft/simulation/model.hpp"
 #include "kluft/simulation/run_costs.hpp"
 #include "kluft/simulation/simulation_options.hpp"
+#include "kluft/simulation/stage_loads.hpp"
 
 namespace kluft {
 
@@ -29,6 +31,7 @@ struct Equilibrium {
     int iterations = 0;           ///< linear solves of all solves
     int worst_block = -1;         ///< with the largest residual in the first solve
     bool balanced = false;
+    std::optional<PlatenHold> hold; ///< of the platens, where some of their points have opened, closed or slid
     [[nodiscard]] bool converged() const { return summary.converged(); }
 };
 
@@ -51,9 +54,10 @@ public:
     [[nodiscard]] const std::vector<std::pair<int, int>>& near_pairs() const { return near_pairs_; }
     void order_for(std::vector<std::pair<int, int>> near_pairs);
 
-    /// Solves from `guess`, and again from the result, until the mass-like term is small (docs/theory.md, balance).
-    [[nodiscard]] Equilibrium find(EquilibriumProblem problem, Eigen::VectorXd guess, const BlockGoal& balance,
-                                   bool unloaded);
+    /// Solves from `guess`, and again from the result, until the mass-like term is small (docs/theory.md, balance) and the
+    /// platens press on all that they hold and are penetrated by nothing (docs/theory.md, platens).
+    [[nodiscard]] Equilibrium find(const EquilibriumProblem& problem, const Eigen::VectorXd& guess,
+                                   const BlockGoal& balance, bool unloaded);
     /// One step of a relaxation from the problem's start.
     [[nodiscard]] Equilibrium move_on(const EquilibriumProblem& problem, const BlockGoal& balance, bool unloaded);
 
@@ -64,6 +68,9 @@ public:
     void add_costs(RunCosts& costs) const;
 
 private:
+    template <class Solve> Equilibrium find_touching(const EquilibriumProblem& problem, Solve solve);
+    Equilibrium find_held(EquilibriumProblem problem, Eigen::VectorXd guess, const BlockGoal& balance, bool unloaded);
+    Equilibrium move_held(const EquilibriumProblem& problem, const BlockGoal& balance, bool unloaded);
     void settle(EquilibriumProblem& problem, const BlockGoal& balance, Equilibrium& found);
 
     const Model& model_;

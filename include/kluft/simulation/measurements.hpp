@@ -30,8 +30,10 @@ struct Strains {
     double axial = 0.0;
     double lateral = 0.0;
 };
-[[nodiscard]] Strains measure_strains(const Model& model, const Gauges& gauges, const Eigen::VectorXd& q,
-                                      const Eigen::VectorXd& reference);
+/// Between displacements `reference` (empty: the body as it was cut) and q. A boundary with a platen, of which the loads
+/// know, moves with its face, any other one by its mean displacement.
+[[nodiscard]] Strains measure_strains(const Model& model, const Gauges& gauges, const Loads& loads,
+                                      const Eigen::VectorXd& q, const Eigen::VectorXd& reference);
 
 /// The worse of two contact states, to name an interface by its worst point: open, then locked, then sliding.
 [[nodiscard]] ContactState worse(ContactState a, ContactState b);

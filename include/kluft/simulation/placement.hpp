@@ -13,6 +13,10 @@
 
 namespace kluft {
 
+/// Largest opening at which a contact point is kept, relative to the lattice spacing. Twice this is less than the
+/// distance of hexagons that are not neighbours, so that an undeformed net has no pairs but its own.
+inline constexpr double contact_reach = 0.1;
+
 /// 1 for each interface that is still bonded.
 [[nodiscard]] std::vector<char> bonded_interfaces(const BodyState& body);
 

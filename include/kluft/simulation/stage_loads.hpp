@@ -19,10 +19,12 @@ public:
 
     /// Pressure per boundary at a load factor (Pa); 0 on boundaries that platens hold.
     [[nodiscard]] std::vector<double> pressures(double load_factor) const;
-    /// The prescribed displacements; targets are those of load factor 0.
+    /// The prescribed displacements with all points of the platens touching; targets are those of load factor 0.
     [[nodiscard]] const Constraints& constraints() const { return constraints_; }
-    /// Sets the targets of a load factor.
-    void set_targets(Constraints& constraints, double load_factor) const;
+    /// The platen that is moved and the one opposite to it; none in a stage without a motion.
+    [[nodiscard]] const std::vector<Platen>& platens() const { return platens_; }
+    /// Those that the platens are laid on at the start of the stage: all of their boundaries, touching.
+    [[nodiscard]] const std::vector<PlatenPoint>& platen_points() const { return platen_points_; }
     /// The force on a platen that is loaded by stress.
     [[nodiscard]] std::optional<PlatenForce> platen_force(double load_factor) const;
     [[nodiscard]] bool is_held(int boundary) const { return held_[boundary] != 0; }
@@ -36,7 +38,8 @@ private:
     std::vector<char> held_;
     std::vector<PressureEdge> edges_;
     Constraints constraints_;
-    std::vector<double> start_targets_, target_rates_;
+    std::vector<Platen> platens_;
+    std::vector<PlatenPoint> platen_points_;
     std::optional<PlatenForce> platen_force_;
     double start_platen_stress_ = 0.0;
     double end_platen_stress_ = 0.0;
@@ -46,6 +49,16 @@ private:
 /// it can follow. Supports that only hold cannot contradict each other.
 void refuse_contradicting_supports(const Model& model);
 
+/// What the platens hold the body by: their points, the prescribed displacements (supports' too) and the friction that
+/// follow from them.
+struct PlatenHold {
+    std::vector<PlatenPoint> points;
+    Constraints constraints;
+    std::vector<PointLoad> friction;
+};
+/// By the points of the state.
+[[nodiscard]] PlatenHold hold_of(const Model& model, const StageLoads& stage_loads, const BodyState& state);
+
 /// The loads at a load factor, and the strengths of the interfaces under them. A LoadedBody refers to `loads` and `laws`.
 struct LoadsAt {
     Loads loads;
@@ -53,13 +66,15 @@ struct LoadsAt {
     double load_factor = 0.0;
     double strength_factor = 1.0; ///< F that strengths are divided by
 };
-[[nodiscard]] LoadsAt loads_at(const Model& model, const StageLoads& stage_loads, int stage, double load_factor);
+[[nodiscard]] LoadsAt loads_at(const Model& model, const StageLoads& stage_loads, const PlatenHold& hold, int stage,
+                               double load_factor);
 
 /// Sets all loads of a load factor but the rows of the constraints and the edges under pressure, which are the stage's.
 /// The weight grows in the first stage and in those that have a gravity.
 void move_loads(const Model& model, const StageLoads& stage_loads, int stage, double load_factor, Loads& loads);
 
-/// The loads of the state's stage. At its start the state remembers the displacements that it started from.
+/// The loads of the state's stage. At its start the state remembers the displacements that it started from, and platens are
+/// laid on the body.
 [[nodiscard]] StageLoads enter_stage(const Model& model, State& state);
 
 /// Goes on to the next stage, with the pressures of the end of this one; on a boundary that was held it is the mean

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "kluft/contact/contact.hpp"
+#include "kluft/loading/platen.hpp"
 #include "kluft/simulation/run_costs.hpp"
 
 namespace kluft {
@@ -36,7 +37,8 @@ struct BodyState {
     Eigen::VectorXd displacement;            ///< (u, D) per block, size 6 n_blocks, m; see kinematics/affine.hpp
     std::vector<InterfaceStatus> interfaces; ///< one per interface
     std::vector<double> bond_shear; ///< shear traction at the two Gauss points of each bond, size 2 n_interfaces, Pa
-    std::vector<ContactMemory> contacts; ///< of touching contact points, sorted by key
+    std::vector<ContactMemory> contacts;    ///< of touching contact points, sorted by key
+    std::vector<PlatenPoint> platen_points; ///< of the stage's platens
 };
 
 /// What the loads of a stage are counted from.
@@ -105,6 +107,7 @@ template <class Members, class Visit> void visit_saved(Members& state, Visit&& v
     visit("interfaces", state.body.interfaces);
     visit("bond_shear", state.body.bond_shear);
     visit("contacts", state.body.contacts);
+    visit("platen_points", state.body.platen_points);
     visit("stage_start_displacement", state.stage_start.displacement);
     visit("stage_start_pressure", state.stage_start.boundary_pressure);
     visit("strain_zero", state.strain_zero);

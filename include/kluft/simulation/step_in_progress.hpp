@@ -49,11 +49,17 @@ struct StepInProgress {
     const State& from;
     const StepGoal& goal;
     Step step;
+    PlatenHold hold; ///< of the platens where the step stands
 
     [[nodiscard]] const Eigen::VectorXd& displacement() const { return step.end.body.displacement; }
     [[nodiscard]] double load_factor() const { return step.end.at.load_factor; }
     [[nodiscard]] LoadsAt loads_at(double load_factor) const {
-        return kluft::loads_at(bench.model, bench.loads, step.end.at.stage, load_factor);
+        return kluft::loads_at(bench.model, bench.loads, hold, step.end.at.stage, load_factor);
+    }
+    /// Under which an equilibrium was found.
+    [[nodiscard]] LoadsAt loads_at(const Equilibrium& found) const {
+        return kluft::loads_at(bench.model, bench.loads, found.hold.value_or(hold), step.end.at.stage,
+                               found.load_factor);
     }
     [[nodiscard]] bool failed() const { return step.failure.has_value(); }
 };
@@ -81,9 +87,9 @@ struct PlacedState {
 [[nodiscard]] Equilibrium find_at(StepInProgress& in_progress, const PlacedState& placed, double load_factor,
                                   Eigen::VectorXd guess);
 
-/// Moves the body to displacements found under loads: contacts keep their histories. False, and the step has failed, where
-/// they are those of no body.
-bool move_body(StepInProgress& in_progress, const PlacedState& placed, const LoadsAt& at, const Eigen::VectorXd& q);
+/// Moves the body to what was found: contacts keep their histories. False, and the step has failed, where its displacements
+/// are those of no body.
+bool move_body(StepInProgress& in_progress, const PlacedState& placed, const Equilibrium& found);
 
 /// Makes an equilibrium the end of the step, with a record of it.
 void reach(StepInProgress& in_progress, PlacedState placed, const Equilibrium& found);
@@ -103,12 +109,11 @@ template <class IndexAt>
 [[nodiscard]] EventCut<Equilibrium> cut_at_event(StepInProgress& in_progress, const PlacedState& placed,
                                                  Equilibrium found, const EventGoal& goal, IndexAt index_at) {
     const double from = in_progress.load_factor();
-    const auto loads = [&](double load_factor) { return in_progress.loads_at(load_factor); };
     const Eigen::VectorXd start = in_progress.displacement();
     return first_event(
         goal, from, std::move(found),
-        [&](const Equilibrium& at) { return index_at(loads(at.load_factor), at.displacement); },
-        [&] { return index_at(loads(from), start); },
+        [&](const Equilibrium& at) { return index_at(in_progress.loads_at(at), at.displacement); },
+        [&] { return index_at(in_progress.loads_at(from), start); },
         [&](double load_factor, double share, const Equilibrium& end) {
             return find_at(in_progress, placed, load_factor, start + share * (end.displacement - start));
         });

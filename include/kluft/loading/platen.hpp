@@ -1,0 +1,90 @@
+// Platens: half-planes without compliance that the body touches, leaves and slides along (docs/theory.md, "Platens").
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "kluft/blocks/block_system.hpp"
+#include "kluft/core/vector.hpp"
+#include "kluft/loading/boundary_loads.hpp"
+
+namespace kluft {
+
+struct LoadedBody;
+struct Loads;
+
+/// A platen on a boundary of the body.
+struct Platen {
+    int boundary = 0;
+    Vec2 normal = Vec2::Zero(); ///< outward of the boundary: from the body into the platen
+    double face = 0.0;          ///< place of its face along the normal at the start of the stage, local coordinates (m)
+    double tan_friction = 0.0;  ///< infinite: what touches it sticks
+    bool glued = false;         ///< what touches it stays on it
+    double velocity = 0.0;      ///< along the normal per unit of load factor (m)
+    double rate = 0.0;          ///< along the normal per unit of a travel that is unknown
+    double moved = 0.0;         ///< along the normal at the present load factor (m); without an unknown travel
+
+    [[nodiscard]] Vec2 tangent() const { return {-normal.y(), normal.x()}; }
+};
+
+enum class PlatenContact {
+    open,
+    sliding,
+    sticking,
+    beyond ///< the body goes on in the plane of the face beyond its end, and nothing stops it there
+};
+[[nodiscard]] inline bool touches(PlatenContact contact) {
+    return contact == PlatenContact::sliding || contact == PlatenContact::sticking;
+}
+
+/// A vertex of a block that touches a platen or may.
+struct PlatenPoint {
+    int boundary = 0; ///< whose platen
+    int block = 0;
+    int vertex = 0;
+    bool is_laid = false; ///< a vertex of the platen's boundary
+    PlatenContact contact = PlatenContact::sticking;
+    double reach = 0.0;    ///< displacement along the normal at which it touches, at the start of the stage (m)
+    double along = 0.0;    ///< displacement along the face from which slip counts (m)
+    double friction = 0.0; ///< force of the platen on a sliding point, along the tangent (N/m)
+
+    bool operator==(const PlatenPoint&) const = default;
+};
+
+/// The vertices of the platen's boundary, each of a block once, which touch it as they lie at displacements q, however uneven;
+/// and those beyond its ends.
+[[nodiscard]] std::vector<PlatenPoint> laid_points(const BlockSystem& system, const Platen& platen,
+                                                   const Eigen::VectorXd& q);
+
+/// Place of the face along the normal: that of the outermost of these points when it touches (m).
+[[nodiscard]] double face_of(const BlockSystem& system, const Platen& platen, const std::vector<PlatenPoint>& points);
+
+/// Mean displacement along the normal at which the vertices of the platen's boundary touch it at the start of the stage (m).
+[[nodiscard]] double mean_reach(const Platen& platen, const std::vector<PlatenPoint>& points);
+
+/// Adds, without contact, the vertices that are within `distance` (m) of the face of a platen at q and no points yet.
+void add_near_points(const BlockSystem& system, const Eigen::VectorXd& q, double distance, Loads& loads);
+
+/// The prescribed displacements of a touching point: along the normal, and along the face where it sticks. `index`: of the
+/// point.
+void append_rows(const BlockSystem& system, const Platen& platen, const PlatenPoint& point, int index,
+                 std::vector<PrescribedDisplacement>& rows);
+
+/// Holds the body by its supports and the touching points, and lets the friction on sliding points act. Rows of rigid blocks
+/// are linearised at q.
+void hold_by_platens(const LoadedBody& body, const Eigen::VectorXd& q, Loads& loads);
+
+/// Which points touch, slide and stick at equilibrium q, by the forces on those that are held and the place of the others
+/// (docs/theory.md 41). True if any has changed; the rows are then to be made anew. Points leave their platen only where
+/// they `may_open`.
+[[nodiscard]] bool update_platen_points(const LoadedBody& body, const Eigen::VectorXd& q, bool may_open, Loads& loads);
+
+/// The slip of sliding points counts from q on.
+void keep_slips(const BlockSystem& system, const Eigen::VectorXd& q, const std::vector<Platen>& platens,
+                std::vector<PlatenPoint>& points);
+
+/// Travel of a platen under a given force at q, from the points on it (m).
+[[nodiscard]] double platen_travel(const Loads& loads, const Eigen::VectorXd& q);
+
+} // namespace kluft

@@ -1,0 +1,310 @@
+#include "kluft/loading/platen.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <utility>
+
+#include "kluft/kinematics/affine.hpp"
+#include "kluft/loading/loaded_body.hpp"
+
+namespace kluft {
+
+namespace {
+
+constexpr double least_pull = 1e-6;        ///< of the largest force on a point of the platens: less is none
+constexpr double least_penetration = 1e-9; ///< of the largest displacement
+constexpr double in_plane = 1e-9;          ///< of the body's larger side
+constexpr double in_line = 1e-6;           ///< twice the area of a triangle over the square of its longest side
+constexpr double friction_change = 1e-5;   ///< of the largest force on a point: friction that has settled
+
+Vec2 block_coordinates_of(const BlockSystem& system, const PlatenPoint& point) {
+    return block_coordinates(system.blocks[point.block], system.vertices[point.vertex]);
+}
+
+Vec2 displacement_of(const BlockSystem& system, const PlatenPoint& point, const Eigen::VectorXd& q) {
+    return displacement_at(q, point.block, block_coordinates_of(system, point));
+}
+
+/// Calls visit(block, vertex) for each vertex of each block on a boundary once.
+template <class Visit> void for_each_vertex(const BlockSystem& system, int boundary, Visit visit) {
+    std::set<std::pair<int, int>> done;
+    for (const auto& [b, e] : system.boundaries[boundary].edges) {
+        if (system.blocks[b].fixed) continue;
+        const Edge& edge = system.blocks[b].edges[e];
+        for (const int vertex : {edge.start, edge.end})
+            if (done.emplace(b, vertex).second) visit(b, vertex);
+    }
+}
+
+const Platen* platen_on(const std::vector<Platen>& platens, int boundary) {
+    const auto found = std::ranges::find(platens, boundary, &Platen::boundary);
+    return found == platens.end() ? nullptr : &*found;
+}
+
+/// Forces of the platens on their points at equilibrium: against the normal, positive in compression, and along the face.
+struct PointForces {
+    std::vector<double> pressing, along; ///< N/m; zero where nothing is prescribed
+    double largest = 0.0;                ///< magnitude of `pressing`
+};
+
+PointForces forces_on_points(const LoadedBody& body, const Eigen::VectorXd& q, const Loads& loads) {
+    BodyForces sum;
+    body_forces(body, q, sum);
+    const std::vector<double> of_rows = loads.constraints.row_forces(sum.forces);
+    const auto& rows = loads.constraints.rows();
+    PointForces forces{std::vector<double>(loads.platen_points.size(), 0.0),
+                       std::vector<double>(loads.platen_points.size(), 0.0)};
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+        const int i = rows[r].platen_point;
+        if (i < 0) continue;
+        const Platen& platen = *platen_on(loads.platens, rows[r].boundary);
+        const bool across = std::abs(rows[r].direction.dot(platen.normal)) > 0.5;
+        if (!across) {
+            forces.along[i] = of_rows[r];
+            continue;
+        }
+        forces.pressing[i] = -of_rows[r];
+        forces.largest = std::max(forces.largest, std::abs(of_rows[r]));
+    }
+    return forces;
+}
+
+/// One point of a platen and what decides its contact.
+struct PointCheck {
+    const Platen& platen;
+    double pressing;    ///< N/m
+    double along;       ///< N/m
+    double largest;     ///< of all points (N/m)
+    double penetration; ///< m
+    double position;    ///< displacement along the face (m)
+    double least_penetration;
+};
+
+/// A held point that is pulled opens.
+bool update_pressed(const PointCheck& check, bool may_open, PlatenPoint& point) {
+    if (check.pressing >= -least_pull * check.largest || !may_open) return false;
+    point.contact = PlatenContact::open;
+    point.friction = 0.0;
+    return true;
+}
+
+bool update_open(const PointCheck& check, PlatenPoint& point) {
+    if (check.penetration <= check.least_penetration) return false;
+    point.contact = check.platen.tan_friction > 0.0 ? PlatenContact::sticking : PlatenContact::sliding;
+    point.along = check.position;
+    return true;
+}
+
+/// Coulomb's friction with the pressing force of the last solve.
+bool update_friction(const PointCheck& check, PlatenPoint& point) {
+    const double limit = check.platen.tan_friction * std::max(0.0, check.pressing);
+    const double least = friction_change * check.largest;
+    if (point.contact == PlatenContact::sticking) {
+        if (std::isinf(limit) || std::abs(check.along) <= limit + least) return false;
+        point.contact = PlatenContact::sliding;
+        point.friction = std::copysign(limit, check.along);
+        return true;
+    }
+    const double slip = check.position - point.along;
+    if (slip * point.friction > 0.0 && std::abs(slip) > check.least_penetration) { // it would push the point on
+        point.contact = PlatenContact::sticking;
+        point.friction = 0.0;
+        return true;
+    }
+    const double friction = std::copysign(limit, point.friction);
+    if (std::abs(friction - point.friction) <= least) return false;
+    point.friction = friction;
+    return true;
+}
+
+/// Whether three vertices lie on a line.
+bool are_in_line(const BlockSystem& system, int a, int b, int c) {
+    const Vec2 ab = system.vertices[b] - system.vertices[a];
+    const Vec2 ac = system.vertices[c] - system.vertices[a];
+    return std::abs(cross(ab, ac)) <= in_line * std::max(ab.squaredNorm(), ac.squaredNorm());
+}
+
+/// A block stands on a vertex or an edge: where a third vertex has closed, the less pressed one of the two before it opens.
+void open_third(const BlockSystem& system, const std::vector<double>& pressing, std::size_t closed,
+                std::vector<PlatenPoint>& points) {
+    std::vector<std::size_t> before;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const bool same = points[i].block == points[closed].block && points[i].boundary == points[closed].boundary;
+        if (same && i != closed && touches(points[i].contact)) before.push_back(i);
+    }
+    if (before.size() < 2) return;
+    const auto [least, most] = std::ranges::minmax(before, {}, [&](std::size_t i) { return pressing[i]; });
+    if (are_in_line(system, points[least].vertex, points[most].vertex, points[closed].vertex)) return;
+    points[least].contact = PlatenContact::open;
+    points[least].friction = 0.0;
+}
+
+bool update(const PointCheck& check, bool may_open, PlatenPoint& point) {
+    if (point.contact == PlatenContact::open) return update_open(check, point);
+    if (update_pressed(check, may_open, point)) return true;
+    return check.platen.tan_friction > 0.0 && update_friction(check, point);
+}
+
+/// Vertices in the plane of the platen's boundary that are none of it.
+void append_beyond(const BlockSystem& system, const Platen& platen, std::vector<PlatenPoint>& points) {
+    std::set<std::pair<int, int>> known;
+    double plane = -std::numeric_limits<double>::infinity();
+    for (const PlatenPoint& point : points) {
+        known.emplace(point.block, point.vertex);
+        plane = std::max(plane, platen.normal.dot(system.vertices[point.vertex]));
+    }
+    const double distance = in_plane * (system.upper - system.lower).maxCoeff();
+    for (int b = 0; b < system.n_blocks(); ++b) {
+        for (const Edge& edge : system.blocks[b].edges) {
+            if (platen.normal.dot(system.vertices[edge.start]) < plane - distance) continue;
+            if (!known.emplace(b, edge.start).second) continue;
+            points.push_back(
+                {.boundary = platen.boundary, .block = b, .vertex = edge.start, .contact = PlatenContact::beyond});
+        }
+    }
+}
+
+} // namespace
+
+std::vector<PlatenPoint> laid_points(const BlockSystem& system, const Platen& platen, const Eigen::VectorXd& q) {
+    std::vector<PlatenPoint> points;
+    for_each_vertex(system, platen.boundary, [&](int block, int vertex) {
+        PlatenPoint point{.boundary = platen.boundary, .block = block, .vertex = vertex, .is_laid = true};
+        const Vec2 u = displacement_of(system, point, q);
+        const bool sticks = platen.tan_friction > 0.0;
+        point.contact = sticks ? PlatenContact::sticking : PlatenContact::sliding;
+        point.reach = platen.normal.dot(u);
+        point.along = platen.tangent().dot(u);
+        points.push_back(point);
+    });
+    append_beyond(system, platen, points);
+    return points;
+}
+
+double face_of(const BlockSystem& system, const Platen& platen, const std::vector<PlatenPoint>& points) {
+    double outermost = -std::numeric_limits<double>::infinity();
+    for (const PlatenPoint& point : points) {
+        if (point.boundary != platen.boundary || !point.is_laid) continue;
+        outermost = std::max(outermost, platen.normal.dot(system.vertices[point.vertex]) + point.reach);
+    }
+    return outermost;
+}
+
+double mean_reach(const Platen& platen, const std::vector<PlatenPoint>& points) {
+    double sum = 0.0;
+    int n = 0;
+    for (const PlatenPoint& point : points) {
+        if (point.boundary != platen.boundary || !point.is_laid) continue;
+        sum += point.reach;
+        ++n;
+    }
+    return n > 0 ? sum / n : 0.0;
+}
+
+void add_near_points(const BlockSystem& system, const Eigen::VectorXd& q, double distance, Loads& loads) {
+    if (loads.platens.empty()) return;
+    std::set<std::pair<int, int>> known; // (block, vertex)
+    for (const PlatenPoint& point : loads.platen_points) known.emplace(point.block, point.vertex);
+    const double travel = platen_travel(loads, q);
+    for (const Platen& platen : loads.platens) {
+        const double face = platen.face + platen.moved + platen.rate * travel;
+        for (int b = 0; b < system.n_blocks(); ++b) {
+            if (system.blocks[b].fixed) continue;
+            for (const Edge& edge : system.blocks[b].edges) {
+                const Vec2& x = system.vertices[edge.start];
+                PlatenPoint point{.boundary = platen.boundary,
+                                  .block = b,
+                                  .vertex = edge.start,
+                                  .contact = PlatenContact::open,
+                                  .reach = platen.face - platen.normal.dot(x)};
+                const double place = platen.normal.dot(x + displacement_of(system, point, q));
+                if (place < face - distance || known.contains({b, edge.start})) continue;
+                loads.platen_points.push_back(point);
+            }
+        }
+    }
+}
+
+void append_rows(const BlockSystem& system, const Platen& platen, const PlatenPoint& point, int index,
+                 std::vector<PrescribedDisplacement>& rows) {
+    if (!touches(point.contact)) return;
+    PrescribedDisplacement row;
+    row.block = point.block;
+    row.xi = block_coordinates_of(system, point);
+    row.boundary = platen.boundary;
+    row.platen_point = index;
+    row.direction = platen.normal;
+    row.start = point.reach;
+    row.velocity = platen.velocity;
+    row.rate = platen.rate;
+    row.target = point.reach + platen.moved;
+    rows.push_back(row);
+    if (point.contact == PlatenContact::sliding) return;
+    row.direction = platen.tangent();
+    row.start = row.target = point.along;
+    row.velocity = row.rate = 0.0;
+    rows.push_back(row);
+}
+
+void hold_by_platens(const LoadedBody& body, const Eigen::VectorXd& q, Loads& loads) {
+    const BlockSystem& system = *body.system;
+    std::vector<PrescribedDisplacement> rows = loads.constraints.rows();
+    std::erase_if(rows, [](const PrescribedDisplacement& row) { return row.platen_point >= 0; });
+    loads.friction.clear();
+    for (std::size_t i = 0; i < loads.platen_points.size(); ++i) {
+        const PlatenPoint& point = loads.platen_points[i];
+        const Platen& platen = *platen_on(loads.platens, point.boundary);
+        append_rows(system, platen, point, static_cast<int>(i), rows);
+        if (point.friction != 0.0)
+            loads.friction.push_back(
+                {point.block, block_coordinates_of(system, point), point.friction * platen.tangent()});
+    }
+    loads.constraints =
+        body.kinematics == Kinematics::rigid ? Constraints(std::move(rows), system, q) : Constraints(std::move(rows));
+}
+
+bool update_platen_points(const LoadedBody& body, const Eigen::VectorXd& q, bool may_open, Loads& loads) {
+    if (loads.platen_points.empty()) return false;
+    const BlockSystem& system = *body.system;
+    const PointForces forces = forces_on_points(body, q, loads);
+    const double travel = platen_travel(loads, q);
+    const double shortest = least_penetration * q.lpNorm<Eigen::Infinity>();
+    bool changed = false;
+    for (std::size_t i = 0; i < loads.platen_points.size(); ++i) {
+        PlatenPoint& point = loads.platen_points[i];
+        const Platen& platen = *platen_on(loads.platens, point.boundary);
+        if (platen.glued || point.contact == PlatenContact::beyond) continue;
+        const Vec2 u = displacement_of(system, point, q);
+        const double reach = point.reach + platen.moved + platen.rate * travel;
+        const PointCheck check{platen,         forces.pressing[i],           forces.along[i],
+                               forces.largest, platen.normal.dot(u) - reach, platen.tangent().dot(u),
+                               shortest};
+        const bool was_open = point.contact == PlatenContact::open;
+        if (!update(check, may_open, point)) continue;
+        changed = true;
+        if (was_open) open_third(system, forces.pressing, i, loads.platen_points);
+    }
+    return changed;
+}
+
+void keep_slips(const BlockSystem& system, const Eigen::VectorXd& q, const std::vector<Platen>& platens,
+                std::vector<PlatenPoint>& points) {
+    for (PlatenPoint& point : points) {
+        if (point.contact != PlatenContact::sliding) continue;
+        point.along = platen_on(platens, point.boundary)->tangent().dot(displacement_of(system, point, q));
+    }
+}
+
+double platen_travel(const Loads& loads, const Eigen::VectorXd& q) {
+    double sum = 0.0;
+    double squares = 0.0;
+    for (const PrescribedDisplacement& row : loads.constraints.rows()) {
+        sum += row.rate * (row.direction.dot(displacement_at(q, row.block, row.xi)) - row.target);
+        squares += row.rate * row.rate;
+    }
+    return squares > 0.0 ? sum / squares : 0.0;
+}
+
+} // namespace kluft
