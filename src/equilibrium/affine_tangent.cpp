@@ -102,11 +102,11 @@ void add_contact_tangents(const EquilibriumProblem& problem, const Eigen::Vector
     }
 }
 
-void add_pressure_tangents(const EquilibriumProblem& problem, BlockMatrix& matrix) {
+void add_pressure_tangents(const EquilibriumProblem& problem, const Eigen::VectorXd& q, BlockMatrix& matrix) {
     for (const PressureEdge& edge : problem.body.loads->pressure_edges) {
         const double pressure = problem.body.loads->pressures[edge.boundary];
         if (pressure == 0.0) continue;
-        add_pressure_tangent(edge, pressure, matrix.values[matrix.pattern->diagonal(edge.block)]);
+        add_pressure_tangent(edge, pressure, q, matrix.values[matrix.pattern->diagonal(edge.block)]);
     }
 }
 
@@ -117,7 +117,7 @@ void affine_tangent(const EquilibriumProblem& problem, const Eigen::VectorXd& q,
     set_bond_tangents(problem, matrix);
     add_block_tangents(problem, q, kind, matrix);
     add_contact_tangents(problem, q, kind, matrix);
-    if (kind == TangentKind::exact) add_pressure_tangents(problem, matrix);
+    if (kind == TangentKind::exact) add_pressure_tangents(problem, q, matrix);
 }
 
 } // namespace kluft

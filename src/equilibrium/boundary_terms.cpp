@@ -4,13 +4,16 @@
 
 namespace kluft {
 
-void add_pressure_tangent(const PressureEdge& edge, double pressure, Mat6& diagonal) {
+void add_pressure_tangent(const PressureEdge& edge, double pressure, const Eigen::VectorXd& q, Mat6& diagonal) {
     Mat2 turn;
     turn << 0.0, 1.0, -1.0, 0.0; // right_normal
+    const Vec2 extent = current_extent(edge, q);
+    const PressedShare share = pressed_share(edge, extent);
+    const Mat2 by_extent = share.value * turn + right_normal(extent) * share.by_extent.transpose();
     const double position[3] = {1.0, edge.xi_middle.x(), edge.xi_middle.y()};
     for (int i = 0; i < 3; ++i) {
         for (int j = 0; j < 2; ++j) {
-            diagonal.block<2, 2>(2 * i, 2 + 2 * j) += pressure * position[i] * edge.xi_extent[j] * turn;
+            diagonal.block<2, 2>(2 * i, 2 + 2 * j) += pressure * position[i] * edge.xi_extent[j] * by_extent;
         }
     }
 }

@@ -66,12 +66,13 @@ void add_contact_tangents(const EquilibriumProblem& problem, const RigidTurns& t
     }
 }
 
-void add_pressure_tangents(const EquilibriumProblem& problem, const RigidTurns& turns, BlockMatrix& matrix) {
+void add_pressure_tangents(const EquilibriumProblem& problem, const RigidTurns& turns, const Eigen::VectorXd& q,
+                           BlockMatrix& matrix) {
     for (const PressureEdge& edge : problem.body.loads->pressure_edges) {
         const double pressure = problem.body.loads->pressures[edge.boundary];
         if (pressure == 0.0) continue;
         Mat6 stiffness = Mat6::Zero();
-        add_pressure_tangent(edge, pressure, stiffness);
+        add_pressure_tangent(edge, pressure, q, stiffness);
         matrix.rigid_values[matrix.pattern->diagonal(edge.block)] += turns.reduced(stiffness, edge.block);
     }
 }
@@ -83,7 +84,7 @@ void rigid_tangent(const EquilibriumProblem& problem, const RigidTurns& turns, c
     set_bond_tangents(problem, turns, matrix);
     add_block_tangents(problem, turns, curvatures, kind, matrix);
     add_contact_tangents(problem, turns, q, kind, matrix);
-    if (kind == TangentKind::exact) add_pressure_tangents(problem, turns, matrix);
+    if (kind == TangentKind::exact) add_pressure_tangents(problem, turns, q, matrix);
 }
 
 } // namespace kluft

@@ -16,6 +16,8 @@ namespace {
 constexpr double rank_tolerance = 1e-8;
 /// Prescribed rates of a block that no motion meets to this part of the largest contradict each other.
 constexpr double contradiction = 1e-6;
+/// Cosine of the turn from which on the pressure on an edge fades: of 80 degrees.
+constexpr double fading_cosine = 0.17364817766693036;
 
 /// Projector onto the null space of the rows of `matrix`, and its pseudo-inverse.
 template <int n>
@@ -44,10 +46,22 @@ std::vector<PressureEdge> pressure_edges(const BlockSystem& system, int boundary
     return edges;
 }
 
-Vec2 pressure_force(const PressureEdge& edge, double pressure, const Eigen::VectorXd& q) {
+Vec2 current_extent(const PressureEdge& edge, const Eigen::VectorXd& q) {
     const double* v = q.data() + n_block_unknowns * edge.block;
-    const Vec2 extent = edge.extent + Vec2(v[2], v[3]) * edge.xi_extent.x() + Vec2(v[4], v[5]) * edge.xi_extent.y();
-    return -pressure * right_normal(extent);
+    return edge.extent + Vec2(v[2], v[3]) * edge.xi_extent.x() + Vec2(v[4], v[5]) * edge.xi_extent.y();
+}
+
+PressedShare pressed_share(const PressureEdge& edge, const Vec2& extent) {
+    const Vec2 slope = edge.extent / (edge.extent.squaredNorm() * fading_cosine);
+    const double share = extent.dot(slope);
+    if (share >= 1.0) return {};
+    if (share <= 0.0) return {.value = 0.0};
+    return {share, slope};
+}
+
+Vec2 pressure_force(const PressureEdge& edge, double pressure, const Eigen::VectorXd& q) {
+    const Vec2 extent = current_extent(edge, q);
+    return -pressure * pressed_share(edge, extent).value * right_normal(extent);
 }
 
 Constraints::Constraints(std::vector<PrescribedDisplacement> rows) : rows_(std::move(rows)) {

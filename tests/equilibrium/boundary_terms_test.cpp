@@ -92,7 +92,7 @@ TEST(PressureEdges, TangentIsMinusTheDerivativeOfTheForce) {
             expected.col(i) = -(force_at(plus) - force_at(minus)) / 2e-3;
         }
         Mat6 tangent = Mat6::Zero();
-        add_pressure_tangent(edge, 3e6, tangent);
+        add_pressure_tangent(edge, 3e6, q, tangent);
         EXPECT_GT(expected.norm(), 1e5);
         EXPECT_LT((tangent - expected).norm(), 1e-10 * expected.norm());
     }

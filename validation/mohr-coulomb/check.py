@@ -26,7 +26,8 @@ def at_failure(run):
 def pressed(case, lateral, inward, defaults=False):
     sides = {"stages.0.pressure.left": lateral, "stages.0.pressure.right": lateral, "stages.0.pressure.top": max(lateral, 0.0)}
     return at_failure(case.run(f"lateral-{lateral:g}-{'in' if inward else 'out'}",
-                               {**sides, "stages.1.displacement.value": 1.5e-5 if inward else -1.5e-5}, defaults=defaults))
+                               {**sides, "stages.1.displacement.value": 1.5e-5 if inward else -1.5e-5,
+                                "stages.1.displacement.glued": "false" if inward else "true"}, defaults=defaults))
 
 
 def check(case):

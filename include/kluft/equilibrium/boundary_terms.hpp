@@ -6,8 +6,8 @@
 
 namespace kluft {
 
-/// Adds minus the derivative of pressure_force to the block's diagonal entry.
-void add_pressure_tangent(const PressureEdge& edge, double pressure, Mat6& diagonal);
+/// Adds minus the derivative of pressure_force at q to the block's diagonal entry.
+void add_pressure_tangent(const PressureEdge& edge, double pressure, const Eigen::VectorXd& q, Mat6& diagonal);
 
 /// K := P K P + scale (1 - P).
 void project(const Constraints& constraints, BlockMatrix& matrix, double scale);

@@ -24,7 +24,19 @@ struct PressureEdge {
 /// All edges of boundary `i` as pressure edges.
 [[nodiscard]] std::vector<PressureEdge> pressure_edges(const BlockSystem& system, int boundary);
 
-/// Force of the pressure on the edge at displacements q: -pressure times the current outward normal times length (N/m).
+/// x_end - x_start of the edge at displacements q (m).
+[[nodiscard]] Vec2 current_extent(const PressureEdge& edge, const Eigen::VectorXd& q);
+
+/// The share of the pressure that acts on an edge, 1 until it has turned by 80 degrees and 0 from a right angle on, where it
+/// has left the face that is under pressure; and its derivative by the current extent (1/m).
+struct PressedShare {
+    double value = 1.0;
+    Vec2 by_extent = Vec2::Zero();
+};
+[[nodiscard]] PressedShare pressed_share(const PressureEdge& edge, const Vec2& extent);
+
+/// Force of the pressure on the edge at displacements q: -pressure times the share that acts times the current outward
+/// normal times length (N/m).
 [[nodiscard]] Vec2 pressure_force(const PressureEdge& edge, double pressure, const Eigen::VectorXd& q);
 
 /// direction . displacement(xi) of a block is prescribed to be target + rate * travel (m).
