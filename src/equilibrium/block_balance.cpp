@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <span>
+#include <utility>
 
 #include "kluft/core/disjoint_sets.hpp"
 #include "kluft/equilibrium/border.hpp"
@@ -14,6 +16,7 @@ namespace {
 
 constexpr double least_progress = 0.7; ///< of what is left over, from one solve to the next: else the block is moving
 constexpr double least_turn = 0.1; ///< moment over sqrt(area) and force: a block turns too, as one that topples does
+constexpr double much_more = 3.0;
 constexpr double harmless_share =
     0.1; ///< of the largest share: what a block without loads may leave of forces around it
 
@@ -118,6 +121,23 @@ Share share_of(const Part& now, const Part* before, const BlockGoal& goal) {
     return result;
 }
 
+/// What is left over on a loaded block disturbs the blocks that it presses on: where its load is much more than what acts
+/// between them, and than what acts on the other one, that is what counts. The weight of a large block, which its support
+/// carries, hides nothing so.
+void keep_below_neighbours(const std::vector<Meeting>& meetings, OwnForces& forces) {
+    std::map<std::pair<int, int>, double> between;
+    for (const Meeting& at : meetings) between[{at.block_a, at.block_b}] += at.force;
+    const std::vector<double> own = forces.own;
+    const auto lower = [&](int block, int other, double force) {
+        if (forces.loaded[block] && force > 0.0)
+            forces.own[block] = std::min(forces.own[block], much_more * std::max(own[other], force));
+    };
+    for (const auto& [pair, force] : between) {
+        lower(pair.first, pair.second, force);
+        lower(pair.second, pair.first, force);
+    }
+}
+
 OwnForces own_forces(const LoadedBody& body, const Eigen::VectorXd& q, const std::vector<Meeting>& meetings) {
     const auto n = static_cast<std::size_t>(body.system->n_blocks());
     OwnForces result{load_magnitudes(body, q), {}, std::vector<double>(n, 0.0), std::vector<char>(n, 0)};
@@ -145,6 +165,7 @@ OwnForces own_forces(const LoadedBody& body, const Eigen::VectorXd& q, const std
         result.loaded[b] = result.own[b] > 0.0;
         if (!result.loaded[b]) result.own[b] = of_contacts[b];
     }
+    keep_below_neighbours(meetings, result);
     result.around = result.own;
     for (const auto& [a, b] : pairs) {
         if (!result.loaded[a]) result.around[a] = std::max(result.around[a], result.own[b]);

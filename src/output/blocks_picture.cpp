@@ -69,6 +69,7 @@ std::vector<LegendEntry> interface_entries(const DrawnBody& before, const DrawnB
     if (does(after, Motion::open)) entries.push_back(open_entry());
     add(InterfaceLook::tension_crack, "crack in tension");
     add(InterfaceLook::shear_crack, "crack in shear");
+    if (!after.platens.empty()) entries.push_back(line_entry("platen", {ink::platen, 2.4}));
     const double largest = largest_movements(after).cracks;
     if (largest > 0.0) {
         entries.push_back({"thickness: opening and slip,", {}});

@@ -91,7 +91,7 @@ double nearly_largest(std::vector<double>& values) {
 
 int width_class(double movement, double largest) {
     if (largest <= 0.0) return 0;
-    return std::min(n_widths - 1, static_cast<int>(movement / largest * n_widths));
+    return std::min(n_widths - 1, static_cast<int>(std::min(1.0, movement / largest) * n_widths));
 }
 
 double share_of(int width) { return static_cast<double>(width) / (n_widths - 1); }
@@ -138,10 +138,21 @@ void draw_boundary(Canvas& canvas, const Panel& panel, const DrawnBody& body) {
     canvas.segments(segments, {ink::body, 0.8, {}, true});
 }
 
+/// A bar along the face, on the outside.
+void draw_platens(Canvas& canvas, const Panel& panel, const DrawnBody& body) {
+    constexpr double thickness = 2.4;
+    Segments segments;
+    for (const PlatenFace& face : body.platens) {
+        const Vec2 shift = face.displacement + 0.5 * thickness / panel.scale * face.outward;
+        segments.emplace_back(panel.place(face.start + shift), panel.place(face.end + shift));
+    }
+    canvas.segments(segments, {ink::platen, thickness});
+}
+
 } // namespace
 
 DrawnBody body_before(const BlockSystem& system, const std::vector<bool>& potential) {
-    DrawnBody body{system, first_vertices(system), {}, {}, {}, {}, {}};
+    DrawnBody body{system, first_vertices(system), {}, {}, {}, {}, {}, {}};
     body.displacement.assign(body.first.back(), Vec2::Zero());
     for (int i = 0; i < system.n_interfaces(); ++i)
         body.looks.push_back(look_before(system.interfaces[i], potential[i]));
@@ -151,7 +162,7 @@ DrawnBody body_before(const BlockSystem& system, const std::vector<bool>& potent
 }
 
 DrawnBody body_after(const BlockSystem& system, const FieldRecord& fields, double magnification) {
-    DrawnBody body{system, first_vertices(system), {}, {}, {}, {}, {}};
+    DrawnBody body{system, first_vertices(system), {}, {}, {}, {}, {}, {}};
     for (const Vec2& u : fields.displacement)
         body.displacement.push_back(u.allFinite() ? Vec2(magnification * u) : Vec2::Zero());
     for (int i = 0; i < system.n_interfaces(); ++i) {
@@ -160,6 +171,8 @@ DrawnBody body_after(const BlockSystem& system, const FieldRecord& fields, doubl
         body.movement.push_back(movement_of(interface));
         body.motions.push_back(motion_of(interface));
     }
+    body.platens = fields.platens;
+    for (PlatenFace& face : body.platens) face.displacement *= magnification;
     return body;
 }
 
@@ -227,6 +240,7 @@ void draw_body(Canvas& canvas, const Panel& panel, const DrawnBody& body) {
     canvas.begin_clip(panel.corner - margin, panel.size() + 2.0 * margin);
     draw_blocks_of(canvas, panel, body, block_size);
     draw_boundary(canvas, panel, body);
+    draw_platens(canvas, panel, body);
     draw_motions(canvas, panel, body, block_size, largest.sliding, Motion::open);
     draw_motions(canvas, panel, body, block_size, largest.sliding, Motion::sliding);
     for (const InterfaceLook look : {InterfaceLook::joint, InterfaceLook::mapped_bond, InterfaceLook::mapped_fracture,

@@ -31,6 +31,7 @@ inline constexpr Colour block = colour(0x000000, 0.22);
 inline constexpr Colour tension = colour(0xD7191C);
 inline constexpr Colour shear = colour(0x1F4FD8);
 inline constexpr Colour sliding = colour(0xF5A800);
+inline constexpr Colour platen = colour(0x7A7A7A);
 inline constexpr Colour open = colour(0xFFFFFF);
 } // namespace ink
 
@@ -56,6 +57,7 @@ struct DrawnBody {
     std::vector<double> movement;      ///< opening and slip of each interface, 0 where bonded (m)
     std::vector<Motion> motions;       ///< one per interface
     std::function<Colour(int)> colour; ///< of a block
+    std::vector<PlatenFace> platens;   ///< displacements magnified
 };
 
 /// The body before loading. `potential`: whether each interface is a potential crack.

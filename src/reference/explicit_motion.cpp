@@ -120,6 +120,12 @@ void ExplicitMotion::hold_blocks() {
     if (travel_mass_ == 0.0) travel_velocity_ = 0.0;
 }
 
+void ExplicitMotion::update_platens() {
+    if (!update_platen_points(body_, q_, true, loads_)) return;
+    hold_by_platens(body_, q_, loads_);
+    hold_blocks();
+}
+
 /// What slid since the last time step is history now; its work was lost.
 void ExplicitMotion::keep_histories() {
     for (std::size_t i = 0; i < placement_.contacts.size(); ++i) {

@@ -224,7 +224,10 @@ private:
             motion_.advance();
         }
         ++time_steps_;
-        if (time_steps_ % watch_interval == 0) watch_motion();
+        if (time_steps_ % watch_interval == 0) {
+            motion_.update_platens();
+            watch_motion();
+        }
         if (failed()) return;
         if (model_.has_potential_cracks && time_steps_ % options_.crack_check_interval == 0) break_bonds();
         if (time_steps_ % progress_interval == 0) report_progress();
@@ -277,6 +280,8 @@ private:
         if (auto flaw = flaw_of_displacements(motion_.body(), motion_.displacement()); !flaw.empty())
             return fail(FailureKind::broken_body, std::move(flaw));
         work().body.displacement = motion_.displacement();
+        keep_slips(model_.system, motion_.displacement(), motion_.loads().platens, motion_.loads().platen_points);
+        work().body.platen_points = motion_.loads().platen_points;
         keep_histories(motion_.body(), work().body.displacement, work().body);
     }
 
@@ -286,6 +291,7 @@ private:
         const double before = motion_.springs_energy();
         motion_.placement().bonds = placed_bonds(model_, work().body);
         motion_.placement().contacts = detected_contacts(model_, work().body).points;
+        add_near_points(model_.system, motion_.displacement(), contact_reach * model_.system.spacing, motion_.loads());
         motion_.restart();
         detected_at_ = motion_.displacement();
         ++journal_.report().detections;

@@ -5,8 +5,8 @@
 
 #include "kluft/core/stopwatch.hpp"
 #include "kluft/fracture/crack_check.hpp"
+#include "kluft/simulation/contact_following.hpp"
 #include "kluft/simulation/placement.hpp"
-#include "kluft/simulation/relaxation.hpp"
 #include "kluft/simulation/weakening.hpp"
 
 namespace kluft {
@@ -28,14 +28,6 @@ std::vector<CrackCandidate> breaking(const StepGoal& goal, const std::vector<Cra
     const bool around_one = first && goal.accuracy > 0.0 && goal.cracks.update == CrackUpdate::event;
     if (!around_one || largest_index(all) > 1.0 + goal.accuracy) return chosen_to_fail(goal.cracks, all);
     return failing(all, 1.0 - goal.accuracy);
-}
-
-/// Finds equilibrium at the load factor that the step stands at, with contacts detected anew.
-void find_again(StepInProgress& p) {
-    PlacedState placed = place(p);
-    Equilibrium found = find_at(p, placed, p.load_factor(), p.displacement());
-    if (!found.balanced) found = recover(p, placed, found, p.load_factor());
-    if (!p.failed()) reach(p, std::move(placed), found);
 }
 
 } // namespace

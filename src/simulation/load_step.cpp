@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "kluft/simulation/breaking.hpp"
+#include "kluft/simulation/contact_following.hpp"
 #include "kluft/simulation/relaxation.hpp"
 
 namespace kluft {
@@ -53,9 +54,11 @@ Step take_step(const StepBench& bench, const State& from, const StepGoal& goal) 
     const bool by_events = goal.cracks.update == CrackUpdate::event;
     if (!from.is_settled) settle(p); // where an earlier attempt has failed, at the same load
     for (bool first = from.is_settled; !p.failed() && (first || p.load_factor() < goal.load_factor); first = false) {
+        Eigen::VectorXd placed_at = p.displacement();
         PlacedState placed = place_for_load_step(p);  // 1 detect, 2 transfer
         const Equilibrium found = advance(p, placed); // 3 pose, 4 iterate, 5 judge
         if (!p.failed()) reach(p, std::move(placed), found);
+        let_contacts_follow(p, std::move(placed_at)); // 1 to 5 again at the same load, where blocks have moved far
         if (!p.failed() && goal.checks_cracks && (by_events || p.load_factor() >= goal.load_factor))
             break_bonds(p); // 6 crack, 7 weaken, and back to 1 at the same load
     }

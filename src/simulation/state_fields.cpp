@@ -81,6 +81,7 @@ FieldRecord field_record(const Model& model, const State& state, const LoadedBod
         fields.interfaces.push_back(record);
     }
     add_contacts(body, q, fields.interfaces);
+    fields.platens = faces_of(model.system, *body.loads, q);
     return fields;
 }
 

@@ -15,7 +15,9 @@ namespace kluft {
 
 /// The forces that what is left over on a block is judged against, one per block (N/m).
 struct OwnForces {
-    std::vector<double> own; ///< sum of the magnitudes of its loads; of a block without any, of its contact forces
+    /// Sum of the magnitudes of its loads, but at most three times what acts between it and any other block that it presses
+    /// on, or what acts on that one if this is more; of a block without loads, of its contact forces.
+    std::vector<double> own;
     std::vector<double>
         around; ///< of a block without loads the largest `own` of the blocks that it meets; else its own
     std::vector<double> roundoff; ///< what round-off of the displacements makes of its forces

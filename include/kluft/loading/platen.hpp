@@ -84,6 +84,15 @@ void hold_by_platens(const LoadedBody& body, const Eigen::VectorXd& q, Loads& lo
 void keep_slips(const BlockSystem& system, const Eigen::VectorXd& q, const std::vector<Platen>& platens,
                 std::vector<PlatenPoint>& points);
 
+/// The face of a platen along the boundary that it was laid on, for pictures.
+struct PlatenFace {
+    Vec2 start = Vec2::Zero(); ///< before loading, local coordinates (m)
+    Vec2 end = Vec2::Zero();
+    Vec2 outward = Vec2::Zero();
+    Vec2 displacement = Vec2::Zero(); ///< m
+};
+[[nodiscard]] std::vector<PlatenFace> faces_of(const BlockSystem& system, const Loads& loads, const Eigen::VectorXd& q);
+
 /// Travel of a platen under a given force at q, from the points on it (m).
 [[nodiscard]] double platen_travel(const Loads& loads, const Eigen::VectorXd& q);
 

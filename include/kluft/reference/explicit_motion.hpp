@@ -42,6 +42,8 @@ public:
     /// All but the rows of the constraints may be changed between time steps.
     [[nodiscard]] Loads& loads() { return loads_; }
     [[nodiscard]] Placement& placement() { return placement_; }
+    /// Lets points leave the platens, touch, stick and slide as they are at the moment.
+    void update_platens();
     /// To be called after the rows of the constraints or the points of bonds and contacts were replaced.
     void restart();
     /// A bond broke: `energy` is what its springs lost (J/m).

@@ -8,6 +8,7 @@
 
 #include "kluft/contact/contact.hpp"
 #include "kluft/core/vector.hpp"
+#include "kluft/loading/platen.hpp"
 
 namespace kluft {
 
@@ -85,6 +86,7 @@ struct FieldRecord {
         double slip = 0.0;            ///< tangential relative displacement at the middle (m)
     };
     std::vector<InterfaceFields> interfaces; ///< one per interface of the block system
+    std::vector<PlatenFace> platens;         ///< of the stage
 };
 
 } // namespace kluft

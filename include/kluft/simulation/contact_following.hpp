@@ -1,0 +1,19 @@
+// Contacts detected anew at a load that stays: what a body stands on may have moved away from under it within a solve.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "kluft/simulation/step_in_progress.hpp"
+
+namespace kluft {
+
+/// Finds equilibrium at the load factor that the step stands at, with contacts detected anew, and makes it the end of the
+/// step.
+Equilibrium find_again(StepInProgress& in_progress);
+
+/// Frames of contacts stay during a solve, so that a block which slides far in it may be held by a face that it has passed.
+/// Under given loads a step therefore ends only where the blocks that have moved since `placed_at` (m), the displacements of
+/// the last detection, stand with contacts detected anew; else they fall.
+void let_contacts_follow(StepInProgress& in_progress, Eigen::VectorXd placed_at);
+
+} // namespace kluft
