@@ -5,8 +5,8 @@
 
 #include "kluft/core/stopwatch.hpp"
 #include "kluft/fracture/crack_check.hpp"
+#include "kluft/simulation/jump.hpp"
 #include "kluft/simulation/placement.hpp"
-#include "kluft/simulation/relaxation.hpp"
 #include "kluft/simulation/weakening.hpp"
 
 namespace kluft {
@@ -30,11 +30,19 @@ std::vector<CrackCandidate> breaking(const StepGoal& goal, const std::vector<Cra
     return failing(all, 1.0 - goal.accuracy);
 }
 
+/// Whether the body comes to rest in an equilibrium that was found beside it, without another potential crack that fails.
+bool rests_at(const StepInProgress& p, const PlacedState& placed, const Equilibrium& found) {
+    if (!found.balanced || is_jump(p, found)) return false;
+    const bool by_events = p.goal.checks_cracks && p.goal.cracks.update == CrackUpdate::event;
+    return !by_events ||
+           largest_failure_index(p, placed.placement, p.loads_at(found.load_factor), found.displacement) < 1.0;
+}
+
 /// Finds equilibrium at the load factor that the step stands at, with contacts detected anew.
 void find_again(StepInProgress& p) {
     PlacedState placed = place(p);
     Equilibrium found = find_at(p, placed, p.load_factor(), p.displacement());
-    if (!found.balanced) found = recover(p, placed, found, p.load_factor());
+    if (!rests_at(p, placed, found)) found = recover(p, placed, p.load_factor());
     if (!p.failed()) reach(p, std::move(placed), found);
 }
 
@@ -49,6 +57,13 @@ void break_bonds(StepInProgress& p) {
         weaken_together(p.bench.model, broken, p.step.row.axial_strain, p.step);
         find_again(p);
     }
+}
+
+bool break_at(StepInProgress& p, const PlacedState& placed, const LoadsAt& at) {
+    const auto broken = breaking(p.goal, candidates(p, placed.placement, at, p.displacement()), false);
+    if (broken.empty()) return false;
+    weaken_together(p.bench.model, broken, p.step.row.axial_strain, p.step);
+    return true;
 }
 
 void settle(StepInProgress& p) {

@@ -93,9 +93,10 @@ void EquilibriumSearch::settle(EquilibriumProblem& problem, const BlockGoal& bal
     found.balanced = is_balanced(found, balance);
 }
 
-Equilibrium EquilibriumSearch::move_on(const EquilibriumProblem& problem, const BlockGoal& balance, bool unloaded) {
+Equilibrium EquilibriumSearch::move_on(const EquilibriumProblem& problem, Eigen::VectorXd guess,
+                                       const BlockGoal& balance, bool unloaded) {
     Equilibrium moved;
-    moved.displacement = problem.start;
+    moved.displacement = std::move(guess);
     moved.summary = open_close_.solve(
         problem, pattern_, moved.displacement,
         {.aim = Aim::relaxation, .unloaded = unloaded, .block_tolerance = share_of_solve * balance.share});

@@ -116,6 +116,11 @@ PlacedState place_for_load_step(StepInProgress& p) {
     return placed;
 }
 
+void renew(const StepInProgress& p, PlacedState& placed) {
+    placed.placement.bonds = placed_bonds(p.bench.model, p.step.end.body);
+    placed.placement.contacts = renewed_contacts(p.step.end.body, std::move(placed.placement.contacts));
+}
+
 EquilibriumProblem pose(const Model& model, const PlacedState& placed, const LoadsAt& at,
                         const Eigen::VectorXd& start) {
     return {loaded_body(model, placed.placement, at), placed.eta, least_mass_area(model.system), start};

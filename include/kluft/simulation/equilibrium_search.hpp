@@ -54,8 +54,9 @@ public:
     /// Solves from `guess`, and again from the result, until the mass-like term is small (docs/theory.md, balance).
     [[nodiscard]] Equilibrium find(EquilibriumProblem problem, Eigen::VectorXd guess, const BlockGoal& balance,
                                    bool unloaded);
-    /// One step of a relaxation from the problem's start.
-    [[nodiscard]] Equilibrium move_on(const EquilibriumProblem& problem, const BlockGoal& balance, bool unloaded);
+    /// One step of a motion from the problem's start.
+    [[nodiscard]] Equilibrium move_on(const EquilibriumProblem& problem, Eigen::VectorXd guess,
+                                      const BlockGoal& balance, bool unloaded);
 
     /// Internal - external forces at q, that of the mass-like term included, without the supports' (N/m).
     [[nodiscard]] Eigen::VectorXd forces(const EquilibriumProblem& problem, const Eigen::VectorXd& q) const;

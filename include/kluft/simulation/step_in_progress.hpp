@@ -69,6 +69,8 @@ struct PlacedState {
 /// Detects contacts and gives them their memory; at the start of a load step the contacts may be those of the step before.
 [[nodiscard]] PlacedState place(StepInProgress& in_progress);
 [[nodiscard]] PlacedState place_for_load_step(StepInProgress& in_progress);
+/// The same contacts in the same frames, with the histories of the state that the step stands at.
+void renew(const StepInProgress& in_progress, PlacedState& placed);
 
 /// The problem of the placed state under loads, with the mass-like term counted from `start`.
 [[nodiscard]] EquilibriumProblem pose(const Model& model, const PlacedState& placed, const LoadsAt& at,

@@ -1,4 +1,4 @@
-#include "kluft/simulation/relaxation.hpp"
+#include "kluft/simulation/jump.hpp"
 
 #include <cmath>
 
@@ -20,9 +20,7 @@ struct Relaxed {
         goal.must_rest = must_rest;
         StepInProgress p = begin_step(bench, work.state, goal);
         PlacedState placed = place_for_load_step(p);
-        Equilibrium failed; // nothing was found
-        failed.displacement = p.displacement();
-        found = recover(p, placed, failed, 1.0);
+        found = recover(p, placed, 1.0);
         failure = p.step.failure;
         end = p.step.end;
         balanced_part = p.step.balanced_part;
