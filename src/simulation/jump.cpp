@@ -19,6 +19,8 @@ constexpr double first_step = 0.1;        ///< pseudo-time, of d2/E: a block of 
 constexpr double least_step = 1e-12;      ///< of the first step
 constexpr double load_step = 0.1;         ///< pseudo-time in which loads move, of that of an ordinary solve, 1/eta
 constexpr double least_load_step = 1e-4;  ///< of the first step
+constexpr double load_step_cut = 0.1;     ///< of a pseudo-time step in which loads move
+constexpr double most_load_parts = 64.0;  ///< in which loads are applied
 constexpr double longest_step = 1e4;      ///< of that of an ordinary solve
 constexpr double shortest_last = 0.01;    ///< of H2/E: the pseudo-time step before an ordinary solve is tried
 constexpr double largest_growth = 3.0;    ///< of the pseudo-time step
@@ -44,6 +46,7 @@ struct Motion {
     Eigen::VectorXd start;       ///< displacement (m)
     Eigen::VectorXd velocity;    ///< of the step before (Pa/m); zero where the forces have just changed
     Eigen::VectorXd detected;    ///< displacement at which contacts were detected (m)
+    Eigen::VectorXd early;       ///< displacement before the motion had gone halfway to a collapse (m)
     Equilibrium last;            ///< that the body moved to
 
     /// The largest error of a step.
@@ -59,7 +62,7 @@ Motion begin_motion(const StepInProgress& p, double load_factor, const MotionCon
     motion.first = first_step * model.system.spacing * model.system.spacing / model.effective_modulus;
     motion.ordinary = 1.0 / mass_coefficient(model, viscosity > 0.0 ? viscosity : SolverOptions{}.viscosity);
     motion.step = motion.first;
-    motion.start = motion.detected = p.displacement();
+    motion.start = motion.detected = motion.early = p.displacement();
     motion.velocity.setZero(motion.start.size());
     motion.last.load_factor = load_factor;
     motion.last.strength_factor = motion.at.strength_factor;
@@ -121,27 +124,45 @@ void break_there(StepInProgress& p, PlacedState& placed, Motion& motion) {
     restart(motion);
 }
 
-/// Applies loads that the body has not had yet, slowly: in the longest pseudo-time that can be solved and in which the body does
-/// not go much farther than its platen. False, and the step has failed, where there is none.
-bool apply_loads(StepInProgress& p, PlacedState& placed, Motion& motion) {
+/// The longest pseudo-time step under the loads of the motion that can be solved and in which the body does not go much farther than
+/// its platen; one that is not solved where there is none.
+PseudoStep solve_load_step(StepInProgress& p, const PlacedState& placed, Motion& motion) {
     Eigen::VectorXd prescribed;
     motion.at.loads.constraints.correction(p.displacement(), prescribed);
     const double expected =
         motion.control.longest + far_from_expected * relative_motion(p.bench.model.system, prescribed);
     motion.step = std::max(motion.first, load_step * motion.ordinary);
-    PseudoStep next = solve_step(p, placed, motion, 1.0, p.displacement());
-    while (!next.balanced || (moved_by(p, next.moved) > expected && motion.step > motion.first)) {
-        if (motion.step < least_load_step * motion.first) {
+    for (;;) {
+        PseudoStep next = solve_step(p, placed, motion, 1.0, p.displacement());
+        const bool shortest = motion.step < least_load_step * motion.first;
+        if (shortest || (next.balanced && moved_by(p, next.moved) <= expected)) return next;
+        motion.step *= load_step_cut;
+    }
+}
+
+/// Applies loads that the body has not had yet, slowly, in as many parts as it takes. False, and the step has failed, where
+/// there is no way to.
+bool apply_loads(StepInProgress& p, PlacedState& placed, Motion& motion) {
+    const double target = motion.at.load_factor;
+    double reached = p.load_factor();
+    double part = target - reached;
+    const double least_part = part / most_load_parts;
+    while (reached < target) {
+        const double next_load = reached + part < target ? reached + part : target;
+        motion.at = p.loads_at(next_load);
+        PseudoStep next = solve_load_step(p, placed, motion);
+        if (!next.balanced) {
+            part *= 0.5;
+            if (part >= least_part) continue;
             fail(p, next.moved, next.moved.summary.residual_ratio, FailureKind::no_equilibrium);
             return false;
         }
-        motion.step *= largest_cut;
-        next = solve_step(p, placed, motion, 1.0, p.displacement());
+        if (!move_body(p, placed, motion.at, next.moved.displacement)) return false;
+        reached = next_load;
+        motion.last = std::move(next.moved);
+        detect(p, placed, motion);
     }
-    if (!move_body(p, placed, motion.at, next.moved.displacement)) return false;
     motion.start = p.displacement();
-    motion.last = std::move(next.moved);
-    detect(p, placed, motion);
     restart(motion);
     break_there(p, placed, motion);
     return true;
@@ -251,8 +272,10 @@ std::optional<Equilibrium> take_pseudo_step(StepInProgress& p, PlacedState& plac
     if (!move_along(p, placed, motion, std::move(next))) return motion.last;
     if (is_falling(p)) {
         fail(p, motion.last, motion.last.viscous_share, FailureKind::falling);
+        p.step.failure->moving = moving_on(p, motion.early, std::move(p.step.failure->moving));
         return motion.last;
     }
+    if (motion.largest < 0.5 * collapse_motion) motion.early = p.displacement();
     place_again(p, placed, motion);
     motion.step = std::min(motion.step * std::clamp(caution * better, largest_cut, largest_growth),
                            longest_step * motion.ordinary);

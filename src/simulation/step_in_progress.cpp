@@ -53,17 +53,6 @@ bool has_surfaces_to_meet(const Model& model, const BodyState& body) {
            });
 }
 
-/// Where blocks have moved away in the load step they go on in that direction, whatever pushes them at the moment.
-std::vector<MovingBlock> moving_on(const StepInProgress& p, std::vector<MovingBlock> moving) {
-    const Eigen::VectorXd moved = p.displacement() - p.from.body.displacement;
-    for (MovingBlock& each : moving) {
-        const Vec2 motion = moved.segment<2>(n_block_unknowns * each.block);
-        if (motion.norm() > clear_motion * spacing_of(p.bench.model.system.blocks[each.block]))
-            each.direction = motion.normalized();
-    }
-    return moving;
-}
-
 /// The largest stresses so far, which errors of the history are relative to.
 void note_stresses(StepInProgress& p, const LoadedBody& body) {
     const StepRecord& row = p.step.row;
@@ -197,6 +186,16 @@ Measured measure(const StepInProgress& p, const PlacedState& placed, const Loads
     return result;
 }
 
+std::vector<MovingBlock> moving_on(const StepInProgress& p, const Eigen::VectorXd& q, std::vector<MovingBlock> moving) {
+    const Eigen::VectorXd moved = q - p.from.body.displacement;
+    for (MovingBlock& each : moving) {
+        const Vec2 motion = moved.segment<2>(n_block_unknowns * each.block);
+        if (motion.norm() > clear_motion * spacing_of(p.bench.model.system.blocks[each.block]))
+            each.direction = motion.normalized();
+    }
+    return moving;
+}
+
 void fail(StepInProgress& p, const Equilibrium& found, double residual_ratio, FailureKind kind) {
     p.step.failure = Failure{.kind = kind,
                              .worst_block = found.worst_block,
@@ -204,7 +203,7 @@ void fail(StepInProgress& p, const Equilibrium& found, double residual_ratio, Fa
                              .load_factor = found.load_factor,
                              .strength_factor = found.strength_factor,
                              .nothing_holds = p.bench.loads.constraints().rows().empty(),
-                             .moving = moving_on(p, found.verdict.moving)};
+                             .moving = moving_on(p, p.displacement(), found.verdict.moving)};
 }
 
 void keep_rate(StepInProgress& p) {

@@ -116,6 +116,10 @@ template <class IndexAt>
         });
 }
 
+/// Where blocks have moved away in the load step up to q, they go on in that direction, whatever pushes them at the moment.
+[[nodiscard]] std::vector<MovingBlock> moving_on(const StepInProgress& in_progress, const Eigen::VectorXd& q,
+                                                 std::vector<MovingBlock> moving);
+
 /// The step has failed at what was found.
 void fail(StepInProgress& in_progress, const Equilibrium& found, double residual_ratio, FailureKind kind);
 
