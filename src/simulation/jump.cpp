@@ -47,6 +47,8 @@ struct Motion {
     Eigen::VectorXd velocity;    ///< of the step before (Pa/m); zero where the forces have just changed
     Eigen::VectorXd detected;    ///< displacement at which contacts were detected (m)
     Eigen::VectorXd early;       ///< displacement before the motion had gone halfway to a collapse (m)
+    Eigen::VectorXd driving;     ///< eta M dq of the step before (N/m); empty where the forces have just changed
+    double released = 0.0;       ///< energy (J/m)
     Equilibrium last;            ///< that the body moved to
 
     /// The largest error of a step.
@@ -113,6 +115,7 @@ void detect(StepInProgress& p, PlacedState& placed, Motion& motion) {
 void restart(Motion& motion) {
     motion.step = std::min(motion.step, motion.first);
     motion.velocity.setZero();
+    motion.driving.resize(0);
     motion.step_before = motion.tried = 0.0;
     motion.way_left = unlimited;
 }
@@ -203,6 +206,23 @@ PseudoStep cut_at_failure(StepInProgress& p, const PlacedState& placed, const Mo
         .found;
 }
 
+/// M dq/dt, the forces out of balance at the end of a pseudo-time step (N/m).
+Eigen::VectorXd driving_forces(const BlockSystem& system, const Eigen::VectorXd& velocity) {
+    Eigen::VectorXd forces(velocity.size());
+    for (int b = 0; b < system.n_blocks(); ++b) {
+        const auto rows = Eigen::seqN(n_block_unknowns * b, n_block_unknowns);
+        forces(rows) = mass_matrix(system.blocks[b], 0.0) * velocity(rows);
+    }
+    return forces;
+}
+
+/// The work of the forces out of balance over a displacement, from what they are before to what they are after it.
+void add_work(Motion& motion, const Eigen::VectorXd& moved, Eigen::VectorXd after) {
+    const bool changed = motion.driving.size() == 0;
+    motion.released += 0.5 * ((changed ? after : motion.driving) + after).dot(moved);
+    motion.driving = std::move(after);
+}
+
 /// Moves the body to the end of a pseudo-time step.
 bool move_along(StepInProgress& p, const PlacedState& placed, Motion& motion, PseudoStep taken) {
     const BlockSystem& system = p.bench.model.system;
@@ -211,6 +231,7 @@ bool move_along(StepInProgress& p, const PlacedState& placed, Motion& motion, Ps
     const double before = relative_motion(system, motion.velocity);
     const double now = relative_motion(system, velocity);
     motion.way_left = now < before ? now * length * now / (before - now) : unlimited; // it falls by the same factor
+    add_work(motion, taken.moved.displacement - p.displacement(), driving_forces(system, velocity));
     motion.velocity = velocity;
     motion.step_before = length;
     motion.last = std::move(taken.moved);
@@ -283,6 +304,42 @@ std::optional<Equilibrium> take_pseudo_step(StepInProgress& p, PlacedState& plac
     return find_end(p, placed, motion);
 }
 
+/// Along closed contacts.
+double largest_slip(const Placement& placement, const Eigen::VectorXd& q, const Eigen::VectorXd& moved) {
+    double largest = 0.0;
+    for (const ContactPoint& point : placement.contacts) {
+        if (gap_and_slip(point, q).gap > 0.0) continue;
+        const Vec2 slip =
+            displacement_at(moved, point.block_b, point.xi_b) - displacement_at(moved, point.block_a, point.xi_a);
+        largest = std::max(largest, std::abs(point.tangent.dot(slip)));
+    }
+    return largest;
+}
+
+int blocks_that_moved(const BlockSystem& system, const Eigen::VectorXd& moved) {
+    int n = 0;
+    for (int b = 0; b < system.n_blocks(); ++b) {
+        const double size = moved.segment<n_block_unknowns>(n_block_unknowns * b).norm();
+        if (size > jump_motion * motion_scale(system, system.blocks[b])) ++n;
+    }
+    return n;
+}
+
+/// Records a motion that was one, from where the loads had been applied.
+void note_jump(StepInProgress& p, const PlacedState& placed, Motion& motion, const Equilibrium& end) {
+    if (p.failed()) return;
+    const Eigen::VectorXd moved = end.displacement - motion.start;
+    const int n_blocks = blocks_that_moved(p.bench.model.system, moved);
+    if (n_blocks == 0) return;
+    if (end.balanced) add_work(motion, end.displacement - p.displacement(), Eigen::VectorXd::Zero(moved.size()));
+    p.step.jumps.push_back({.step = p.step.end.at.step + 1,
+                            .load_factor = motion.at.load_factor,
+                            .released_energy = motion.released,
+                            .largest_slip = largest_slip(placed.placement, end.displacement, moved),
+                            .blocks = n_blocks});
+    ++p.step.end.jumps;
+}
+
 /// What the motion came to where it does not end.
 Equilibrium given_up(StepInProgress& p, Equilibrium last) {
     const bool never_moved = last.displacement.size() == 0;
@@ -300,7 +357,8 @@ void hold_balanced_part(Step& step) {
                                             .control = step.end.control,
                                             .stresses = step.end.stresses,
                                             .n_equilibria = step.equilibria.size(),
-                                            .n_cracks = step.cracks.size()};
+                                            .n_cracks = step.cracks.size(),
+                                            .n_jumps = step.jumps.size()};
 }
 
 } // namespace
@@ -319,9 +377,11 @@ bool is_jump(const StepInProgress& p, const Equilibrium& found) { return moved_b
 Equilibrium follow_motion(StepInProgress& p, PlacedState& placed, double load_factor, const MotionControl& control) {
     Motion motion = begin_motion(p, load_factor, control);
     if (load_factor != p.load_factor() && !apply_loads(p, placed, motion)) return motion.last;
-    for (int i = 0; i < control.max_steps; ++i)
-        if (auto end = take_pseudo_step(p, placed, motion)) return std::move(*end);
-    return given_up(p, std::move(motion.last));
+    std::optional<Equilibrium> end;
+    for (int i = 0; i < control.max_steps && !end; ++i) end = take_pseudo_step(p, placed, motion);
+    Equilibrium found = end ? std::move(*end) : given_up(p, std::move(motion.last));
+    note_jump(p, placed, motion, found);
+    return found;
 }
 
 Equilibrium recover(StepInProgress& p, PlacedState& placed, double load_factor, const MotionControl& control) {

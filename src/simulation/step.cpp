@@ -24,6 +24,8 @@ void keep_balanced_part(Step& step) {
         step.in_place = std::move(part.in_place);
         step.equilibria.resize(part.n_equilibria);
         step.cracks.resize(part.n_cracks);
+        step.end.jumps -= static_cast<int>(step.jumps.size() - part.n_jumps);
+        step.jumps.resize(part.n_jumps);
         step.balanced_part.reset();
     }
     step.smooth = false;

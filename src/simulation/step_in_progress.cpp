@@ -180,6 +180,7 @@ Measured measure(const StepInProgress& p, const PlacedState& placed, const Loads
     row.crack_passes = p.step.crack_passes;
     row.unbalanced_ratio = found.viscous_share;
     row.balance_error = found.verdict.error;
+    row.jumps = p.step.end.jumps;
     row.balanced = found.balanced;
     row.elapsed_s = journal.elapsed();
     if (reduction_of(model.loads, 0) != nullptr) row.strength_factor = at.strength_factor;

@@ -91,6 +91,7 @@ struct State {
     StressHistory stresses;
     bool is_settled = true; ///< false: bonds failed here, or the load step did, and no equilibrium has been found since
     int unbalanced_in_succession = 0; ///< load steps
+    int jumps = 0;                    ///< so far
     RunCosts costs;                   ///< so far
 };
 
@@ -125,6 +126,7 @@ template <class Members, class Visit> void visit_saved(Members& state, Visit&& v
     visit("stage_of_largest_stress", state.stresses.stage_of_largest);
     visit("is_settled", state.is_settled);
     visit("unbalanced_in_succession", state.unbalanced_in_succession);
+    visit("jumps", state.jumps);
     visit("elapsed_s", state.costs.elapsed_s);
     visit_counts(state.costs, visit);
     visit_seconds(state.costs.seconds, visit);
