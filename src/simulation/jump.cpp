@@ -127,13 +127,34 @@ void break_there(StepInProgress& p, PlacedState& placed, Motion& motion) {
     restart(motion);
 }
 
+/// M dq/dt, the forces out of balance at the end of a pseudo-time step (N/m).
+Eigen::VectorXd driving_forces(const BlockSystem& system, const Eigen::VectorXd& velocity) {
+    Eigen::VectorXd forces(velocity.size());
+    for (int b = 0; b < system.n_blocks(); ++b) {
+        const auto rows = Eigen::seqN(n_block_unknowns * b, n_block_unknowns);
+        forces(rows) = mass_matrix(system.blocks[b], 0.0) * velocity(rows);
+    }
+    return forces;
+}
+
+/// The work of the forces out of balance over a displacement, from what they are before to what they are after it.
+void add_work(Motion& motion, const Eigen::VectorXd& moved, Eigen::VectorXd after) {
+    const bool changed = motion.driving.size() == 0;
+    motion.released += 0.5 * ((changed ? after : motion.driving) + after).dot(moved);
+    motion.driving = std::move(after);
+}
+
+/// The relative motion that platens ask for.
+double platen_motion(const StepInProgress& p, const LoadsAt& at) {
+    Eigen::VectorXd prescribed;
+    at.loads.constraints.correction(p.displacement(), prescribed);
+    return relative_motion(p.bench.model.system, prescribed);
+}
+
 /// The longest pseudo-time step under the loads of the motion that can be solved and in which the body does not go much farther than
 /// its platen; one that is not solved where there is none.
 PseudoStep solve_load_step(StepInProgress& p, const PlacedState& placed, Motion& motion) {
-    Eigen::VectorXd prescribed;
-    motion.at.loads.constraints.correction(p.displacement(), prescribed);
-    const double expected =
-        motion.control.longest + far_from_expected * relative_motion(p.bench.model.system, prescribed);
+    const double expected = motion.control.elastic_motion + far_from_expected * platen_motion(p, motion.at);
     motion.step = std::max(motion.first, load_step * motion.ordinary);
     for (;;) {
         PseudoStep next = solve_step(p, placed, motion, 1.0, p.displacement());
@@ -160,12 +181,18 @@ bool apply_loads(StepInProgress& p, PlacedState& placed, Motion& motion) {
             fail(p, next.moved, next.moved.summary.residual_ratio, FailureKind::no_equilibrium);
             return false;
         }
+        const bool platen_moves = platen_motion(p, motion.at) > 0.0;
+        const Eigen::VectorXd moved = next.moved.displacement - p.displacement();
+        add_work(motion, moved, driving_forces(p.bench.model.system, moved / motion.step));
         if (!move_body(p, placed, motion.at, next.moved.displacement)) return false;
+        if (platen_moves) { // with which the body has to go
+            motion.start = p.displacement();
+            motion.released = 0.0;
+        }
         reached = next_load;
         motion.last = std::move(next.moved);
         detect(p, placed, motion);
     }
-    motion.start = p.displacement();
     restart(motion);
     break_there(p, placed, motion);
     return true;
@@ -204,23 +231,6 @@ PseudoStep cut_at_failure(StepInProgress& p, const PlacedState& placed, const Mo
                    return solve_step(p, placed, motion, share, start + part * (to.moved.displacement - start));
                })
         .found;
-}
-
-/// M dq/dt, the forces out of balance at the end of a pseudo-time step (N/m).
-Eigen::VectorXd driving_forces(const BlockSystem& system, const Eigen::VectorXd& velocity) {
-    Eigen::VectorXd forces(velocity.size());
-    for (int b = 0; b < system.n_blocks(); ++b) {
-        const auto rows = Eigen::seqN(n_block_unknowns * b, n_block_unknowns);
-        forces(rows) = mass_matrix(system.blocks[b], 0.0) * velocity(rows);
-    }
-    return forces;
-}
-
-/// The work of the forces out of balance over a displacement, from what they are before to what they are after it.
-void add_work(Motion& motion, const Eigen::VectorXd& moved, Eigen::VectorXd after) {
-    const bool changed = motion.driving.size() == 0;
-    motion.released += 0.5 * ((changed ? after : motion.driving) + after).dot(moved);
-    motion.driving = std::move(after);
 }
 
 /// Moves the body to the end of a pseudo-time step.
