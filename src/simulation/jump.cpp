@@ -363,7 +363,6 @@ void hold_balanced_part(Step& step) {
     step.balanced_part = Step::BalancedPart{.body = step.end.body,
                                             .load_factor = step.end.at.load_factor,
                                             .in_place = step.in_place,
-                                            .viscosity_factor = step.end.memory.viscosity_factor,
                                             .control = step.end.control,
                                             .stresses = step.end.stresses,
                                             .n_equilibria = step.equilibria.size(),

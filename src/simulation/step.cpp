@@ -18,7 +18,6 @@ void keep_balanced_part(Step& step) {
         Step::BalancedPart& part = *step.balanced_part;
         step.end.body = std::move(part.body);
         step.end.at.load_factor = part.load_factor;
-        step.end.memory.viscosity_factor = std::move(part.viscosity_factor);
         step.end.control = std::move(part.control);
         step.end.stresses = part.stresses;
         step.in_place = std::move(part.in_place);

@@ -18,7 +18,6 @@ namespace kluft {
 namespace {
 
 constexpr double clear_motion = 0.1; ///< of a block in a load step, in spacings of hexagons of its size
-constexpr int easy_iterations = 6;   ///< of a solve after which the mass-like term of a relaxation falls
 
 /// Detects the contacts of surfaces that may touch.
 DetectedContacts detect(StepInProgress& p) {
@@ -43,7 +42,7 @@ PlacedState placed_with(StepInProgress& p, DetectedContacts contacts) {
     const bool separated = std::ranges::find(bonded, 0) != bonded.end();
     const bool needs_mass = separated || !is_held(model.system, bonded, loads.constraints());
     if (needs_mass && solver.viscosity > 0.0)
-        placed.eta = mass_coefficients(model, solver.viscosity, p.step.end.memory.viscosity_factor);
+        placed.eta.assign(model.system.blocks.size(), mass_coefficient(model, solver.viscosity));
     return placed;
 }
 
@@ -133,7 +132,6 @@ Equilibrium find_at(StepInProgress& p, const PlacedState& placed, double load_fa
     found.strength_factor = at.strength_factor;
     journal.report().costs.open_close_iterations += found.iterations;
     p.step.worst_block = found.worst_block;
-    if (found.balanced && found.summary.iterations <= easy_iterations) decay_mass(state.memory.viscosity_factor);
     journal.progress(state, p.step.row, load_factor, journal.report().costs.open_close_iterations);
     return found;
 }

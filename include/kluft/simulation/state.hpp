@@ -49,7 +49,6 @@ struct StageStart {
 struct SolverMemory {
     Eigen::VectorXd
         rate; ///< displacement per unit of load factor of a smooth last step: the predictor; empty without one
-    std::vector<double> viscosity_factor; ///< of the mass-like term per block since the last relaxation; empty: 1
     std::vector<std::pair<int, int>> near_pairs; ///< blocks the matrix was ordered for, besides those at interfaces
     /// Contact points that the next load step may keep, and the load steps taken with them: only where contacts are not
     /// detected in each step. Not saved: a resumed run detects anew.
@@ -110,7 +109,6 @@ template <class Members, class Visit> void visit_saved(Members& state, Visit&& v
     visit("stage_start_pressure", state.stage_start.boundary_pressure);
     visit("strain_zero", state.strain_zero);
     visit("rate", state.memory.rate);
-    visit("viscosity_factor", state.memory.viscosity_factor);
     visit("near_pairs", state.memory.near_pairs);
     visit("step_size", state.control.size);
     visit("step_curvature", state.control.curvature);

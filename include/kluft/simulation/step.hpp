@@ -45,7 +45,6 @@ struct Step {
         BodyState body{};
         double load_factor = 0.0;
         LoadedPlacement in_place{};
-        std::vector<double> viscosity_factor{}; ///< of SolverMemory
         StepControl control{};
         StressHistory stresses{};
         std::size_t n_equilibria = 0;
