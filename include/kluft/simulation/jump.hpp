@@ -10,7 +10,7 @@ struct MotionControl {
     double error = 0.1;           ///< of one pseudo-time step, of the largest motion so far
     double elastic_motion = 5e-3; ///< the least motion that an error is judged by: what stresses of their size displace
     double longest = 0.05;        ///< motion in one pseudo-time step
-    int max_steps = 400;          ///< tried, those that are taken again included
+    int max_steps = 800;          ///< tried, those that are taken again included
 };
 
 /// The largest motion of a block over its motion_scale.
