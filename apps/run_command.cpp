@@ -44,6 +44,7 @@ public:
     }
     void equilibrium(const StepRecord& record) override { writer_.equilibrium(record); }
     void crack(const CrackRecord& crack) override { writer_.crack(crack); }
+    void jump(const JumpRecord& jump) override { writer_.jump(jump); }
     void step(const StepRecord& record, const State& state, const std::function<FieldRecord()>& fields,
               bool last_of_stage) override {
         writer_.step(record, state, fields, last_of_stage);
@@ -110,6 +111,8 @@ std::string closing_line(const RunReport& report, const RunSummary& summary, con
         text += fmt::format(": peak axial stress {:.4g} MPa at {:.4g} %{}", 1e-6 * *summary.numbers.peak_stress,
                             100.0 * summary.numbers.peak_strain.value_or(0.0),
                             summary.numbers.peak_reached ? "" : " (still rising)");
+        if (const int n = summary.numbers.jumps_to_peak; n > 0)
+            text += fmt::format(" after {} {}", n, n == 1 ? "jump" : "jumps");
     }
     if (report.results.factor_of_safety)
         text += fmt::format(", factor of safety {:.6g}", *report.results.factor_of_safety);

@@ -22,6 +22,7 @@ constexpr double restless_share = 0.2;       ///< of the norm of the residual
 constexpr int relaxation_iterations = 6;     ///< of one step: what takes more needs more mass (measured)
 constexpr double block_linear_share = 0.3;   ///< of what is allowed on a block: what a linear solve may leave
 constexpr double relaxed_share = 0.2;        ///< of the mass-like forces, that a step of relaxation may leave
+constexpr double usual_tolerance = 1e-5;     ///< with a smaller one such a step leaves less, in proportion
 
 /// The equations of one solve.
 struct Equations {
@@ -156,6 +157,7 @@ class StoppingTest {
 public:
     StoppingTest(const OpenCloseOptions& options, const IterationGoal& goal, OpenCloseSummary& summary)
         : summary_(summary), tolerance_(options.tolerance), block_tolerance_(goal.block_tolerance),
+          relaxed_share_(relaxed_share * std::min(1.0, tolerance_ / usual_tolerance)),
           max_iterations_(options.max_iterations), relaxes_(goal.aim == Aim::relaxation) {
         if (relaxes_) max_iterations_ = std::min(relaxation_iterations, max_iterations_);
     }
@@ -204,12 +206,13 @@ private:
     }
     [[nodiscard]] bool is_relaxed(const EquilibriumProblem& problem, const Eigen::VectorXd& q,
                                   const Iterate& at) const {
-        return relaxes_ && at.held && summary_.iterations > 0 && at.norm <= relaxed_share * viscous_force(problem, q);
+        return relaxes_ && at.held && summary_.iterations > 0 && at.norm <= relaxed_share_ * viscous_force(problem, q);
     }
 
     OpenCloseSummary& summary_;
     double tolerance_;
     double block_tolerance_;
+    double relaxed_share_; ///< of the mass-like forces
     int max_iterations_;
     bool relaxes_;
     double previous_norm_ = -1.0;                ///< of the free forces one iteration ago (N/m)

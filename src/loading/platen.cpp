@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <set>
 #include <utility>
@@ -49,10 +50,8 @@ struct PointForces {
     double largest = 0.0;                ///< magnitude of `pressing`
 };
 
-PointForces forces_on_points(const LoadedBody& body, const Eigen::VectorXd& q, const Loads& loads) {
-    BodyForces sum;
-    body_forces(body, q, sum);
-    const std::vector<double> of_rows = loads.constraints.row_forces(sum.forces);
+PointForces forces_on_points(const Eigen::VectorXd& residual, const Loads& loads) {
+    const std::vector<double> of_rows = loads.constraints.row_forces(residual);
     const auto& rows = loads.constraints.rows();
     PointForces forces{std::vector<double>(loads.platen_points.size(), 0.0),
                        std::vector<double>(loads.platen_points.size(), 0.0)};
@@ -117,6 +116,11 @@ bool update_friction(const PointCheck& check, PlatenPoint& point) {
     if (std::abs(friction - point.friction) <= least) return false;
     point.friction = friction;
     return true;
+}
+
+std::ptrdiff_t touching_points(const Platen& platen, const std::vector<PlatenPoint>& points) {
+    return std::ranges::count_if(
+        points, [&](const PlatenPoint& point) { return point.boundary == platen.boundary && touches(point.contact); });
 }
 
 /// Whether three vertices lie on a line.
@@ -265,10 +269,10 @@ void hold_by_platens(const LoadedBody& body, const Eigen::VectorXd& q, Loads& lo
         body.kinematics == Kinematics::rigid ? Constraints(std::move(rows), system, q) : Constraints(std::move(rows));
 }
 
-bool update_platen_points(const LoadedBody& body, const Eigen::VectorXd& q, bool may_open, Loads& loads) {
+bool update_platen_points(const BlockSystem& system, const Eigen::VectorXd& q, const Eigen::VectorXd& residual,
+                          bool may_open, Loads& loads) {
     if (loads.platen_points.empty()) return false;
-    const BlockSystem& system = *body.system;
-    const PointForces forces = forces_on_points(body, q, loads);
+    const PointForces forces = forces_on_points(residual, loads);
     const double travel = platen_travel(loads, q);
     const double shortest = least_penetration * q.lpNorm<Eigen::Infinity>();
     bool changed = false;
@@ -282,7 +286,8 @@ bool update_platen_points(const LoadedBody& body, const Eigen::VectorXd& q, bool
                                forces.largest, platen.normal.dot(u) - reach, platen.tangent().dot(u),
                                shortest};
         const bool was_open = point.contact == PlatenContact::open;
-        if (!update(check, may_open, point)) continue;
+        const bool is_last = platen.rate != 0.0 && !was_open && touching_points(platen, loads.platen_points) == 1;
+        if (!update(check, may_open && !is_last, point)) continue;
         changed = true;
         if (was_open) open_third(system, forces.pressing, i, loads.platen_points);
     }

@@ -37,6 +37,7 @@ void visit_columns(Record& record, Visit&& visit) {
     visit("crack_passes", record.crack_passes);
     visit("unbalanced_ratio", record.unbalanced_ratio);
     visit("balance_error", record.balance_error);
+    visit("jumps", record.jumps);
     visit("balanced", record.balanced);
     visit("elapsed_s", record.elapsed_s);
 }
@@ -69,6 +70,16 @@ void visit_columns(Record& crack, Visit&& visit) {
     visit("p1", crack.p1);
     visit("p3", crack.p3);
     visit("axial_strain", crack.axial_strain);
+}
+
+template <class Record, class Visit>
+requires std::is_same_v<std::remove_const_t<Record>, JumpRecord>
+void visit_columns(Record& jump, Visit&& visit) {
+    visit("step", jump.step);
+    visit("load_factor", jump.load_factor);
+    visit("released_energy", jump.released_energy);
+    visit("largest_slip", jump.largest_slip);
+    visit("blocks", jump.blocks);
 }
 
 std::string cell(int value) { return fmt::format("{}", value); }
@@ -188,12 +199,14 @@ std::vector<Record> read_table(const std::filesystem::path& path, const Names* n
 std::string history_header() { return header_of<StepRecord>(); }
 std::string motion_header() { return header_of<MotionRecord>(); }
 std::string cracks_header() { return header_of<CrackRecord>(); }
+std::string jumps_header() { return header_of<JumpRecord>(); }
 std::string table_row(const StepRecord& record) {
     std::string row = row_of(record);
     if (record.strength_factor) row += ',' + cell(*record.strength_factor);
     return record.motion ? row + ',' + row_of(*record.motion) : row;
 }
 std::string table_row(const CrackRecord& crack) { return row_of(crack); }
+std::string table_row(const JumpRecord& jump) { return row_of(jump); }
 std::string histories_header(const std::vector<std::string>& columns) {
     return fmt::format("step,stage,load_factor,{}", fmt::join(columns, ","));
 }

@@ -52,6 +52,7 @@ struct RunWriter::Tables {
     PatientTable history;
     PatientTable equilibria;
     PatientTable cracks;
+    PatientTable jumps;
     std::optional<PatientTable> histories;
     std::optional<FieldSeries> fields;
 };
@@ -88,7 +89,7 @@ bool is_due(int step, int every) { return every > 0 && step % every == 0; }
 void remove_results(const fs::path& directory) {
     remove_results_but_tables_and_state(directory);
     FieldSeries::remove(directory);
-    for (const char* name : {"state.h5", "history.csv", "equilibria.csv", "cracks.csv", "histories.csv"})
+    for (const char* name : {"state.h5", "history.csv", "equilibria.csv", "cracks.csv", "jumps.csv", "histories.csv"})
         remove_file(directory / name);
 }
 
@@ -98,6 +99,7 @@ RunWriter::RunWriter(fs::path directory, const BlockSystem& system, RunWriterOpt
     const fs::path history = directory_ / "history.csv";
     const fs::path equilibria = directory_ / "equilibria.csv";
     const fs::path cracks = directory_ / "cracks.csv";
+    const fs::path jumps = directory_ / "jumps.csv";
     const fs::path histories = directory_ / "histories.csv";
     const std::string histories_columns = histories_header(options_.history_columns);
     std::string header = history_header();
@@ -108,6 +110,7 @@ RunWriter::RunWriter(fs::path directory, const BlockSystem& system, RunWriterOpt
         tables_ = std::make_unique<Tables>(Tables{PatientTable(AppendTable::resume(history, header, last)),
                                                   PatientTable(AppendTable::resume(equilibria, header, last)),
                                                   PatientTable(AppendTable::resume(cracks, cracks_header(), last)),
+                                                  PatientTable(AppendTable::resume(jumps, jumps_header(), last)),
                                                   {},
                                                   {}});
         if (!options_.history_columns.empty())
@@ -125,6 +128,7 @@ RunWriter::RunWriter(fs::path directory, const BlockSystem& system, RunWriterOpt
         tables_ = std::make_unique<Tables>(Tables{PatientTable(AppendTable::create(history, header)),
                                                   PatientTable(AppendTable::create(equilibria, header)),
                                                   PatientTable(AppendTable::create(cracks, cracks_header())),
+                                                  PatientTable(AppendTable::create(jumps, jumps_header())),
                                                   {},
                                                   {}});
         if (!options_.history_columns.empty())
@@ -147,6 +151,8 @@ void RunWriter::equilibrium(const StepRecord& record) {
 
 void RunWriter::crack(const CrackRecord& crack) { tables_->cracks.append(table_row(crack)); }
 
+void RunWriter::jump(const JumpRecord& jump) { tables_->jumps.append(table_row(jump)); }
+
 void RunWriter::step(const StepRecord& record, const State& state, const std::function<FieldRecord()>& fields,
                      bool last_of_stage) {
     if (is_known(record)) return;
@@ -162,6 +168,7 @@ void RunWriter::checkpoint(const State& state) {
     tables_->history.sync();
     tables_->equilibria.sync();
     tables_->cracks.sync();
+    tables_->jumps.sync();
     if (tables_->histories) tables_->histories->sync();
     write_state(directory_ / "state.h5", state, options_.fingerprint, options_.scene_text);
 }

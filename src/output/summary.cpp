@@ -149,6 +149,7 @@ void add_counts(const Rows& history, CurveNumbers& numbers) {
     numbers.steps = history.back().step;
     numbers.cracks_tension = history.back().cracks_tension;
     numbers.cracks_shear = history.back().cracks_shear;
+    numbers.jumps = history.back().jumps;
 }
 
 constexpr std::array statuses{std::pair{RunStatus::done, "done"},
@@ -182,6 +183,7 @@ void read_numbers(const Json& json, CurveNumbers& numbers) {
     numbers.lateral_ratio = optional_number(json, "lateral_ratio");
     json.at("cracks_tension").get_to(numbers.cracks_tension);
     json.at("cracks_shear").get_to(numbers.cracks_shear);
+    numbers.jumps = json.value("jumps", 0);
     json.at("steps").get_to(numbers.steps);
     json.at("unbalanced_steps").get_to(numbers.unbalanced_steps);
 }
@@ -259,6 +261,7 @@ CurveNumbers curve_numbers(const std::vector<StepRecord>& equilibria, const std:
     if (const auto peak = peak_row(all, platen_stage)) {
         numbers.peak_stress = peak->axial_stress;
         numbers.peak_strain = peak->axial_strain;
+        numbers.jumps_to_peak = peak->jumps;
         numbers.peak_reached =
             falls_after_peak(balanced_rows(all), peak->axial_stress, platen_sense(all, platen_stage));
     }
@@ -291,6 +294,7 @@ std::string summary_json(const RunSummary& summary) {
                   [&](const char* name, const std::optional<double>& result) { json[name] = json_number(result); });
     json["cracks_tension"] = numbers.cracks_tension;
     json["cracks_shear"] = numbers.cracks_shear;
+    json["jumps"] = numbers.jumps;
     json["blocks"] = summary.blocks;
     json["interfaces"] = summary.interfaces;
     json["unknowns"] = summary.unknowns;

@@ -121,7 +121,7 @@ void ExplicitMotion::hold_blocks() {
 }
 
 void ExplicitMotion::update_platens() {
-    if (!update_platen_points(body_, q_, true, loads_)) return;
+    if (!update_platen_points(*body_.system, q_, forces_.forces, true, loads_)) return;
     hold_by_platens(body_, q_, loads_);
     hold_blocks();
 }

@@ -703,7 +703,7 @@ std::vector<KeyRule> option_rules() {
          .range = positive_integer,
          .fallback = "1",
          .doc = "Load steps between two detections of contacts; in between their points and frames stay. Contacts are "
-                "always detected after a crack, in relaxations, where a step is taken again and at the start of a "
+                "always detected after a crack, in jumps, where a step is taken again and at the start of a "
                 "stage or of a resumed run."},
         {.path = "solver.viscosity",
          .type = KeyType::number,
@@ -714,7 +714,7 @@ std::vector<KeyRule> option_rules() {
          .type = KeyType::integer,
          .range = positive_integer,
          .fallback = "12",
-         .doc = "Open-close iterations before a relaxation."},
+         .doc = "Open-close iterations before a solve is given up and the motion of the body is followed."},
         {.path = "solver.max_unbalanced_steps",
          .type = KeyType::integer,
          .range = positive_integer,

@@ -43,6 +43,13 @@ void break_bonds(StepInProgress& p) {
     }
 }
 
+bool break_at(StepInProgress& p, const PlacedState& placed, const LoadsAt& at) {
+    const auto broken = breaking(p.goal, candidates(p, placed.placement, at, p.displacement()), false);
+    if (broken.empty()) return false;
+    weaken_together(p.bench.model, broken, p.step.row.axial_strain, p.step);
+    return true;
+}
+
 void settle(StepInProgress& p) {
     p.step.smooth = false;
     find_again(p);

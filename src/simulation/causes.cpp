@@ -18,16 +18,6 @@ constexpr double no_resultant = 1e-6; ///< of the magnitudes of the loads
 constexpr double whole_body = 0.9;    ///< of the area of the blocks: if so much moves, the body does
 constexpr double suspicious_strain = 0.05;
 
-/// Of prescribed displacements and fixed blocks against motions of the whole body.
-Mat3 resistance(const Model& model, const WholeBody& body, const Constraints& constraints) {
-    Mat3 sum = Mat3::Zero();
-    for (const PrescribedDisplacement& held : constraints.rows()) {
-        const Vec3 row = body.row(model.system, held);
-        sum += row * row.transpose();
-    }
-    return sum;
-}
-
 /// Forces and moment of the loads on the body before it moved.
 Vec3 resultant(const Model& model, const WholeBody& body, const Eigen::VectorXd& forces) {
     Vec3 sum = Vec3::Zero();
@@ -116,7 +106,7 @@ std::vector<std::string> likely_causes(const Model& model, const LoadsAt& at, co
 
     std::vector<std::string> causes;
     const bool as_a_whole = !loads.constraints.rows().empty() && moves_as_a_whole(model.system, moving);
-    for (const Vec3& motion : free_motions(resistance(model, body, loads.constraints))) {
+    for (const Vec3& motion : free_motions(resistance(model.system, loads.constraints))) {
         const double force = motion.dot(sum);
         if (std::abs(force) > no_resultant * magnitude)
             causes.push_back(push_in_words(model, loads, motion, force));

@@ -2,7 +2,8 @@
 
 #include <utility>
 
-#include "kluft/simulation/relaxation.hpp"
+#include "kluft/simulation/breaking.hpp"
+#include "kluft/simulation/jump.hpp"
 
 namespace kluft {
 
@@ -11,13 +12,15 @@ namespace {
 constexpr double far = 1e-3; ///< motion of a block after which its contacts are detected anew (motion_scale)
 constexpr int max_rounds_of_detection = 100;
 
+/// Whether the body comes to rest in an equilibrium that was found beside it, without another potential crack that fails.
+bool rests_at(const StepInProgress& p, const PlacedState& placed, const Equilibrium& found) {
+    if (!found.balanced || is_jump(p, found)) return false;
+    const bool by_events = p.goal.checks_cracks && p.goal.cracks.update == CrackUpdate::event;
+    return !by_events || largest_failure_index(p, placed.placement, p.loads_at(found), found.displacement) < 1.0;
+}
+
 bool has_moved_far(const StepInProgress& p, const Eigen::VectorXd& since) {
-    const BlockSystem& system = p.bench.model.system;
-    const Eigen::VectorXd moved = p.displacement() - since;
-    for (int b = 0; b < system.n_blocks(); ++b) {
-        if (moved.segment<2>(n_block_unknowns * b).norm() > far * motion_scale(system, system.blocks[b])) return true;
-    }
-    return false;
+    return relative_motion(p.bench.model.system, p.displacement() - since) > far;
 }
 
 } // namespace
@@ -25,7 +28,7 @@ bool has_moved_far(const StepInProgress& p, const Eigen::VectorXd& since) {
 Equilibrium find_again(StepInProgress& p) {
     PlacedState placed = place(p);
     Equilibrium found = find_at(p, placed, p.load_factor(), p.displacement());
-    if (!found.balanced) found = recover(p, placed, found, p.load_factor());
+    if (!rests_at(p, placed, found)) found = recover(p, placed, p.load_factor());
     if (!p.failed()) reach(p, std::move(placed), found);
     return found;
 }

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kluft/simulation/mass_term.hpp"
+#include "kluft/simulation/whole_body.hpp"
+
 namespace kluft {
 
 namespace {
@@ -29,6 +32,11 @@ double viscous_share(const EquilibriumProblem& problem, const Eigen::VectorXd& q
     return force > 0.0 ? force / std::max(force_scale, 1e-300) : 0.0;
 }
 
+/// An equilibrium, or a step of a motion that counts.
+bool is_on_the_way(const Equilibrium& found) {
+    return found.converged() || found.summary.termination == Termination::relaxed;
+}
+
 /// Each block and group, and the mass-like term, which holds strains of blocks back too.
 bool is_balanced(const Equilibrium& found, const BlockGoal& goal) {
     return found.verdict.balanced() && found.viscous_share <= goal.share;
@@ -37,7 +45,7 @@ bool is_balanced(const Equilibrium& found, const BlockGoal& goal) {
 } // namespace
 
 EquilibriumSearch::EquilibriumSearch(const Model& model, const SolverOptions& options)
-    : model_(model), open_close_(linear_, open_close_options(options)) {}
+    : model_(model), viscosity_(options.viscosity), open_close_(linear_, open_close_options(options)) {}
 
 void EquilibriumSearch::require_pairs(const std::vector<ContactPoint>& points,
                                       std::vector<std::pair<int, int>> near_pairs) {
@@ -57,19 +65,26 @@ void EquilibriumSearch::order_for(std::vector<std::pair<int, int>> near_pairs) {
     linear_.analyze(pattern_);
 }
 
-/// Repeats solves with other points on the platens until these agree with what is found.
+/// Repeats solves with other points on the platens until these agree with what is found. A body that was held by its
+/// platens alone and that they have left has the mass-like term to hold it, from where it was.
 template <class Solve> Equilibrium EquilibriumSearch::find_touching(const EquilibriumProblem& problem, Solve solve) {
+    if (problem.body.loads->platens.empty()) return solve(problem, nullptr);
     EquilibriumProblem held = problem;
     Loads loads = *problem.body.loads;
     held.body.loads = &loads;
     Equilibrium found = solve(held, nullptr);
     bool changed = false;
-    for (int round = 0; found.converged(); ++round) {
-        if (!update_platen_points(held.body, found.displacement, round < rounds_that_open, loads)) break;
+    for (int round = 0; is_on_the_way(found); ++round) {
+        if (!update_platen_points(model_.system, found.displacement, forces(held, found.displacement),
+                                  round < rounds_that_open, loads))
+            break;
         changed = true;
         hold_by_platens(held.body, found.displacement, loads);
+        const bool is_left =
+            held.eta.empty() && viscosity_ > 0.0 && !free_motions(resistance(model_.system, loads.constraints)).empty();
+        if (is_left) held.eta.assign(model_.system.blocks.size(), mass_coefficient(model_, viscosity_));
         const int iterations = found.iterations;
-        found = solve(held, &found);
+        found = solve(held, is_left ? nullptr : &found);
         found.iterations += iterations;
         found.balanced = found.balanced && round < max_platen_rounds;
         if (round == max_platen_rounds) break;
@@ -80,7 +95,6 @@ template <class Solve> Equilibrium EquilibriumSearch::find_touching(const Equili
 
 Equilibrium EquilibriumSearch::find(const EquilibriumProblem& problem, const Eigen::VectorXd& guess,
                                     const BlockGoal& balance, bool unloaded) {
-    if (problem.body.loads->platens.empty()) return find_held(problem, guess, balance, unloaded);
     return find_touching(problem, [&](const EquilibriumProblem& held, const Equilibrium* last) {
         return find_held(held, last != nullptr ? last->displacement : guess, balance, unloaded && last == nullptr);
     });
@@ -124,16 +138,17 @@ void EquilibriumSearch::settle(EquilibriumProblem& problem, const BlockGoal& bal
     found.balanced = is_balanced(found, balance);
 }
 
-Equilibrium EquilibriumSearch::move_on(const EquilibriumProblem& problem, const BlockGoal& balance, bool unloaded) {
-    if (problem.body.loads->platens.empty()) return move_held(problem, balance, unloaded);
+Equilibrium EquilibriumSearch::move_on(const EquilibriumProblem& problem, const Eigen::VectorXd& guess,
+                                       const BlockGoal& balance, bool unloaded) {
     return find_touching(problem, [&](const EquilibriumProblem& held, const Equilibrium* last) {
-        return move_held(held, balance, unloaded && last == nullptr);
+        return move_held(held, last != nullptr ? last->displacement : guess, balance, unloaded && last == nullptr);
     });
 }
 
-Equilibrium EquilibriumSearch::move_held(const EquilibriumProblem& problem, const BlockGoal& balance, bool unloaded) {
+Equilibrium EquilibriumSearch::move_held(const EquilibriumProblem& problem, Eigen::VectorXd guess,
+                                         const BlockGoal& balance, bool unloaded) {
     Equilibrium moved;
-    moved.displacement = problem.start;
+    moved.displacement = std::move(guess);
     moved.summary = open_close_.solve(
         problem, pattern_, moved.displacement,
         {.aim = Aim::relaxation, .unloaded = unloaded, .block_tolerance = share_of_solve * balance.share});

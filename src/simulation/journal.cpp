@@ -61,6 +61,7 @@ void Journal::tell(const Step& step) {
     const Stopwatch watch(report_.costs.seconds.observers);
     for (const StepRecord& record : step.equilibria) observer_.equilibrium(record);
     for (const CrackRecord& crack : step.cracks) observer_.crack(crack);
+    for (const JumpRecord& jump : step.jumps) observer_.jump(jump);
 }
 
 void Journal::warn(const Step& step, int number) {

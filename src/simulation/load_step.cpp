@@ -5,7 +5,7 @@
 
 #include "kluft/simulation/breaking.hpp"
 #include "kluft/simulation/contact_following.hpp"
-#include "kluft/simulation/relaxation.hpp"
+#include "kluft/simulation/jump.hpp"
 
 namespace kluft {
 
@@ -28,7 +28,7 @@ Equilibrium advance(StepInProgress& p, PlacedState& placed) {
     Equilibrium found = find_at(p, placed, target, predicted(p, target));
     if (!found.balanced) {
         p.step.smooth = false;
-        found = recover(p, placed, found, target);
+        found = recover(p, placed, target);
         if (p.failed()) return found;
         if (!found.balanced && p.bench.loads.constraints().rows().empty())
             fail(p, found, found.viscous_share, FailureKind::no_equilibrium);

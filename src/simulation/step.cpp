@@ -18,12 +18,13 @@ void keep_balanced_part(Step& step) {
         Step::BalancedPart& part = *step.balanced_part;
         step.end.body = std::move(part.body);
         step.end.at.load_factor = part.load_factor;
-        step.end.memory.viscosity_factor = std::move(part.viscosity_factor);
         step.end.control = std::move(part.control);
         step.end.stresses = part.stresses;
         step.in_place = std::move(part.in_place);
         step.equilibria.resize(part.n_equilibria);
         step.cracks.resize(part.n_cracks);
+        step.end.jumps -= static_cast<int>(step.jumps.size() - part.n_jumps);
+        step.jumps.resize(part.n_jumps);
         step.balanced_part.reset();
     }
     step.smooth = false;

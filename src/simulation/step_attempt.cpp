@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "kluft/simulation/breaking.hpp"
+#include "kluft/simulation/jump.hpp"
 #include "kluft/simulation/placement.hpp"
-#include "kluft/simulation/relaxation.hpp"
 
 namespace kluft {
 
@@ -153,7 +153,7 @@ std::optional<StepError> judge_by_halves(StepInProgress& p, PlacedState placed, 
     placed = place(p);
     Equilibrium end = find_at(p, placed, target, at_once);
     if (!end.balanced) {
-        end = recover(p, placed, end, target);
+        end = recover(p, placed, target);
         finish_step(p, std::move(placed), {std::move(end), target - middle});
         return std::nullopt;
     }
@@ -177,7 +177,7 @@ std::optional<StepError> advance(StepInProgress& p, double small_step) {
     Equilibrium found = find_at(p, placed, first, predicted(p, first));
     if (!found.balanced && size > small_step) return without_equilibrium;
     if (!found.balanced) {
-        found = recover(p, placed, found, first);
+        found = recover(p, placed, first);
         control.size = std::max(control.size, std::min(small_step, 2.0 * size));
         finish_step(p, std::move(placed), {std::move(found), size}); // which encloses an event that it jumped over
         p.step.end.memory.rate.resize(0);

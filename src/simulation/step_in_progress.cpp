@@ -18,7 +18,6 @@ namespace kluft {
 namespace {
 
 constexpr double clear_motion = 0.1; ///< of a block in a load step, in spacings of hexagons of its size
-constexpr int easy_iterations = 6;   ///< of a solve after which the mass-like term of a relaxation falls
 
 /// Detects the contacts of surfaces that may touch.
 DetectedContacts detect(StepInProgress& p) {
@@ -51,7 +50,7 @@ PlacedState placed_with(StepInProgress& p, DetectedContacts contacts) {
     const bool separated = std::ranges::find(bonded, 0) != bonded.end();
     const bool needs_mass = separated || !is_held(model.system, bonded, p.hold.constraints);
     if (needs_mass && solver.viscosity > 0.0)
-        placed.eta = mass_coefficients(model, solver.viscosity, p.step.end.memory.viscosity_factor);
+        placed.eta.assign(model.system.blocks.size(), mass_coefficient(model, solver.viscosity));
     return placed;
 }
 
@@ -59,17 +58,6 @@ bool has_surfaces_to_meet(const Model& model, const BodyState& body) {
     return may_outlines_meet(model) || std::ranges::any_of(body.interfaces, [](InterfaceStatus status) {
                return status != InterfaceStatus::potential_crack;
            });
-}
-
-/// Where blocks have moved away in the load step they go on in that direction, whatever pushes them at the moment.
-std::vector<MovingBlock> moving_on(const StepInProgress& p, std::vector<MovingBlock> moving) {
-    const Eigen::VectorXd moved = p.displacement() - p.from.body.displacement;
-    for (MovingBlock& each : moving) {
-        const Vec2 motion = moved.segment<2>(n_block_unknowns * each.block);
-        if (motion.norm() > clear_motion * spacing_of(p.bench.model.system.blocks[each.block]))
-            each.direction = motion.normalized();
-    }
-    return moving;
 }
 
 /// The largest stresses so far, which errors of the history are relative to.
@@ -125,6 +113,11 @@ PlacedState place_for_load_step(StepInProgress& p) {
     return placed;
 }
 
+void renew(const StepInProgress& p, PlacedState& placed) {
+    placed.placement.bonds = placed_bonds(p.bench.model, p.step.end.body);
+    placed.placement.contacts = renewed_contacts(p.step.end.body, std::move(placed.placement.contacts));
+}
+
 EquilibriumProblem pose(const Model& model, const PlacedState& placed, const LoadsAt& at,
                         const Eigen::VectorXd& start) {
     return {loaded_body(model, placed.placement, at), placed.eta, least_mass_area(model.system), start};
@@ -148,7 +141,6 @@ Equilibrium find_at(StepInProgress& p, const PlacedState& placed, double load_fa
     found.strength_factor = at.strength_factor;
     journal.report().costs.open_close_iterations += found.iterations;
     p.step.worst_block = found.worst_block;
-    if (found.balanced && found.summary.iterations <= easy_iterations) decay_mass(state.memory.viscosity_factor);
     journal.progress(state, p.step.row, load_factor, journal.report().costs.open_close_iterations);
     return found;
 }
@@ -200,10 +192,21 @@ Measured measure(const StepInProgress& p, const PlacedState& placed, const Loads
     row.crack_passes = p.step.crack_passes;
     row.unbalanced_ratio = found.viscous_share;
     row.balance_error = found.verdict.error;
+    row.jumps = p.step.end.jumps;
     row.balanced = found.balanced;
     row.elapsed_s = journal.elapsed();
     if (reduction_of(model.loads, 0) != nullptr) row.strength_factor = at.strength_factor;
     return result;
+}
+
+std::vector<MovingBlock> moving_on(const StepInProgress& p, const Eigen::VectorXd& q, std::vector<MovingBlock> moving) {
+    const Eigen::VectorXd moved = q - p.from.body.displacement;
+    for (MovingBlock& each : moving) {
+        const Vec2 motion = moved.segment<2>(n_block_unknowns * each.block);
+        if (motion.norm() > clear_motion * spacing_of(p.bench.model.system.blocks[each.block]))
+            each.direction = motion.normalized();
+    }
+    return moving;
 }
 
 void fail(StepInProgress& p, const Equilibrium& found, double residual_ratio, FailureKind kind) {
@@ -213,7 +216,7 @@ void fail(StepInProgress& p, const Equilibrium& found, double residual_ratio, Fa
                              .load_factor = found.load_factor,
                              .strength_factor = found.strength_factor,
                              .nothing_holds = p.bench.loads.constraints().rows().empty(),
-                             .moving = moving_on(p, found.verdict.moving)};
+                             .moving = moving_on(p, p.displacement(), found.verdict.moving)};
 }
 
 void keep_rate(StepInProgress& p) {

@@ -22,6 +22,17 @@ Vec3 WholeBody::row(const BlockSystem& system, const PrescribedDisplacement& hel
     return row(block.centroid + block.size * held.xi, held.direction);
 }
 
+Mat3 resistance(const BlockSystem& system, const Constraints& constraints) {
+    const WholeBody body(system);
+    Mat3 sum = Mat3::Zero();
+    for (const PrescribedDisplacement& held : constraints.rows()) {
+        if (held.rate != 0.0) continue; // the platen travels
+        const Vec3 row = body.row(system, held);
+        sum += row * row.transpose();
+    }
+    return sum;
+}
+
 std::vector<Vec3> free_motions(const Mat3& resistance) {
     const Eigen::SelfAdjointEigenSolver<Mat3> eigen(resistance);
     std::vector<Vec3> motions;

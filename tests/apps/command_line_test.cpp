@@ -370,8 +370,8 @@ TEST_F(CommandLine, OverrideOfAnUnknownKeyIsRefusedWithTheNearestKey) {
 
 // ---- kluft run -----------------------------------------------------------------------------------------------------
 
-const Words all_files{"history.csv", "equilibria.csv", "cracks.csv", "summary.json", "fields.pvd", "curve.png",
-                      "curve.svg",   "blocks.png",     "blocks.svg", "run.log",      "state.h5"};
+const Words all_files{"history.csv", "equilibria.csv", "cracks.csv", "jumps.csv",  "summary.json", "fields.pvd",
+                      "curve.png",   "curve.svg",      "blocks.png", "blocks.svg", "run.log",      "state.h5"};
 
 void expect_all_files(const fs::path& run) {
     for (const auto& name : all_files) EXPECT_GT(fs::file_size(run / name), 0U) << name;
@@ -397,7 +397,7 @@ TEST_F(CommandLine, RunLeavesEverythingOfTheContract) {
     const std::string columns =
         "step,stage,load_factor,axial_strain,axial_stress,lateral_strain,lateral_stress,differential_stress,"
         "volumetric_strain,cracks_tension,cracks_shear,open,sliding,locked,open_close_iterations,crack_passes,"
-        "unbalanced_ratio,balance_error,balanced,elapsed_s";
+        "unbalanced_ratio,balance_error,jumps,balanced,elapsed_s";
     EXPECT_EQ(history.front(), columns);
     EXPECT_EQ(history.size(), 1U + 1U + 2U + 8U); // columns, initial state, steps of the two stages
     EXPECT_EQ(lines_of(content_of(path("results/tiny/equilibria.csv"))).front(), columns);
@@ -496,6 +496,7 @@ TEST_F(SlowCommandLine, InterruptedRunIsCompleteAndGoesOnAsIfItHadNotBeenInterru
     for (const char* name : {"history.csv", "equilibria.csv"})
         EXPECT_TRUE(table(std::string("broken/") + name) == table(std::string("whole/") + name)) << name;
     EXPECT_TRUE(content_of(path("broken/cracks.csv")) == content_of(path("whole/cracks.csv")));
+    EXPECT_TRUE(content_of(path("broken/jumps.csv")) == content_of(path("whole/jumps.csv")));
     // Costs are those of both parts.
     EXPECT_EQ(summary("broken")["open_close_iterations"], summary("whole")["open_close_iterations"]);
     EXPECT_EQ(summary("broken")["factorizations"], summary("whole")["factorizations"]);
@@ -596,7 +597,7 @@ TEST_F(CommandLine, FullDiskEndsWithExitCode4AndLeavesWholeRows) {
     const auto steps = summary("full")["steps"].get<std::size_t>();
     EXPECT_GE(rows.size(), 1U + steps); // head and initial state; the row of the last step may not fit
     EXPECT_LE(rows.size(), 2U + steps);
-    for (const auto& row : rows) EXPECT_EQ(std::ranges::count(row, ','), 19) << row;
+    for (const auto& row : rows) EXPECT_EQ(std::ranges::count(row, ','), 20) << row;
 }
 
 // The saved state grows with the cracks. Files cannot grow to its last size, so that saving it fails in the middle of the

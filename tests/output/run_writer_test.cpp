@@ -44,6 +44,7 @@ public:
             const StepRecord record = record_of(step);
             writer_.equilibrium(record);
             if (step == 9) writer_.crack({step, 1, 2, 0.1, 0.2, CrackMode::tension, 1e6, -1e4, 0.005});
+            if (step == 9) writer_.jump({step, 0.5, 12.0, 0.001, 7});
             writer_.step(record, state_, fields(), step == 4 || step == 14);
         }
     }
@@ -98,6 +99,7 @@ TEST(RunWriter, LeavesEverythingOfTheContract) {
         EXPECT_TRUE(fs::is_regular_file(directory / name)) << name;
     EXPECT_EQ(steps_in(directory / "history.csv").size(), 15U);
     EXPECT_EQ(read_cracks(directory / "cracks.csv").size(), 1U);
+    EXPECT_EQ(read_file(directory / "jumps.csv"), jumps_header() + "\n9,0.5,12,0.001,7\n");
     EXPECT_EQ(read_state(directory / "state.h5", "scene").at.step, 14);
     EXPECT_THAT(read_file(directory / "fields.pvd"), HasSubstr("timestep=\"14\""));
     EXPECT_NEAR(*summary.numbers.peak_stress, 1.2e6, 1e-6);
@@ -146,7 +148,8 @@ TEST(RunWriter, WritesNeitherFieldsNorPicturesWhenNotAsked) {
     std::vector<std::string> names;
     for (const auto& entry : fs::directory_iterator(directory.path())) names.push_back(entry.path().filename());
     std::sort(names.begin(), names.end());
-    EXPECT_THAT(names, ElementsAre("cracks.csv", "equilibria.csv", "history.csv", "state.h5", "summary.json"));
+    EXPECT_THAT(names,
+                ElementsAre("cracks.csv", "equilibria.csv", "history.csv", "jumps.csv", "state.h5", "summary.json"));
 }
 
 // The tables of an uninterrupted run, and of one that was killed at step 11 and resumed from the state of step 8.
@@ -172,7 +175,7 @@ TEST(RunWriter, LeavesTheSameTablesAfterAResumedRun) {
     EXPECT_TRUE(read_cracks(broken / "cracks.csv").empty());
     resumed.go_to(14, false);
     resumed.finish();
-    for (const char* name : {"history.csv", "equilibria.csv", "cracks.csv", "fields.pvd"})
+    for (const char* name : {"history.csv", "equilibria.csv", "cracks.csv", "jumps.csv", "fields.pvd"})
         EXPECT_TRUE(read_file(broken / name) == read_file(whole / name)) << name;
 }
 
@@ -235,7 +238,7 @@ TEST(RunWriter, DoesNotMixANewRunWithOldResults) {
     std::vector<std::string> names;
     for (const auto& entry : fs::directory_iterator(directory.path())) names.push_back(entry.path().filename());
     std::sort(names.begin(), names.end());
-    EXPECT_THAT(names, ElementsAre("cracks.csv", "equilibria.csv", "history.csv", "notes.txt", "run.log"));
+    EXPECT_THAT(names, ElementsAre("cracks.csv", "equilibria.csv", "history.csv", "jumps.csv", "notes.txt", "run.log"));
     EXPECT_TRUE(steps_in(directory / "history.csv").empty());
 }
 

@@ -167,13 +167,28 @@ TEST(Summary, HasTheKeysOfTheContractAndNullForWhatIsUnknown) {
     const std::string text = summary_json(summary);
     EXPECT_THAT(text, ::testing::Not(::testing::HasSubstr("nan")));
     const auto json = nlohmann::json::parse(text);
-    for (const char* key : {"status",         "peak_stress",       "peak_strain",
-                            "peak_reached",   "residual_stress",   "youngs_modulus",
-                            "poissons_ratio", "cracks_tension",    "cracks_shear",
-                            "blocks",         "interfaces",        "unknowns",
-                            "steps",          "unbalanced_steps",  "open_close_iterations",
-                            "factorizations", "analyses",          "elapsed_s",
-                            "cpu_s",          "peak_memory_bytes", "version",
+    for (const char* key : {"status",
+                            "peak_stress",
+                            "peak_strain",
+                            "peak_reached",
+                            "residual_stress",
+                            "youngs_modulus",
+                            "poissons_ratio",
+                            "cracks_tension",
+                            "cracks_shear",
+                            "jumps",
+                            "blocks",
+                            "interfaces",
+                            "unknowns",
+                            "steps",
+                            "unbalanced_steps",
+                            "open_close_iterations",
+                            "factorizations",
+                            "analyses",
+                            "elapsed_s",
+                            "cpu_s",
+                            "peak_memory_bytes",
+                            "version",
                             "seconds"})
         EXPECT_TRUE(json.contains(key)) << key;
     EXPECT_EQ(json["status"], "done");

@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "kluft/kinematics/affine.hpp"
@@ -10,8 +9,6 @@
 
 namespace kluft {
 namespace {
-
-using ::testing::ElementsAre;
 
 const Vec2 along_x(1.0, 0.0);
 const Vec2 along_y(0.0, 1.0);
@@ -37,33 +34,12 @@ TEST(IsHeld, NeedsThreeIndependentRowsForEachGroupOfBondedBlocks) {
 TEST(MassTerm, CoefficientFollowsFromModulusAndHeight) {
     const Model model = posed::two_bonded_blocks(1.0);
     EXPECT_DOUBLE_EQ(mass_coefficient(model, 0.05), 0.05 * model.effective_modulus / 4.0);
-    const double eta = mass_coefficient(model, 0.05);
-    EXPECT_THAT(mass_coefficients(model, 0.05, {}), ElementsAre(eta, eta));
-    EXPECT_THAT(mass_coefficients(model, 0.05, {1.0, 16.0}), ElementsAre(eta, 16.0 * eta));
 }
 
 TEST(MassTerm, BlockCountsWithAtLeastTheAreaOfACellOfTheNet) {
     BlockSystem system = posed::two_bonded_blocks(1.0).system;
     system.spacing = 2.0;
     EXPECT_NEAR(least_mass_area(system), 0.5 * std::sqrt(3.0) * 4.0, 1e-12); // a hexagon of 2 m across flats
-}
-
-TEST(MassTerm, GrowsOnTheBlocksThatStopTheIterationUpToItsLimit) {
-    std::vector<double> factors{1.0, 1.0, 4.0};
-    EXPECT_TRUE(grow_mass({2}, factors));
-    EXPECT_THAT(factors, ElementsAre(1.0, 1.0, 64.0));
-    EXPECT_TRUE(grow_mass({}, factors)); // all of them where none is named
-    EXPECT_THAT(factors, ElementsAre(16.0, 16.0, 1024.0));
-    factors = {4e6};
-    EXPECT_FALSE(grow_mass({0}, factors));
-}
-
-TEST(MassTerm, FallsBackToOneEverywhereAndIsThenForgotten) {
-    std::vector<double> factors{1.0, 16.0};
-    decay_mass(factors);
-    EXPECT_THAT(factors, ElementsAre(1.0, 4.0));
-    decay_mass(factors);
-    EXPECT_TRUE(factors.empty());
 }
 
 } // namespace

@@ -22,6 +22,7 @@ struct SceneRun {
     std::vector<FieldRecord> fields; ///< of the load steps
     std::vector<StepRecord> equilibria;
     std::vector<CrackRecord> cracks;
+    std::vector<JumpRecord> jumps;
 };
 
 /// Whether the run came to its end, balanced at each load step.
@@ -34,6 +35,7 @@ public:
     explicit RecordingObserver(SceneRun& run) : run_(run) {}
     void equilibrium(const StepRecord& record) override { run_.equilibria.push_back(record); }
     void crack(const CrackRecord& crack) override { run_.cracks.push_back(crack); }
+    void jump(const JumpRecord& jump) override { run_.jumps.push_back(jump); }
     void step(const StepRecord& record, const State&, const std::function<FieldRecord()>& fields, bool) override {
         run_.history.push_back(record);
         run_.fields.push_back(fields());

@@ -75,10 +75,11 @@ void append_rows(const BlockSystem& system, const Platen& platen, const PlatenPo
 /// are linearised at q.
 void hold_by_platens(const LoadedBody& body, const Eigen::VectorXd& q, Loads& loads);
 
-/// Which points touch, slide and stick at equilibrium q, by the forces on those that are held and the place of the others
-/// (docs/theory.md 41). True if any has changed; the rows are then to be made anew. Points leave their platen only where
-/// they `may_open`.
-[[nodiscard]] bool update_platen_points(const LoadedBody& body, const Eigen::VectorXd& q, bool may_open, Loads& loads);
+/// Which points touch, slide and stick at displacements q, by the `forces` (internal - external, without the supports', N/m)
+/// on those that are held and by the place of the others (docs/theory.md 41). True if any has changed; the rows are then to
+/// be made anew. Points leave their platen only where they `may_open`; the last one of a platen under a given force stays.
+[[nodiscard]] bool update_platen_points(const BlockSystem& system, const Eigen::VectorXd& q,
+                                        const Eigen::VectorXd& forces, bool may_open, Loads& loads);
 
 /// The slip of sliding points counts from q on.
 void keep_slips(const BlockSystem& system, const Eigen::VectorXd& q, const std::vector<Platen>& platens,

@@ -1,4 +1,4 @@
-// The rows of history.csv, equilibria.csv, cracks.csv and histories.csv.
+// The rows of history.csv, equilibria.csv, cracks.csv, jumps.csv and histories.csv.
 #pragma once
 
 #include <filesystem>
@@ -17,11 +17,14 @@ namespace kluft {
 [[nodiscard]] std::string motion_header();
 /// Column names of cracks.csv: the members of CrackRecord in order; `mode` is `tension` or `shear`.
 [[nodiscard]] std::string cracks_header();
+/// Column names of jumps.csv: the members of JumpRecord in order.
+[[nodiscard]] std::string jumps_header();
 
 /// A row without the end of the line. Numbers have 17 significant digits, so that they are read back exactly;
 /// booleans are 0 or 1.
 [[nodiscard]] std::string table_row(const StepRecord& record);
 [[nodiscard]] std::string table_row(const CrackRecord& crack);
+[[nodiscard]] std::string table_row(const JumpRecord& jump);
 
 /// The same for histories.csv: step, stage, load_factor and the columns of the scene.
 [[nodiscard]] std::string histories_header(const std::vector<std::string>& columns);

@@ -58,6 +58,7 @@ public:
     /// These throw ResourceError.
     void equilibrium(const StepRecord& record) override;
     void crack(const CrackRecord& crack) override;
+    void jump(const JumpRecord& jump) override;
     void step(const StepRecord& record, const State& state, const std::function<FieldRecord()>& fields,
               bool last_of_stage) override;
 

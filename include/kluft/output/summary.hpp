@@ -26,6 +26,8 @@ struct CurveNumbers {
     std::optional<double> poissons_ratio;
     int cracks_tension = 0;
     int cracks_shear = 0;
+    int jumps = 0;
+    int jumps_to_peak = 0; ///< before or at it
     int steps = 0;
     int unbalanced_steps = 0;
 };

@@ -58,8 +58,9 @@ public:
     /// platens press on all that they hold and are penetrated by nothing (docs/theory.md, platens).
     [[nodiscard]] Equilibrium find(const EquilibriumProblem& problem, const Eigen::VectorXd& guess,
                                    const BlockGoal& balance, bool unloaded);
-    /// One step of a relaxation from the problem's start.
-    [[nodiscard]] Equilibrium move_on(const EquilibriumProblem& problem, const BlockGoal& balance, bool unloaded);
+    /// One step of a motion from the problem's start.
+    [[nodiscard]] Equilibrium move_on(const EquilibriumProblem& problem, const Eigen::VectorXd& guess,
+                                      const BlockGoal& balance, bool unloaded);
 
     /// Internal - external forces at q, that of the mass-like term included, without the supports' (N/m).
     [[nodiscard]] Eigen::VectorXd forces(const EquilibriumProblem& problem, const Eigen::VectorXd& q) const;
@@ -70,10 +71,12 @@ public:
 private:
     template <class Solve> Equilibrium find_touching(const EquilibriumProblem& problem, Solve solve);
     Equilibrium find_held(EquilibriumProblem problem, Eigen::VectorXd guess, const BlockGoal& balance, bool unloaded);
-    Equilibrium move_held(const EquilibriumProblem& problem, const BlockGoal& balance, bool unloaded);
+    Equilibrium move_held(const EquilibriumProblem& problem, Eigen::VectorXd guess, const BlockGoal& balance,
+                          bool unloaded);
     void settle(EquilibriumProblem& problem, const BlockGoal& balance, Equilibrium& found);
 
     const Model& model_;
+    double viscosity_;
     std::vector<std::pair<int, int>> near_pairs_;
     BlockPattern pattern_;
     LinearSolver linear_;

@@ -59,7 +59,7 @@ public:
 
     /// Tells the state before any load.
     void begin(StepRecord row, const State& state, const LoadedPlacement& in_place);
-    /// Tells the equilibria and the cracks of a step.
+    /// Tells the equilibria, the cracks and the jumps of a step.
     void tell(const Step& step);
     /// Keeps the warning of a load step with this number, the first of a run.
     void warn(const Step& step, int number);

@@ -51,7 +51,6 @@ struct StageStart {
 struct SolverMemory {
     Eigen::VectorXd
         rate; ///< displacement per unit of load factor of a smooth last step: the predictor; empty without one
-    std::vector<double> viscosity_factor; ///< of the mass-like term per block since the last relaxation; empty: 1
     std::vector<std::pair<int, int>> near_pairs; ///< blocks the matrix was ordered for, besides those at interfaces
     /// Contact points that the next load step may keep, and the load steps taken with them: only where contacts are not
     /// detected in each step. Not saved: a resumed run detects anew.
@@ -93,6 +92,7 @@ struct State {
     StressHistory stresses;
     bool is_settled = true; ///< false: bonds failed here, or the load step did, and no equilibrium has been found since
     int unbalanced_in_succession = 0; ///< load steps
+    int jumps = 0;                    ///< so far
     RunCosts costs;                   ///< so far
 };
 
@@ -112,7 +112,6 @@ template <class Members, class Visit> void visit_saved(Members& state, Visit&& v
     visit("stage_start_pressure", state.stage_start.boundary_pressure);
     visit("strain_zero", state.strain_zero);
     visit("rate", state.memory.rate);
-    visit("viscosity_factor", state.memory.viscosity_factor);
     visit("near_pairs", state.memory.near_pairs);
     visit("step_size", state.control.size);
     visit("step_curvature", state.control.curvature);
@@ -128,6 +127,7 @@ template <class Members, class Visit> void visit_saved(Members& state, Visit&& v
     visit("stage_of_largest_stress", state.stresses.stage_of_largest);
     visit("is_settled", state.is_settled);
     visit("unbalanced_in_succession", state.unbalanced_in_succession);
+    visit("jumps", state.jumps);
     visit("elapsed_s", state.costs.elapsed_s);
     visit_counts(state.costs, visit);
     visit_seconds(state.costs.seconds, visit);

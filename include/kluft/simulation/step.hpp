@@ -32,6 +32,7 @@ struct Step {
     int worst_block = -1;     ///< of the last solve
     std::vector<StepRecord> equilibria; ///< in order
     std::vector<CrackRecord> cracks;
+    std::vector<JumpRecord> jumps;
     std::vector<MovingBlock> moving; ///< at the last equilibrium, where that is not balanced
     std::optional<Failure> failure;  ///< the step did not come to its goal
     std::string lost_contact;        ///< a warning, "" without reason
@@ -44,11 +45,11 @@ struct Step {
         BodyState body{};
         double load_factor = 0.0;
         LoadedPlacement in_place{};
-        std::vector<double> viscosity_factor{}; ///< of SolverMemory
         StepControl control{};
         StressHistory stresses{};
         std::size_t n_equilibria = 0;
         std::size_t n_cracks = 0;
+        std::size_t n_jumps = 0;
     };
     std::optional<BalancedPart> balanced_part; ///< of a step under way
 };

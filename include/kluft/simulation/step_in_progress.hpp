@@ -75,6 +75,8 @@ struct PlacedState {
 /// Detects contacts and gives them their memory; at the start of a load step the contacts may be those of the step before.
 [[nodiscard]] PlacedState place(StepInProgress& in_progress);
 [[nodiscard]] PlacedState place_for_load_step(StepInProgress& in_progress);
+/// The same contacts in the same frames, with the histories of the state that the step stands at.
+void renew(const StepInProgress& in_progress, PlacedState& placed);
 
 /// The problem of the placed state under loads, with the mass-like term counted from `start`.
 [[nodiscard]] EquilibriumProblem pose(const Model& model, const PlacedState& placed, const LoadsAt& at,
@@ -118,6 +120,10 @@ template <class IndexAt>
             return find_at(in_progress, placed, load_factor, start + share * (end.displacement - start));
         });
 }
+
+/// Where blocks have moved away in the load step up to q, they go on in that direction, whatever pushes them at the moment.
+[[nodiscard]] std::vector<MovingBlock> moving_on(const StepInProgress& in_progress, const Eigen::VectorXd& q,
+                                                 std::vector<MovingBlock> moving);
 
 /// The step has failed at what was found.
 void fail(StepInProgress& in_progress, const Equilibrium& found, double residual_ratio, FailureKind kind);

@@ -28,6 +28,7 @@ public:
     /// Every equilibrium, also those just before an event and between crack passes.
     virtual void equilibrium(const StepRecord& /*record*/) {}
     virtual void crack(const CrackRecord& /*crack*/) {}
+    virtual void jump(const JumpRecord& /*jump*/) {}
     /// A load step was committed (step 0: the initial state). `fields` computes the fields on demand.
     virtual void step(const StepRecord& /*record*/, const State& /*state*/,
                       const std::function<FieldRecord()>& /*fields*/, bool /*last_of_stage*/) {}

@@ -49,6 +49,7 @@ struct StepRecord {
     int crack_passes = 0;
     double unbalanced_ratio = 0.0; ///< of the mass-like term in F_ref
     double balance_error = 0.0;    ///< largest share left over on a block or group (docs/theory.md, (27))
+    int jumps = 0;                 ///< so far
     bool balanced = true;
     double elapsed_s = 0.0;
     std::optional<double> strength_factor; ///< F that strengths are divided by, of runs that reduce them
@@ -69,6 +70,15 @@ struct CrackRecord {
     double p1 = 0.0; ///< principal stresses at failure, positive in compression (Pa)
     double p3 = 0.0;
     double axial_strain = 0.0;
+};
+
+/// A row of jumps.csv: a motion at fixed loads from where equilibrium was lost to where the body stands again.
+struct JumpRecord {
+    int step = 0;
+    double load_factor = 0.0;
+    double released_energy = 0.0; ///< drop of elastic and load potential less the work of friction (J/m)
+    double largest_slip = 0.0;    ///< along a contact (m)
+    int blocks = 0;               ///< that moved by more than a hundredth of their motion_scale
 };
 
 /// Fields at an equilibrium, for pictures and ParaView.

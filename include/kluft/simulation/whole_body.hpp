@@ -19,6 +19,10 @@ struct WholeBody {
     double extent; ///< m
 };
 
+/// Of the rows of prescribed displacements and fixed blocks, each row row^T added, against motions of the whole body;
+/// without those of a platen that travels.
+[[nodiscard]] Mat3 resistance(const BlockSystem& system, const Constraints& constraints);
+
 /// The motions (unit vectors, orthogonal) that none of the rows summed up in `resistance` (row row^T, each added) resists.
 [[nodiscard]] std::vector<Vec3> free_motions(const Mat3& resistance);
 

@@ -1,0 +1,33 @@
+// Where equilibrium is lost the body moves on at fixed loads, over-damped, until it stands again (docs/theory.md, Jumps).
+#pragma once
+
+#include "kluft/simulation/step_in_progress.hpp"
+
+namespace kluft {
+
+/// How finely a motion is followed. Lengths are those of blocks (u or D) over their motion_scale.
+struct MotionControl {
+    double error = 0.1;           ///< of one pseudo-time step, of the largest motion so far
+    double elastic_motion = 5e-3; ///< the least motion that an error is judged by: what stresses of their size displace
+    double longest = 0.05;        ///< motion in one pseudo-time step
+    int max_steps = 800;          ///< tried, those that are taken again included
+};
+
+/// The largest motion of a block over its motion_scale.
+[[nodiscard]] double relative_motion(const BlockSystem& system, const Eigen::VectorXd& motion);
+
+/// Whether an equilibrium found at fixed loads lies so far away that the body jumps to it.
+[[nodiscard]] bool is_jump(const StepInProgress& in_progress, const Equilibrium& found);
+
+/// Follows M dq/dt = -R from where the step stands, under the loads of the load factor, with potential cracks failing on
+/// the way where the goal checks their events. What is found is an equilibrium, or an unbalanced state at a load that a
+/// platen's travel limits; or the step has failed. The step then stands, placed anew, where the body has come to.
+[[nodiscard]] Equilibrium follow_motion(StepInProgress& in_progress, PlacedState& placed, double load_factor,
+                                        const MotionControl& control = {});
+
+/// Where a search has found nothing, or an equilibrium that is not where the body comes to: follows its motion, and the
+/// step keeps its last balanced part.
+[[nodiscard]] Equilibrium recover(StepInProgress& in_progress, PlacedState& placed, double load_factor,
+                                  const MotionControl& control = {});
+
+} // namespace kluft
