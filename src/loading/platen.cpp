@@ -98,10 +98,11 @@ bool update_open(const PointCheck& check, PlatenPoint& point) {
 
 /// Coulomb's friction with the pressing force of the last solve.
 bool update_friction(const PointCheck& check, PlatenPoint& point) {
+    if (std::isinf(check.platen.tan_friction)) return false;
     const double limit = check.platen.tan_friction * std::max(0.0, check.pressing);
     const double least = friction_change * check.largest;
     if (point.contact == PlatenContact::sticking) {
-        if (std::isinf(limit) || std::abs(check.along) <= limit + least) return false;
+        if (std::abs(check.along) <= limit + least) return false;
         point.contact = PlatenContact::sliding;
         point.friction = std::copysign(limit, check.along);
         return true;
