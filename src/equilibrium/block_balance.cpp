@@ -123,7 +123,7 @@ Share share_of(const Part& now, const Part* before, const BlockGoal& goal) {
 
 /// What is left over on a loaded block disturbs the blocks that it presses on: where its load is much more than what acts
 /// between them, and than what acts on the other one, that is what counts. The weight of a large block, which its support
-/// carries, hides nothing so.
+/// carries, hides nothing so (27a).
 void keep_below_neighbours(const std::vector<Meeting>& meetings, OwnForces& forces) {
     std::map<std::pair<int, int>, double> between;
     for (const Meeting& at : meetings) between[{at.block_a, at.block_b}] += at.force;

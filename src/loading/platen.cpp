@@ -146,6 +146,7 @@ void open_third(const BlockSystem& system, const std::vector<double>& pressing, 
     points[least].friction = 0.0;
 }
 
+/// Signorini's and Coulomb's conditions (28a) on one point.
 bool update(const PointCheck& check, bool may_open, PlatenPoint& point) {
     if (point.contact == PlatenContact::open) return update_open(check, point);
     if (update_pressed(check, may_open, point)) return true;

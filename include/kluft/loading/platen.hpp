@@ -76,7 +76,7 @@ void append_rows(const BlockSystem& system, const Platen& platen, const PlatenPo
 void hold_by_platens(const LoadedBody& body, const Eigen::VectorXd& q, Loads& loads);
 
 /// Which points touch, slide and stick at displacements q, by the `forces` (internal - external, without the supports', N/m)
-/// on those that are held and by the place of the others (docs/theory.md 41). True if any has changed; the rows are then to
+/// on those that are held and by the place of the others (docs/theory.md 28a). True if any has changed; the rows are then to
 /// be made anew. Points leave their platen only where they `may_open`; the last one of a platen under a given force stays.
 [[nodiscard]] bool update_platen_points(const BlockSystem& system, const Eigen::VectorXd& q,
                                         const Eigen::VectorXd& forces, bool may_open, Loads& loads);
