@@ -232,8 +232,9 @@ std::vector<KeyRule> interface_rules() {
          .type = KeyType::number,
          .measure = Measure::stress,
          .range = not_negative,
-         .fallback_note =
-             "1e-3 of the largest boundary or self-weight stress, or point force over the size of its block",
+         .fallback_note = "1e-3 of the largest boundary or self-weight stress (of given blocks that of the smallest "
+                          "one), or point force "
+                          "over the size of its block",
          .doc = "g_0 k_n: normal traction over which the corner between open and closed is rounded; 0 for none."},
         {.path = "interfaces.*.friction_rounding",
          .type = KeyType::number,

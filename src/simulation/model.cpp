@@ -20,6 +20,17 @@ namespace {
 constexpr double default_contact_rounding = 1e-3;
 constexpr double default_cohesion_onset = 0.01;
 
+/// Of the rock whose weight contacts feel: of a body that is cut its box, of given blocks, which may be of very different
+/// sizes, the smallest block that is free (m).
+Vec2 height_of_weights(const BlockSystem& system) {
+    const bool given = system.outline_type >= 0;
+    if (!given) return system.upper - system.lower;
+    double smallest = (system.upper - system.lower).maxCoeff();
+    for (const Block& block : system.blocks)
+        if (!block.fixed) smallest = std::min(smallest, std::sqrt(block.area));
+    return Vec2::Constant(smallest);
+}
+
 double largest_boundary_stress(const BlockSystem& system, const ModelInput& input,
                                const std::vector<MaterialPoint>& force_points) {
     double largest = 0.0;
@@ -33,10 +44,9 @@ double largest_boundary_stress(const BlockSystem& system, const ModelInput& inpu
             largest = std::max(largest, std::abs(stage.motion->value));
         }
     }
-    for (const Material& material : input.materials) {
-        const Vec2 extent = system.upper - system.lower;
-        largest = std::max(largest, material.density * extent.cwiseAbs().dot(gravity));
-    }
+    const Vec2 height = height_of_weights(system);
+    for (const Material& material : input.materials)
+        largest = std::max(largest, material.density * height.dot(gravity));
     return largest;
 }
 

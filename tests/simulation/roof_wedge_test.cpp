@@ -1,9 +1,9 @@
 // A wedge in a roof between a fixed abutment and one that a given force pushes: a closed form that does not know how large
-// the abutments are.
+// the abutments are, or what else there is.
 #include <cmath>
 #include <numbers>
 #include <string>
-#include <utility>
+#include <tuple>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -48,8 +48,9 @@ double closed_form(const Joint& joint) {
     return low;
 }
 
-/// `ratio`: size of the abutments over the wedge's height. The right one slides between smooth guides.
-std::string roof_wedge(const Joint& joint, double ratio) {
+/// `ratio`: size of the abutments over the wedge's height. The right one slides between smooth guides. Beside them stands a
+/// free block of `neighbour` times that height, which touches nothing but its base; 0: none.
+std::string roof_wedge(const Joint& joint, double ratio, double neighbour) {
     const double size = height * ratio;
     const std::string beyond = // of a corner of the wedge, mirrored for the left abutment
         ratio > 1.0 ? fmt::format("[S{1}, 0], [S{1}, {0}], [S4.5, {0}], [S4.5, 6]", size, half_top + size)
@@ -59,6 +60,14 @@ std::string roof_wedge(const Joint& joint, double ratio) {
         for (std::size_t at = text.find('S'); at != std::string::npos; at = text.find('S')) text.replace(at, 1, sign);
         return text;
     };
+    const double width = height * neighbour;
+    const double at = half_top + 2.0 * size;
+    const std::string beside =
+        neighbour == 0.0
+            ? ""
+            : fmt::format("    - {{name: base, polygon: [[{0}, -4], [{1}, -4], [{1}, 0], [{0}, 0]], support: fixed}}\n"
+                          "    - {{name: neighbour, polygon: [[{0}, 0], [{1}, 0], [{1}, {2}], [{0}, {2}]]}}",
+                          at, at + width, width);
     return fmt::format(R"(
 kluft: 1
 analysis: {{plane: strain, gravity: 10}}
@@ -69,6 +78,7 @@ geometry:
     - {{name: wedge, polygon: [[-{2}, 0], [{2}, 0], [1.5, 4], [-1.5, 4]]}}
     - {{name: left, polygon: [[-{2}, 0], {3}, [-1.5, 4]], support: fixed}}
     - {{name: right, polygon: [[{2}, 0], {4}, [1.5, 4]]}}
+{6}
 boundaries:
   floor: {{block: right, sides: [0], support: smooth}}
   roof: {{block: right, sides: [2], support: smooth}}
@@ -77,23 +87,25 @@ stages:
   - {{pressure: {{push: {5}}}}}
   - {{strength_reduction: {{from: 1, to: 2}}, steps: 10}}
 )",
-                       joint.friction_angle, joint.cohesion, half_base, side("-"), side(""), horizontal / size);
+                       joint.friction_angle, joint.cohesion, half_base, side("-"), side(""), horizontal / size, beside);
 }
 
-class RoofWedge : public testing::TestWithParam<std::pair<Joint, double>> {};
+class RoofWedge : public testing::TestWithParam<std::tuple<Joint, double, double>> {};
 
-TEST_P(RoofWedge, HasTheSameFactorBesideAbutmentsOfAnySize) {
-    const auto& [joint, ratio] = GetParam();
-    const SceneRun run = run_scene(roof_wedge(joint, ratio));
+TEST_P(RoofWedge, HasTheSameFactorBesideBlocksOfAnySize) {
+    const auto& [joint, ratio, neighbour] = GetParam();
+    const SceneRun run = run_scene(roof_wedge(joint, ratio, neighbour));
     ASSERT_TRUE(run.report.results.factor_of_safety.has_value()) << run.report.diagnosis;
     EXPECT_NEAR(*run.report.results.factor_of_safety, closed_form(joint), 1e-3 * closed_form(joint));
 }
 
 INSTANTIATE_TEST_SUITE_P(Strengths, RoofWedge,
-                         testing::Values(std::pair(Joint{40, 0}, 1.0), std::pair(Joint{40, 0}, 1000.0),
-                                         std::pair(Joint{30, 40e3}, 100.0), std::pair(Joint{20, 90e3}, 1000.0),
-                                         std::pair(Joint{10, 125e3}, 1000.0), std::pair(Joint{0, 165e3}, 1.0),
-                                         std::pair(Joint{0, 165e3}, 1000.0)),
+                         testing::Values(std::tuple(Joint{40, 0}, 1.0, 0.0), std::tuple(Joint{40, 0}, 1000.0, 0.0),
+                                         std::tuple(Joint{40, 0}, 1.0, 1000.0), std::tuple(Joint{30, 40e3}, 100.0, 0.0),
+                                         std::tuple(Joint{20, 90e3}, 1000.0, 0.0),
+                                         std::tuple(Joint{10, 125e3}, 1000.0, 0.0),
+                                         std::tuple(Joint{0, 165e3}, 1.0, 1000.0),
+                                         std::tuple(Joint{0, 165e3}, 1000.0, 0.0)),
                          [](const auto& info) { return fmt::format("case_{}", info.index); });
 
 } // namespace
