@@ -703,9 +703,9 @@ std::vector<KeyRule> option_rules() {
          .type = KeyType::integer,
          .range = positive_integer,
          .fallback = "1",
-         .doc = "Load steps between two detections of contacts; in between their points and frames stay. Contacts are "
-                "always detected after a crack, in jumps, where a step is taken again and at the start of a "
-                "stage or of a resumed run."},
+         .doc = "Most load steps between two detections of contacts; in between their points and frames stay. Contacts "
+                "are always detected where a block has moved by 5e-3 of its spacing, after a crack, in jumps, where a "
+                "step is taken again and at the start of a stage or of a resumed run."},
         {.path = "solver.viscosity",
          .type = KeyType::number,
          .range = not_negative,

@@ -378,15 +378,6 @@ void hold_balanced_part(Step& step) {
 
 } // namespace
 
-double relative_motion(const BlockSystem& system, const Eigen::VectorXd& motion) {
-    double largest = 0.0;
-    for (int b = 0; b < system.n_blocks(); ++b) {
-        const double size = motion.segment<n_block_unknowns>(n_block_unknowns * b).norm();
-        largest = std::max(largest, size / motion_scale(system, system.blocks[b]));
-    }
-    return largest;
-}
-
 bool is_jump(const StepInProgress& p, const Equilibrium& found) { return moved_by(p, found) > jump_motion; }
 
 Equilibrium follow_motion(StepInProgress& p, PlacedState& placed, double load_factor, const MotionControl& control) {

@@ -17,6 +17,7 @@ namespace kluft {
 
 namespace {
 
+constexpr double kept_motion = 5e-3; ///< of a block, after which contact points are not kept (relative_motion)
 constexpr double clear_motion = 0.1; ///< of a block in a load step, in spacings of hexagons of its size
 
 /// Detects the contacts of surfaces that may touch.
@@ -97,6 +98,7 @@ PlacedState place(StepInProgress& p) {
     SolverMemory& memory = p.step.end.memory;
     memory.steps_since_detection = 0;
     memory.kept_points.clear();
+    if (p.bench.solver.detection_every > 1) memory.detected_at = p.displacement();
     const bool meet = has_surfaces_to_meet(p.bench.model, p.step.end.body);
     watch_platens(p);
     return placed_with(p, meet ? detect(p) : DetectedContacts{});
@@ -104,8 +106,9 @@ PlacedState place(StepInProgress& p) {
 
 PlacedState place_for_load_step(StepInProgress& p) {
     SolverMemory& memory = p.step.end.memory;
-    const bool keeps =
-        memory.steps_since_detection > 0 && memory.steps_since_detection < p.bench.solver.detection_every;
+    const bool keeps = memory.steps_since_detection > 0 &&
+                       memory.steps_since_detection < p.bench.solver.detection_every &&
+                       relative_motion(p.bench.model.system, p.displacement() - memory.detected_at) <= kept_motion;
     PlacedState placed =
         keeps ? placed_with(p, {renewed_contacts(p.step.end.body, std::move(memory.kept_points)), {}}) : place(p);
     ++memory.steps_since_detection;

@@ -67,6 +67,9 @@ inline void add_force(Eigen::VectorXd& forces, int b, const Vec2& xi, const Vec2
     return m;
 }
 
+/// The largest change of a block's u or D over its motion_scale. `motion`: of all unknowns (m).
+[[nodiscard]] double relative_motion(const BlockSystem& system, const Eigen::VectorXd& motion);
+
 /// Current position of a vertex as a corner of a block, local coordinates (m).
 [[nodiscard]] inline Vec2 current_position(const BlockSystem& system, const Eigen::VectorXd& q, int b, int vertex) {
     const Vec2& x = system.vertices[vertex];

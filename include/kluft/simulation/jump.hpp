@@ -13,9 +13,6 @@ struct MotionControl {
     int max_steps = 800;          ///< tried, those that are taken again included
 };
 
-/// The largest motion of a block over its motion_scale.
-[[nodiscard]] double relative_motion(const BlockSystem& system, const Eigen::VectorXd& motion);
-
 /// Whether an equilibrium found at fixed loads lies so far away that the body jumps to it.
 [[nodiscard]] bool is_jump(const StepInProgress& in_progress, const Equilibrium& found);
 

@@ -52,10 +52,11 @@ struct SolverMemory {
     Eigen::VectorXd
         rate; ///< displacement per unit of load factor of a smooth last step: the predictor; empty without one
     std::vector<std::pair<int, int>> near_pairs; ///< blocks the matrix was ordered for, besides those at interfaces
-    /// Contact points that the next load step may keep, and the load steps taken with them: only where contacts are not
-    /// detected in each step. Not saved: a resumed run detects anew.
+    /// Contact points that the next load step may keep where blocks have hardly moved, and the load steps taken with
+    /// them: only where contacts are not detected in each step. Not saved: a resumed run detects anew.
     std::vector<ContactPoint> kept_points;
     int steps_since_detection = 0;
+    Eigen::VectorXd detected_at; ///< displacement at the last detection (m)
 };
 
 /// The size of load steps that follow from an accuracy, and the errors made so far.

@@ -1,0 +1,16 @@
+#include "kluft/kinematics/affine.hpp"
+
+#include <algorithm>
+
+namespace kluft {
+
+double relative_motion(const BlockSystem& system, const Eigen::VectorXd& motion) {
+    double largest = 0.0;
+    for (int b = 0; b < system.n_blocks(); ++b) {
+        const double size = motion.segment<n_block_unknowns>(n_block_unknowns * b).norm();
+        largest = std::max(largest, size / motion_scale(system, system.blocks[b]));
+    }
+    return largest;
+}
+
+} // namespace kluft
