@@ -6,8 +6,9 @@ namespace kluft {
 
 double relative_motion(const BlockSystem& system, const Eigen::VectorXd& motion) {
     double largest = 0.0;
+    const Eigen::Index per_block = motion.size() / system.n_blocks();
     for (int b = 0; b < system.n_blocks(); ++b) {
-        const double size = motion.segment<n_block_unknowns>(n_block_unknowns * b).norm();
+        const double size = motion.segment(per_block * b, per_block).norm();
         largest = std::max(largest, size / motion_scale(system, system.blocks[b]));
     }
     return largest;

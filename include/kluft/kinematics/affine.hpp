@@ -67,7 +67,7 @@ inline void add_force(Eigen::VectorXd& forces, int b, const Vec2& xi, const Vec2
     return m;
 }
 
-/// The largest change of a block's u or D over its motion_scale. `motion`: of all unknowns (m).
+/// The largest change of a block's unknowns over its motion_scale. `motion`: of all of them, six or three per block (m).
 [[nodiscard]] double relative_motion(const BlockSystem& system, const Eigen::VectorXd& motion);
 
 /// Current position of a vertex as a corner of a block, local coordinates (m).
