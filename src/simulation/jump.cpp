@@ -8,6 +8,7 @@
 
 #include "kluft/simulation/breaking.hpp"
 #include "kluft/simulation/mass_term.hpp"
+#include "kluft/simulation/placement.hpp"
 
 namespace kluft {
 
@@ -80,7 +81,7 @@ struct PseudoStep {
 };
 
 PseudoStep solve_step(StepInProgress& p, const PlacedState& placed, const Motion& motion, double share,
-                      Eigen::VectorXd guess) {
+                      const Eigen::VectorXd& guess) {
     const auto& [model, cracks, solver, loads, search, journal, stop] = p.bench;
     if (stop) throw Interrupted{};
     const double eta = 1.0 / (share * motion.step);
@@ -88,7 +89,7 @@ PseudoStep solve_step(StepInProgress& p, const PlacedState& placed, const Motion
                                      std::vector<double>(model.system.blocks.size(), eta), 0.0, p.displacement()};
     PseudoStep step{.load_factor = share};
     Equilibrium& moved = step.moved;
-    moved = search.move_on(problem, std::move(guess), p.goal.balance, p.step.end.body.contacts.empty());
+    moved = search.move_on(problem, guess, p.goal.balance, p.step.end.body.contacts.empty());
     moved.load_factor = motion.at.load_factor;
     moved.strength_factor = motion.at.strength_factor;
     journal.report().costs.open_close_iterations += moved.iterations;
