@@ -44,6 +44,8 @@ def check(case):
     case.expect(f"largest slip, d = b/{counts[-1] + 0.5:g}", LARGEST_SLIP * 1e3, slips[-1] * 1e3, 2e-2, "mm", digits=5)
     middle = int(np.argmin(np.abs(place)))
     case.expect("normal traction in the middle", NORMAL_TRACTION / 1e6, normal[middle] / 1e6, 2e-2, "MPa", digits=5)
+    plain = crack_of(case.run(f"n-{counts[-1]}", scene_of(counts[-1]), defaults=True))[1].max()
+    case.expect("largest slip, defaults, against the same net with tight settings", slips[-1] * 1e3, plain * 1e3, 5e-3, "mm", digits=5)
     draw(case, [HALF_LENGTH / (n + 0.5) for n in counts], profiles, slips, finest)
 
 

@@ -1,17 +1,10 @@
 // Where equilibrium is lost the body moves on at fixed loads, over-damped, until it stands again (docs/theory.md, Jumps).
 #pragma once
 
+#include "kluft/simulation/over_damped_motion.hpp"
 #include "kluft/simulation/step_in_progress.hpp"
 
 namespace kluft {
-
-/// How finely a motion is followed. Lengths are those of blocks (u or D) over their motion_scale.
-struct MotionControl {
-    double error = 0.1;           ///< of one pseudo-time step, of the largest motion so far
-    double elastic_motion = 5e-3; ///< the least motion that an error is judged by: what stresses of their size displace
-    double longest = 0.05;        ///< motion in one pseudo-time step
-    int max_steps = 800;          ///< tried, those that are taken again included
-};
 
 /// Whether an equilibrium found at fixed loads lies so far away that the body jumps to it.
 [[nodiscard]] bool is_jump(const StepInProgress& in_progress, const Equilibrium& found);

@@ -1,0 +1,224 @@
+#include "kluft/simulation/over_damped_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "kluft/simulation/breaking.hpp"
+#include "kluft/simulation/mass_term.hpp"
+#include "kluft/simulation/placement.hpp"
+
+namespace kluft {
+
+namespace {
+
+constexpr double collapse_motion = 0.5;   ///< of a block in one load step
+constexpr double first_step = 0.1;        ///< pseudo-time, of d2/E: a block of the net hardly deforms in it
+constexpr double least_step = 1e-12;      ///< of the first step
+constexpr double at_once = 1e-6;          ///< of it: who moves far in it is a sliver that finds its place
+constexpr double longest_step = 1e4;      ///< of that of an ordinary solve
+constexpr double shortest_last = 0.01;    ///< of H2/E: the pseudo-time step before an ordinary solve is tried
+constexpr double largest_growth = 3.0;    ///< of the pseudo-time step
+constexpr double largest_cut = 0.2;       ///< of it
+constexpr double least_cut = 0.7;         ///< of one that is taken again
+constexpr double caution = 0.9;           ///< in the error expected of the next one
+constexpr double tries_apart = 4.0;       ///< growth of the pseudo-time step between two ordinary solves
+constexpr double far_from_expected = 2.0; ///< times the error: not the way of the motion
+constexpr double detection_motion = 5e-3; ///< of a block between two detections of contacts
+constexpr double unlimited = std::numeric_limits<double>::infinity();
+
+/// Of implicit Euler, relative: half the square of the step times the second derivative, from the velocities of two steps.
+double local_error(const StepInProgress& p, const Motion& motion, const Equilibrium& moved) {
+    const Eigen::VectorXd velocity = (moved.displacement - p.displacement()) / motion.step;
+    return relative_motion(p.bench.model.system, velocity - motion.velocity) * motion.step * motion.step /
+           (motion.step + motion.step_before);
+}
+
+/// What the pseudo-time step should have been, over what it was.
+double better_step(const StepInProgress& p, const Motion& motion, const Equilibrium& moved) {
+    const double far = relative_motion(p.bench.model.system, moved.displacement - motion.start);
+    const double error = local_error(p, motion, moved) / motion.allowed(far);
+    const double order = motion.step_before > 0.0 ? 2.0 : 1.0; // of the error
+    const double by_error = std::pow(std::max(error, 1e-12), -1.0 / order);
+    return std::min(by_error, motion.control.longest / std::max(moved_by(p, moved), 1e-300));
+}
+
+/// Cuts the pseudo-time step where the first potential crack fails.
+PseudoStep cut_at_failure(StepInProgress& p, const PlacedState& placed, const Motion& motion, PseudoStep end) {
+    const double tolerance = p.goal.cracks.event_tolerance;
+    const EventGoal event{.last_without = 1.0 + tolerance, .index = 1.0 + 0.5 * tolerance, .reach = 0.5 * tolerance};
+    const auto index_at = [&](const Eigen::VectorXd& q) {
+        return largest_failure_index(p, placed.placement, motion.at, q);
+    };
+    const Eigen::VectorXd start = p.displacement();
+    return first_event(
+               event, 0.0, std::move(end), [&](const PseudoStep& step) { return index_at(step.moved.displacement); },
+               [&] { return index_at(start); },
+               [&](double share, double part, const PseudoStep& to) {
+                   return solve_step(p, placed, motion, share, start + part * (to.moved.displacement - start));
+               })
+        .found;
+}
+
+/// Moves the body to the end of a pseudo-time step.
+bool move_along(StepInProgress& p, const PlacedState& placed, Motion& motion, PseudoStep taken) {
+    const BlockSystem& system = p.bench.model.system;
+    const double length = taken.load_factor * motion.step;
+    const Eigen::VectorXd velocity = (taken.moved.displacement - p.displacement()) / length;
+    const double before = relative_motion(system, motion.velocity);
+    const double now = relative_motion(system, velocity);
+    motion.way_left = now < before ? now * length * now / (before - now) : unlimited; // it falls by the same factor
+    add_work(motion, taken.moved.displacement - p.displacement(), driving_forces(system, velocity));
+    motion.velocity = velocity;
+    motion.step_before = length;
+    motion.last = std::move(taken.moved);
+    if (!move_body(p, placed, motion.last)) return false;
+    motion.largest = std::max(motion.largest, relative_motion(system, p.displacement() - motion.start));
+    return true;
+}
+
+/// Under a given stress or weight a body that lost its balance may fall for ever.
+bool is_falling(const StepInProgress& p) {
+    const BlockSystem& system = p.bench.model.system;
+    if (!is_loaded_by_stress(p.bench.stage(p.from))) return false;
+    const Eigen::VectorXd moved = p.displacement() - p.from.body.displacement;
+    for (int b = 0; b < system.n_blocks(); ++b) {
+        const double far = collapse_motion * motion_scale(system, system.blocks[b]);
+        if (moved.segment<2>(n_block_unknowns * b).norm() > far) return true;
+    }
+    return false;
+}
+
+void place_again(StepInProgress& p, PlacedState& placed, Motion& motion) {
+    if (relative_motion(p.bench.model.system, p.displacement() - motion.detected) > detection_motion)
+        return detect_anew(p, placed, motion);
+    renew(p, placed);
+}
+
+/// The equilibrium that the motion is about to come to, where an ordinary solve finds it.
+std::optional<Equilibrium> find_end(StepInProgress& p, PlacedState& placed, Motion& motion) {
+    const bool is_near = motion.way_left <= motion.allowed(0.0) && motion.step > tries_apart * motion.tried &&
+                         motion.step * mass_coefficient(p.bench.model, 1.0) >= shortest_last;
+    if (!is_near) return std::nullopt;
+    motion.tried = motion.step;
+    if (motion.detected != p.displacement()) detect_anew(p, placed, motion);
+    Equilibrium found = find_at(p, placed, motion.at.load_factor, p.displacement());
+    if (!found.balanced || moved_by(p, found) > far_from_expected * motion.allowed(0.0)) return std::nullopt;
+    return found;
+}
+
+} // namespace
+
+Motion begin_motion(const StepInProgress& p, double load_factor, const MotionControl& control) {
+    const Model& model = p.bench.model;
+    const double viscosity = p.bench.solver.viscosity;
+    Motion motion{.at = p.loads_at(load_factor), .control = control};
+    motion.first = first_step * model.system.spacing * model.system.spacing / model.effective_modulus;
+    motion.ordinary = 1.0 / mass_coefficient(model, viscosity > 0.0 ? viscosity : SolverOptions{}.viscosity);
+    motion.step = motion.first;
+    motion.start = motion.detected = motion.early = p.displacement();
+    motion.velocity.setZero(motion.start.size());
+    motion.last.load_factor = load_factor;
+    motion.last.strength_factor = motion.at.strength_factor;
+    return motion;
+}
+
+void restart(Motion& motion) {
+    motion.step = std::min(motion.step, motion.first);
+    motion.velocity.setZero();
+    motion.driving.resize(0);
+    motion.step_before = motion.tried = 0.0;
+    motion.way_left = unlimited;
+}
+
+PseudoStep solve_step(StepInProgress& p, const PlacedState& placed, const Motion& motion, double share,
+                      const Eigen::VectorXd& guess) {
+    const auto& [model, cracks, solver, loads, search, journal, stop] = p.bench;
+    if (stop) throw Interrupted{};
+    const double eta = 1.0 / (share * motion.step);
+    const EquilibriumProblem problem{loaded_body(model, placed.placement, motion.at),
+                                     std::vector<double>(model.system.blocks.size(), eta), 0.0, p.displacement()};
+    PseudoStep step{.load_factor = share};
+    Equilibrium& moved = step.moved;
+    moved = search.move_on(problem, guess, p.goal.balance, p.step.end.body.contacts.empty());
+    moved.load_factor = motion.at.load_factor;
+    moved.strength_factor = motion.at.strength_factor;
+    journal.report().costs.open_close_iterations += moved.iterations;
+    p.step.worst_block = moved.worst_block;
+    journal.progress(p.step.end, p.step.row, motion.at.load_factor, journal.report().costs.open_close_iterations);
+    step.balanced = moved.converged() || moved.summary.termination == Termination::relaxed ||
+                    moved.summary.residual_ratio <= solver.tolerance; // a single small block, on the way
+    return step;
+}
+
+double moved_by(const StepInProgress& p, const Equilibrium& moved) {
+    return relative_motion(p.bench.model.system, moved.displacement - p.displacement());
+}
+
+Eigen::VectorXd driving_forces(const BlockSystem& system, const Eigen::VectorXd& velocity) {
+    Eigen::VectorXd forces(velocity.size());
+    for (int b = 0; b < system.n_blocks(); ++b) {
+        const auto rows = Eigen::seqN(n_block_unknowns * b, n_block_unknowns);
+        forces(rows) = mass_matrix(system.blocks[b], 0.0) * velocity(rows);
+    }
+    return forces;
+}
+
+void add_work(Motion& motion, const Eigen::VectorXd& moved, Eigen::VectorXd after) {
+    const bool changed = motion.driving.size() == 0;
+    motion.released += 0.5 * ((changed ? after : motion.driving) + after).dot(moved);
+    motion.driving = std::move(after);
+}
+
+void detect_anew(StepInProgress& p, PlacedState& placed, Motion& motion) {
+    placed = place(p);
+    motion.detected = p.displacement();
+}
+
+void touch_anew(const StepInProgress& p, Motion& motion) { motion.at = p.loads_at(motion.at.load_factor); }
+
+bool checks_events(const StepGoal& goal) { return goal.checks_cracks && goal.cracks.update == CrackUpdate::event; }
+
+void break_there(StepInProgress& p, PlacedState& placed, Motion& motion) {
+    touch_anew(p, motion);
+    if (!checks_events(p.goal) || !break_at(p, placed, motion.at)) return;
+    detect_anew(p, placed, motion);
+    restart(motion);
+}
+
+std::optional<Equilibrium> take_pseudo_step(StepInProgress& p, PlacedState& placed, Motion& motion) {
+    touch_anew(p, motion);
+    PseudoStep next = solve_step(p, placed, motion, 1.0, p.displacement() + motion.step * motion.velocity);
+    if (!next.balanced) {
+        motion.step *= largest_cut;
+        if (motion.step > least_step * motion.first) return std::nullopt;
+        fail(p, next.moved, next.moved.summary.residual_ratio, FailureKind::no_equilibrium);
+        return std::move(next.moved);
+    }
+    const double better = better_step(p, motion, next.moved);
+    if (better < 1.0 && motion.step > at_once * motion.first) {
+        motion.step *= std::clamp(caution * better, largest_cut, least_cut);
+        return std::nullopt;
+    }
+    if (checks_events(p.goal)) next = cut_at_failure(p, placed, motion, std::move(next));
+    Equilibrium& moved = next.moved;
+    moved.verdict =
+        judge_blocks(moved.blocks, motion.last.blocks.left.empty() ? nullptr : &motion.last.blocks, p.goal.balance);
+    moved.balanced = moved.verdict.balanced() && moved.viscous_share <= p.goal.balance.share;
+    if (moved.balanced && next.load_factor * motion.step >= motion.ordinary) return std::move(moved);
+    if (!move_along(p, placed, motion, std::move(next))) return motion.last;
+    if (is_falling(p)) {
+        fail(p, motion.last, motion.last.viscous_share, FailureKind::falling);
+        p.step.failure->moving = moving_on(p, motion.early, std::move(p.step.failure->moving));
+        return motion.last;
+    }
+    if (motion.largest < 0.5 * collapse_motion) motion.early = p.displacement();
+    place_again(p, placed, motion);
+    motion.step = std::min(motion.step * std::clamp(caution * better, largest_cut, largest_growth),
+                           longest_step * motion.ordinary);
+    break_there(p, placed, motion);
+    return find_end(p, placed, motion);
+}
+
+} // namespace kluft
