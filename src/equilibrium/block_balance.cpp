@@ -17,6 +17,8 @@ namespace {
 constexpr double least_progress = 0.7; ///< of what is left over, from one solve to the next: else the block is moving
 constexpr double least_turn = 0.1; ///< moment over sqrt(area) and force: a block turns too, as one that topples does
 constexpr double much_more = 3.0;
+constexpr double balanced_loads =
+    1e-3; ///< resultant of the loads on a block over the sum of their magnitudes: less is none
 constexpr double harmless_share =
     0.1; ///< of the largest share: what a block without loads may leave of forces around it
 
@@ -140,7 +142,8 @@ void keep_below_neighbours(const std::vector<Meeting>& meetings, OwnForces& forc
 
 OwnForces own_forces(const LoadedBody& body, const Eigen::VectorXd& q, const std::vector<Meeting>& meetings) {
     const auto n = static_cast<std::size_t>(body.system->n_blocks());
-    OwnForces result{load_magnitudes(body, q), {}, std::vector<double>(n, 0.0), std::vector<char>(n, 0)};
+    OwnForces result{driving_loads(body, q), {}, std::vector<double>(n, 0.0), std::vector<char>(n, 0)};
+    const std::vector<double> magnitudes = load_magnitudes(body, q);
     std::vector<double> of_contacts(n, 0.0);
     std::vector<std::pair<int, int>> pairs;
     const auto roundoff_of = [](double stiffness, double moved) {
@@ -162,8 +165,10 @@ OwnForces own_forces(const LoadedBody& body, const Eigen::VectorXd& q, const std
         const ElasticModuli& moduli = (*body.moduli)[body.system->blocks[b].material];
         result.roundoff[b] =
             std::max(result.roundoff[b], roundoff_of(2.0 * moduli.mu + moduli.lambda, motion(static_cast<int>(b))));
-        result.loaded[b] = result.own[b] > 0.0;
-        if (!result.loaded[b]) result.own[b] = of_contacts[b];
+        result.loaded[b] = result.own[b] > balanced_loads * magnitudes[b];
+        if (result.loaded[b]) continue;
+        result.own[b] = of_contacts[b];
+        if (of_contacts[b] == 0.0) result.own[b] = magnitudes[b];
     }
     keep_below_neighbours(meetings, result);
     result.around = result.own;

@@ -1,6 +1,8 @@
 #include "kluft/loading/boundary_geometry.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "kluft/kinematics/affine.hpp"
 
@@ -8,11 +10,45 @@ namespace kluft {
 
 namespace {
 
-template <typename Visit> void for_each_edge(const BlockSystem& system, int boundary, Visit visit) {
-    for (const auto& [b, e] : system.boundaries[boundary].edges) {
+using Edges = std::vector<BoundaryEdge>;
+
+template <typename Visit> void for_each_edge(const BlockSystem& system, const Edges& edges, Visit visit) {
+    for (const auto& [b, e] : edges) {
         const Edge& edge = system.blocks[b].edges[e];
         visit(b, edge_start(system, edge), edge_end(system, edge));
     }
+}
+
+template <typename Visit> void for_each_edge(const BlockSystem& system, int boundary, Visit visit) {
+    for_each_edge(system, system.boundaries[boundary].edges, visit);
+}
+
+Vec2 mean_position(const BlockSystem& system, const Edges& edges) {
+    Vec2 sum = Vec2::Zero();
+    double length = 0.0;
+    for_each_edge(system, edges, [&](int, const Vec2& start, const Vec2& end) {
+        sum += 0.5 * (end - start).norm() * (start + end);
+        length += (end - start).norm();
+    });
+    return length > 0.0 ? Vec2(sum / length) : sum;
+}
+
+constexpr double same_plane = 1e-9; ///< of the body's larger side
+
+/// Whether a line from a point along a direction meets the body farther on than a distance.
+bool meets_body(const BlockSystem& system, const Vec2& from, const Vec2& direction, double distance) {
+    const Vec2 across = right_normal(direction);
+    for (const Block& block : system.blocks) {
+        for (const Edge& edge : block.edges) {
+            const Vec2 start = edge_start(system, edge) - from;
+            const Vec2 end = edge_end(system, edge) - from;
+            const double a = across.dot(start);
+            const double b = across.dot(end);
+            if ((a < 0.0) == (b < 0.0)) continue;
+            if (direction.dot(start + a / (a - b) * (end - start)) > distance) return true;
+        }
+    }
+    return false;
 }
 
 } // namespace
@@ -48,13 +84,7 @@ int opposite_boundary(const BlockSystem& system, int boundary) {
 }
 
 Vec2 mean_position(const BlockSystem& system, int boundary) {
-    Vec2 sum = Vec2::Zero();
-    double length = 0.0;
-    for_each_edge(system, boundary, [&](int, const Vec2& start, const Vec2& end) {
-        sum += 0.5 * (end - start).norm() * (start + end);
-        length += (end - start).norm();
-    });
-    return length > 0.0 ? Vec2(sum / length) : sum;
+    return mean_position(system, system.boundaries[boundary].edges);
 }
 
 Vec2 mean_displacement(const BlockSystem& system, const Eigen::VectorXd& q, int boundary) {
@@ -88,21 +118,53 @@ std::vector<int> lateral_boundaries(const BlockSystem& system, int boundary) {
     return result;
 }
 
+std::vector<BoundaryEdge> outer_edges(const BlockSystem& system, int boundary) {
+    const Vec2 normal = boundary_frame(system, boundary).normal;
+    double outermost = -std::numeric_limits<double>::infinity();
+    for_each_edge(system, boundary, [&](int, const Vec2& start, const Vec2& end) {
+        outermost = std::max({outermost, normal.dot(start), normal.dot(end)});
+    });
+    const double near = same_plane * (system.upper - system.lower).maxCoeff();
+    std::vector<BoundaryEdge> outer;
+    for (const auto& [b, e] : system.boundaries[boundary].edges) {
+        const Edge& edge = system.blocks[b].edges[e];
+        const Vec2 middle = 0.5 * (edge_start(system, edge) + edge_end(system, edge));
+        if (normal.dot(middle) >= outermost - near || !meets_body(system, middle, normal, near))
+            outer.push_back({b, e});
+    }
+    return outer;
+}
+
+double unevenness(const BlockSystem& system, int boundary) {
+    const Vec2 normal = boundary_frame(system, boundary).normal;
+    double least = std::numeric_limits<double>::infinity();
+    double most = -least;
+    for (const auto& [b, e] : outer_edges(system, boundary)) {
+        const Edge& edge = system.blocks[b].edges[e];
+        for (const Vec2& at : {edge_start(system, edge), edge_end(system, edge)}) {
+            least = std::min(least, normal.dot(at));
+            most = std::max(most, normal.dot(at));
+        }
+    }
+    return std::max(0.0, most - least);
+}
+
 PlatenForce width_across(const BlockSystem& system, int boundary) {
     PlatenForce force;
     force.widening.setZero(n_block_unknowns * system.n_blocks());
-    force.width = boundary_frame(system, boundary).length;
-    const auto sides = lateral_boundaries(system, boundary);
-    if (sides.empty()) return force;
     const Vec2 normal = boundary_frame(system, boundary).normal;
     const Vec2 lateral(normal.y(), -normal.x());
-    force.width = std::abs(lateral.dot(mean_position(system, sides[0]) - mean_position(system, sides[1])));
+    for_each_edge(system, outer_edges(system, boundary),
+                  [&](int, const Vec2& start, const Vec2& end) { force.width += std::abs(lateral.dot(end - start)); });
+    const auto sides = lateral_boundaries(system, boundary);
+    if (sides.empty()) return force;
+    const double apart = std::abs(lateral.dot(mean_position(system, sides[0]) - mean_position(system, sides[1])));
     for (const int i : sides) {
         const double side = i == sides.front() ? 1.0 : -1.0;
         const double length = boundary_frame(system, i).length;
         for_each_edge(system, i, [&](int b, const Vec2& start, const Vec2& end) {
             const Vec2 xi = block_coordinates(system.blocks[b], 0.5 * (start + end));
-            const double share = side * (end - start).norm() / length;
+            const double share = side * (force.width / apart) * (end - start).norm() / length;
             force.widening.segment<n_block_unknowns>(n_block_unknowns * b) += share * displacement_row(lateral, xi);
         });
     }
@@ -111,8 +173,9 @@ PlatenForce width_across(const BlockSystem& system, int boundary) {
 
 double distance_across(const BlockSystem& system, int boundary) {
     const int opposite = opposite_boundary(system, boundary);
-    const Vec2 base = opposite >= 0 ? mean_position(system, opposite) : system.lower;
-    return std::abs(boundary_frame(system, boundary).normal.dot(mean_position(system, boundary) - base));
+    const Vec2 base = opposite >= 0 ? mean_position(system, outer_edges(system, opposite)) : system.lower;
+    const Vec2 place = mean_position(system, outer_edges(system, boundary));
+    return std::abs(boundary_frame(system, boundary).normal.dot(place - base));
 }
 
 } // namespace kluft

@@ -131,6 +131,15 @@ std::vector<double> load_magnitudes(const LoadedBody& body, const Eigen::VectorX
     return result;
 }
 
+std::vector<double> driving_loads(const LoadedBody& body, const Eigen::VectorXd& q) {
+    std::vector<Vec2> on_surface(body.system->blocks.size(), Vec2::Zero());
+    for_each_surface_load(body, q, [&](int block, const Vec2&, const Vec2& force) { on_surface[block] += force; });
+    std::vector<double> result;
+    for (int b = 0; b < body.system->n_blocks(); ++b)
+        result.push_back(weight_of(body, b).norm() + on_surface[b].norm());
+    return result;
+}
+
 ContactPiece piece_at(const InterfaceLaw& law, const ContactPoint& point, const Eigen::VectorXd& q) {
     if (law.cohesion == 0.0) return {};
     return {.from = point.piece.from, .to = point.piece.to, .tilt = tilt(point, q)};

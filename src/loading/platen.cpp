@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "kluft/kinematics/affine.hpp"
+#include "kluft/loading/boundary_geometry.hpp"
 #include "kluft/loading/loaded_body.hpp"
 
 namespace kluft {
@@ -28,10 +29,10 @@ Vec2 displacement_of(const BlockSystem& system, const PlatenPoint& point, const 
     return displacement_at(q, point.block, block_coordinates_of(system, point));
 }
 
-/// Calls visit(block, vertex) for each vertex of each block on a boundary once.
+/// Calls visit(block, vertex) for each vertex of each block on the outer edges of a boundary once.
 template <class Visit> void for_each_vertex(const BlockSystem& system, int boundary, Visit visit) {
     std::set<std::pair<int, int>> done;
-    for (const auto& [b, e] : system.boundaries[boundary].edges) {
+    for (const auto& [b, e] : outer_edges(system, boundary)) {
         if (system.blocks[b].fixed) continue;
         const Edge& edge = system.blocks[b].edges[e];
         for (const int vertex : {edge.start, edge.end})
@@ -294,6 +295,48 @@ bool update_platen_points(const BlockSystem& system, const Eigen::VectorXd& q, c
         if (was_open) open_third(system, forces.pressing, i, loads.platen_points);
     }
     return changed;
+}
+
+double largest_pull(const Eigen::VectorXd& residual, const Loads& loads) {
+    const PointForces forces = forces_on_points(residual, loads);
+    double pull = 0.0;
+    for (std::size_t i = 0; i < loads.platen_points.size(); ++i) {
+        if (!platen_on(loads.platens, loads.platen_points[i].boundary)->glued)
+            pull = std::max(pull, -forces.pressing[i]);
+    }
+    return pull > 0.0 ? pull / forces.largest : 0.0;
+}
+
+void meet_anew(const BlockSystem& system, const Platen& platen, const Eigen::VectorXd& q,
+               std::vector<PlatenPoint>& points) {
+    const auto gap = [&](const PlatenPoint& point) {
+        return point.reach - platen.normal.dot(displacement_of(system, point, q));
+    };
+    const auto is_of_platen = [&](const PlatenPoint& point) {
+        return point.boundary == platen.boundary && point.contact != PlatenContact::beyond;
+    };
+    const auto stick_or_slide = [&](PlatenPoint& point) {
+        const bool slides = platen.tan_friction == 0.0;
+        const bool goes_on = !slides && std::isfinite(platen.tan_friction) && touches(point.contact);
+        if (goes_on) return;
+        if (slides != (point.contact == PlatenContact::sliding))
+            point.along = platen.tangent().dot(displacement_of(system, point, q));
+        point.contact = slides ? PlatenContact::sliding : PlatenContact::sticking;
+        point.friction = 0.0;
+    };
+    double least_gap = std::numeric_limits<double>::infinity();
+    for (PlatenPoint& point : points) {
+        if (!is_of_platen(point)) continue;
+        least_gap = std::min(least_gap, gap(point));
+        if (touches(point.contact)) stick_or_slide(point);
+    }
+    if (platen.rate == 0.0 || touching_points(platen, points) > 0) return;
+    const double shortest = least_penetration * q.lpNorm<Eigen::Infinity>();
+    for (PlatenPoint& point : points) {
+        if (point.boundary != platen.boundary) continue;
+        point.reach -= least_gap;
+        if (is_of_platen(point) && gap(point) <= shortest) stick_or_slide(point);
+    }
 }
 
 std::vector<PlatenFace> faces_of(const BlockSystem& system, const Loads& loads, const Eigen::VectorXd& q) {

@@ -541,8 +541,10 @@ std::vector<KeyRule> loading_rules() {
          .doc = "[fx, fy] at the end of the stage, per metre of thickness."},
         {.path = "stages.#.displacement",
          .type = KeyType::mapping,
-         .doc = "A platen moves a boundary; the opposite one rests on a fixed platen. One of `displacement`, `strain` "
-                "and `stress`."},
+         .doc =
+             "A platen moves a boundary; the opposite one rests on a fixed platen. One of `displacement`, `strain` "
+             "and `stress`. In a later stage with none of them the mean stress on each of both boundaries acts on as a "
+             "pressure, and goes on doing so until a stage changes it."},
         {.path = "stages.#.displacement.boundary", .type = KeyType::text, .required = true, .doc = "What is moved."},
         {.path = "stages.#.displacement.value",
          .type = KeyType::number,
@@ -570,7 +572,9 @@ std::vector<KeyRule> loading_rules() {
          .type = KeyType::number,
          .measure = Measure::stress,
          .required = true,
-         .doc = "Mean stress on the platen at the end of the stage."},
+         .doc = "Stress on the platen at the end of the stage: its force over the width of the sides that it is laid "
+                "on, as wide as they are by "
+                "then."},
         {.path = "stages.#.stress.glued",
          .type = KeyType::boolean,
          .fallback = "false",
@@ -579,13 +583,15 @@ std::vector<KeyRule> loading_rules() {
          .type = KeyType::choice_or_mapping,
          .choices = {"smooth", "rough"},
          .fallback = "smooth",
-         .doc =
-             "Platens are rigid half-planes that the body touches and leaves and that no block enters. `smooth` ones "
-             "leave "
-             "the tangential motion free, to `rough` ones the body sticks where it touches them, and on those with a "
-             "friction_angle it slides by Coulomb's law. The platen opposite to the moved one is rough where its "
-             "boundary has a `fixed` support, and one vertex near its middle does not move along it if it is smooth "
-             "and has no `smooth` support."},
+         .doc = "Platens are rigid half-planes that the body touches and leaves and that no block enters. They are "
+                "laid on "
+                "the sides of their boundary as these lie at the start, even or not, but on none that has the body "
+                "before it, as "
+                "in an opening. `smooth` ones leave the tangential motion free, to `rough` ones the body sticks where "
+                "it touches them, and on those with a "
+                "friction_angle it slides by Coulomb's law. The platen opposite to the moved one is rough where its "
+                "boundary has a `fixed` support, and one vertex near its middle does not move along it if it is smooth "
+                "and has no `smooth` support."},
         {.path = "stages.#.platens.friction_angle",
          .type = KeyType::number,
          .measure = Measure::angle,
@@ -598,7 +604,8 @@ std::vector<KeyRule> loading_rules() {
                 "potential cracks, are divided by a factor that grows over the steps of the stage. Where a step finds "
                 "no equilibrium, the factor between the last one that stands and the first one that does not is found "
                 "by halving, and the run ends (`collapsed`, exit 0) with `factor_of_safety` in summary.json: null, "
-                "with a warning, if the body stands at `to`. Tensile strengths stay; dilation is cut to the friction "
+                "with a warning, if the body stands at `to`; a stage after it has the full strengths again. Tensile "
+                "strengths stay; dilation is cut to the friction "
                 "that is left. Not in the first stage, and for `integrator: implicit` only. `solver.balance` is at "
                 "most a tenth, `solver.tolerance` a hundredth of its tolerance here."},
         {.path = "stages.#.strength_reduction.from",

@@ -67,15 +67,22 @@ void EquilibriumSearch::order_for(std::vector<std::pair<int, int>> near_pairs) {
 
 /// Repeats solves with other points on the platens until these agree with what is found. A body that was held by its
 /// platens alone and that they have left has the mass-like term to hold it, from where it was.
-template <class Solve> Equilibrium EquilibriumSearch::find_touching(const EquilibriumProblem& problem, Solve solve) {
+template <class Solve>
+Equilibrium EquilibriumSearch::find_touching(const EquilibriumProblem& problem, Aim aim, const BlockGoal& balance,
+                                             Solve solve) {
     if (problem.body.loads->platens.empty()) return solve(problem, nullptr);
     EquilibriumProblem held = problem;
     Loads loads = *problem.body.loads;
     held.body.loads = &loads;
+    const auto on_platens = [&](const Eigen::VectorXd& q) { // the mass-like term is none of an equilibrium's forces
+        EquilibriumProblem acting = held;
+        if (aim == Aim::equilibrium) acting.eta.clear();
+        return forces(acting, q);
+    };
     Equilibrium found = solve(held, nullptr);
     bool changed = false;
     for (int round = 0; is_on_the_way(found); ++round) {
-        if (!update_platen_points(model_.system, found.displacement, forces(held, found.displacement),
+        if (!update_platen_points(model_.system, found.displacement, on_platens(found.displacement),
                                   round < rounds_that_open, loads))
             break;
         changed = true;
@@ -89,15 +96,18 @@ template <class Solve> Equilibrium EquilibriumSearch::find_touching(const Equili
         found.balanced = found.balanced && round < max_platen_rounds;
         if (round == max_platen_rounds) break;
     }
+    if (changed && is_on_the_way(found))
+        found.balanced = found.balanced && largest_pull(on_platens(found.displacement), loads) <= balance.share;
     if (changed) found.hold = {std::move(loads.platen_points), std::move(loads.constraints), std::move(loads.friction)};
     return found;
 }
 
 Equilibrium EquilibriumSearch::find(const EquilibriumProblem& problem, const Eigen::VectorXd& guess,
                                     const BlockGoal& balance, bool unloaded) {
-    return find_touching(problem, [&](const EquilibriumProblem& held, const Equilibrium* last) {
-        return find_held(held, last != nullptr ? last->displacement : guess, balance, unloaded && last == nullptr);
-    });
+    return find_touching(
+        problem, Aim::equilibrium, balance, [&](const EquilibriumProblem& held, const Equilibrium* last) {
+            return find_held(held, last != nullptr ? last->displacement : guess, balance, unloaded && last == nullptr);
+        });
 }
 
 Equilibrium EquilibriumSearch::find_held(EquilibriumProblem problem, Eigen::VectorXd guess, const BlockGoal& balance,
@@ -140,9 +150,10 @@ void EquilibriumSearch::settle(EquilibriumProblem& problem, const BlockGoal& bal
 
 Equilibrium EquilibriumSearch::move_on(const EquilibriumProblem& problem, const Eigen::VectorXd& guess,
                                        const BlockGoal& balance, bool unloaded) {
-    return find_touching(problem, [&](const EquilibriumProblem& held, const Equilibrium* last) {
-        return move_held(held, last != nullptr ? last->displacement : guess, balance, unloaded && last == nullptr);
-    });
+    return find_touching(
+        problem, Aim::relaxation, balance, [&](const EquilibriumProblem& held, const Equilibrium* last) {
+            return move_held(held, last != nullptr ? last->displacement : guess, balance, unloaded && last == nullptr);
+        });
 }
 
 Equilibrium EquilibriumSearch::move_held(const EquilibriumProblem& problem, Eigen::VectorXd guess,

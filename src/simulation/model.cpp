@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <set>
+
 #include <fmt/format.h>
 
 #include "kluft/blocks/block_search.hpp"
@@ -10,6 +12,7 @@
 #include "kluft/contact/overlap_rule.hpp"
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/kinematics/material_point.hpp"
+#include "kluft/loading/boundary_geometry.hpp"
 #include "kluft/simulation/stage_loads.hpp"
 
 namespace kluft {
@@ -19,6 +22,7 @@ namespace {
 /// Parts of the largest stress on the boundary and of the cohesion that the law is rounded over by default.
 constexpr double default_contact_rounding = 1e-3;
 constexpr double default_cohesion_onset = 0.01;
+constexpr double uneven = 0.01; ///< sides of a platen's boundary lie apart, of the body's length
 
 /// Of the rock whose weight contacts feel: of a body that is cut its box, of given blocks, which may be of very different
 /// sizes, the smallest block that is free (m).
@@ -190,6 +194,24 @@ LatticeModuli moduli_of_body(const ElasticModuli& blocks, const ModelInput& inpu
     return lattice_moduli(blocks, net, spacing, input.plane);
 }
 
+/// Platens are laid on what they press as it lies, which a gap to some of it may not mean.
+void warn_of_uneven_platens(Model& model) {
+    std::set<int> seen;
+    for (const Stage& stage : model.loads.stages) {
+        if (!stage.motion || !seen.insert(stage.motion->boundary).second) continue;
+        const double length = distance_across(model.system, stage.motion->boundary);
+        for (const int boundary : {stage.motion->boundary, opposite_boundary(model.system, stage.motion->boundary)}) {
+            if (boundary < 0) continue;
+            const double apart = unevenness(model.system, boundary);
+            if (apart <= uneven * length) continue;
+            model.warnings.push_back(
+                fmt::format("the platen on '{}' is laid on sides that lie up to {:.3g} m apart, and presses all of "
+                            "them from the start as if it had been cast on them",
+                            model.system.boundaries[boundary].name, apart));
+        }
+    }
+}
+
 } // namespace
 
 Model build_model(BlockSystem system, const ModelInput& input) {
@@ -239,6 +261,7 @@ Model build_model(BlockSystem system, const ModelInput& input) {
         fracture_laws.push_back(&model.laws[model.fracture_law[interface.interface_type]]);
     model.overlap_points = overlap_points(system, fracture_laws);
     model.system = std::move(system);
+    warn_of_uneven_platens(model);
     refuse_contradicting_supports(model);
     return model;
 }

@@ -174,8 +174,8 @@ StageLoads::StageLoads(const Model& model, const StageStart& start, const Stage&
             append_rows(system, *platen, point, static_cast<int>(platen_points_.size()), rows);
             platen_points_.push_back(point);
         }
-        platen->face = face_of(system, *platen, platen_points_);
     }
+    place_platens(system, platen_points_);
     add_fixed_blocks(system, rows);
     constraints_ = model.kinematics == Kinematics::rigid ? Constraints(std::move(rows), system, start.displacement)
                                                          : Constraints(std::move(rows));
@@ -184,6 +184,10 @@ StageLoads::StageLoads(const Model& model, const StageStart& start, const Stage&
         const auto more = pressure_edges(system, boundary);
         edges_.insert(edges_.end(), more.begin(), more.end());
     }
+}
+
+void StageLoads::place_platens(const BlockSystem& system, const std::vector<PlatenPoint>& points) {
+    for (Platen& platen : platens_) platen.face = face_of(system, platen, points);
 }
 
 std::vector<double> StageLoads::pressures(double load_factor) const {
@@ -266,6 +270,10 @@ StageLoads enter_stage(const Model& model, State& state) {
     }
     StageLoads loads(model, state.stage_start, stage);
     if (state.at.is_at_stage_start()) lay_platens(loads, state.body.platen_points);
+    if (state.at.is_at_stage_start())
+        for (const Platen& platen : loads.platens())
+            meet_anew(model.system, platen, state.body.displacement, state.body.platen_points);
+    loads.place_platens(model.system, state.body.platen_points);
     return loads;
 }
 

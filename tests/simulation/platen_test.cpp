@@ -5,12 +5,14 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "kluft/kinematics/affine.hpp"
+#include "kluft/loading/loaded_body.hpp"
 #include "support/scene_run.hpp"
 
 namespace kluft {
@@ -176,6 +178,114 @@ TEST(Platens, MeasureTheStrain) {
     EXPECT_NEAR(run.history[9].axial_stress, 0.0, 1e-4 * stress); // back where it was laid
     EXPECT_NEAR(run.history[10].axial_strain, 5e-4, 1e-14);
     EXPECT_NEAR(run.history[10].axial_stress, 0.5 * stress, 0.002 * stress);
+}
+
+/// One elastic block of 1 m by 2 m, E 10 GPa, Poisson's ratio 0.25, plane strain; axial stress at the end (Pa).
+double pressed_twice(const std::string& first, const std::string& second) {
+    const SceneRun run = run_scene(fmt::format(R"(
+kluft: 1
+analysis: {{plane: strain}}
+materials: {{rock: {{youngs_modulus: 10 GPa, poissons_ratio: 0.25}}}}
+geometry: {{domain: {{rectangle: {{width: 1, height: 2}}}}}}
+stages:
+  - {{strain: {{boundary: top, value: 0.01 %}}, platens: {}, steps: 5}}
+  - {{strain: {{boundary: top, value: 0.01 %}}, platens: {}, steps: 5}}
+)",
+                                               first, second));
+    EXPECT_EQ(run.report.status, RunStatus::done) << run.report.diagnosis;
+    return run.history.back().axial_stress;
+}
+
+// Each half adds 0.01 % of E/(1-nu2) between smooth and of (1-nu)E/((1+nu)(1-2nu)) between rough platens; what rough ones have
+// held back goes when they become smooth.
+TEST(Platens, TakeTheFrictionOfTheirStage) {
+    const double smooth = 1e-4 * 10e9 / (1 - 0.25 * 0.25);
+    const double rough = 1e-4 * 10e9 * 0.75 / (1.25 * 0.5);
+    const double tolerance = 1e-3 * smooth; // strains of 2e-4 are finite
+    EXPECT_NEAR(pressed_twice("smooth", "smooth"), 2 * smooth, tolerance);
+    EXPECT_NEAR(pressed_twice("rough", "rough"), 2 * rough, tolerance);
+    EXPECT_NEAR(pressed_twice("rough", "smooth"), 2 * smooth, tolerance);
+    EXPECT_NEAR(pressed_twice("{friction_angle: 10}", "smooth"), 2 * smooth, tolerance);
+    EXPECT_NEAR(pressed_twice("smooth", "rough"), smooth + rough, tolerance);
+    const double once = pressed_twice("{friction_angle: 10}", "{friction_angle: 10}") / 2;
+    EXPECT_NEAR(pressed_twice("{friction_angle: 10}", "rough"), once + rough, tolerance);
+}
+
+/// Weightless blocks of 10 GPa with smooth joints under a platen of 1 MPa; vertical stress of a block (Pa).
+std::vector<double> stresses_under_platen(const std::string& blocks) {
+    const SceneRun run = run_scene(fmt::format(R"(
+kluft: 1
+materials: {{rock: {{youngs_modulus: 10 GPa, poissons_ratio: 0.25}}}}
+interfaces: {{joint: {{kind: fracture, normal_stiffness: 1e13, shear_stiffness: 1e13, friction_angle: 30}}}}
+geometry: {{blocks: [{}]}}
+stages: [{{stress: {{boundary: top, value: 1 MPa}}, steps: 2}}]
+)",
+                                               blocks));
+    EXPECT_EQ(run.report.status, RunStatus::done) << run.report.diagnosis;
+    EXPECT_NEAR(run.history.back().axial_stress, 1e6, 2e3);
+    std::vector<double> stresses;
+    for (const Mat2& stress : block_stresses(run.model.system, run.model.moduli, run.state.body.displacement))
+        stresses.push_back(-stress(1, 1));
+    return stresses;
+}
+
+// Force over area: columns carry what the platen presses on them, pillars of two thirds of the width half as much again.
+TEST(Platens, PressOnTheOutsideOfTheBodyOverItsOwnWidth) {
+    const char* const columns =
+        "{polygon: [[0, 0], [1, 0], [1, 2], [0, 2]]}, {polygon: [[2, 0], [3, 0], [3, 2], [2, 2]]}, "
+        "{polygon: [[4, 0], [5, 0], [5, 2], [4, 2]]}";
+    for (const double stress : stresses_under_platen(columns)) EXPECT_NEAR(stress, 1e6, 2e3);
+    const auto room = stresses_under_platen(
+        "{polygon: [[0, -1], [3, -1], [3, 0], [0, 0]]}, {polygon: [[0, 0], [1, 0], [1, 2], [0, 2]]}, "
+        "{polygon: [[2, 0], [3, 0], [3, 2], [2, 2]]}, {polygon: [[0, 2], [3, 2], [3, 3], [0, 3]]}");
+    EXPECT_NEAR(room[0], 1e6, 3e3);
+    EXPECT_NEAR(room[1], 1.5e6, 3e3);
+    EXPECT_NEAR(room[2], 1.5e6, 3e3);
+    EXPECT_NEAR(room[3], 1e6, 3e3);
+}
+
+// Past the edge nothing but the platen behind it touches the block, and that does not carry it, however rough it is.
+TEST(Platens, DoNotHoldABlockInTheAir) {
+    for (const char* platens : {"smooth", "rough", "{friction_angle: 80}"}) {
+        const SceneRun run = run_scene(fmt::format(R"(
+kluft: 1
+analysis: {{gravity: 10}}
+materials: {{rock: {{density: 2500, youngs_modulus: 1 GPa, poissons_ratio: 0.2}}}}
+interfaces: {{joint: {{kind: fracture, friction_angle: 30, normal_stiffness: 10 GPa/m, shear_stiffness: 5 GPa/m}}}}
+geometry:
+  blocks:
+    - {{name: base, polygon: [[0, 0], [3, 0], [3, 1], [0, 1]], support: fixed}}
+    - {{name: pushed, polygon: [[1, 1], [2, 1], [2, 2], [1, 2]]}}
+boundaries:
+  left: {{block: pushed, facing: left}}
+  right: {{block: base, facing: right}}
+stages:
+  - {{}}
+  - {{displacement: {{boundary: left, value: 3}}, platens: {}, steps: 30}}
+)",
+                                                   platens));
+        EXPECT_NE(run.report.status, RunStatus::done) << platens;
+    }
+}
+
+// Force over area; without weight and stress the platen has left the body before.
+TEST(Platens, UnderAForceComeBackToTheBody) {
+    const SceneRun run = run_scene(R"(
+kluft: 1
+analysis: {gravity: 10}
+materials: {rock: {density: 2500, youngs_modulus: 1 GPa, poissons_ratio: 0.2}}
+interfaces: {joint: {kind: fracture, friction_angle: 30, normal_stiffness: 10 GPa/m, shear_stiffness: 5 GPa/m}}
+geometry:
+  domain: {rectangle: {width: 1, height: 2}}
+  fractures: [{trace: [[-0.1, 1], [1.1, 1]]}]
+boundaries: {bottom: {support: fixed}}
+stages:
+  - {}
+  - {strain: {boundary: top, value: -0.1 %}}
+  - {stress: {boundary: top, value: 0.1 MPa}, steps: 2}
+)");
+    EXPECT_EQ(run.report.status, RunStatus::done) << run.report.diagnosis;
+    EXPECT_NEAR(run.history.back().axial_stress, 0.1e6, 1e2);
 }
 
 } // namespace

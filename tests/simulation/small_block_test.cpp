@@ -76,5 +76,39 @@ INSTANTIATE_TEST_SUITE_P(BesideBlocksOf, SmallBlock,
                          ::testing::Values(small, 10.0 * small, 100.0 * small, 1000.0 * small),
                          [](const auto& info) { return fmt::format("{:.0f}_times_its_size", info.param / small); });
 
+/// A block on a plane of 30 degrees, whose ends are pressed along the plane. The plane is level and the weight leans.
+SceneRun squeezed(double pressure, double friction_angle, const std::string& more_stages = "") {
+    return run_scene(fmt::format(R"(
+kluft: 1
+analysis: {{plane: strain, gravity: [5, -8.660254037844386]}}
+materials: {{rock: {{density: 2500, youngs_modulus: 50 GPa, poissons_ratio: 0.25}}}}
+interfaces: {{joint: {{kind: fracture, normal_stiffness: 2e10, shear_stiffness: 1e10, friction_angle: {}}}}}
+geometry:
+  blocks:
+    - {{name: base, polygon: [[-5, -10], [15, -10], [15, 0], [-5, 0]]}}
+    - {{name: squeezed, polygon: [[0, 0], [1, 0], [1, 1], [0, 1]]}}
+boundaries:
+  below: {{block: base, facing: bottom, support: fixed}}
+  left: {{block: squeezed, facing: left}}
+  right: {{block: squeezed, facing: right}}
+stages: [{{pressure: {{left: {}, right: {}}}, steps: 1}}{}]
+)",
+                                 friction_angle, pressure, pressure, more_stages));
+}
+
+// Pressures that balance each other hide no fall: F = tan phi/tan dip.
+TEST(SqueezedBlock, SlidesAsWithoutThePressuresThatBalanceEachOther) {
+    for (const double pressure : {0.0, 1e6, 1e7, 1e8}) {
+        EXPECT_EQ(squeezed(pressure, 5).report.status, RunStatus::no_equilibrium) << pressure;
+        EXPECT_EQ(squeezed(pressure, 29).report.status, RunStatus::no_equilibrium) << pressure;
+        EXPECT_TRUE(stands(squeezed(pressure, 31))) << pressure;
+        const SceneRun run = squeezed(
+            pressure, 40, ", {name: reduce, strength_reduction: {from: 1, to: 2, tolerance: 0.001}, steps: 10}");
+        ASSERT_TRUE(run.report.results.factor_of_safety) << pressure;
+        const double expected = std::tan(40.0 * std::numbers::pi / 180.0) * std::sqrt(3.0);
+        EXPECT_NEAR(*run.report.results.factor_of_safety, expected, 1e-3 * expected) << pressure;
+    }
+}
+
 } // namespace
 } // namespace kluft

@@ -27,13 +27,21 @@ struct BoundaryFrame {
 /// Mean displacement of a boundary, weighted by length (m).
 [[nodiscard]] Vec2 mean_displacement(const BlockSystem& system, const Eigen::VectorXd& q, int boundary);
 
-/// The distance of a boundary from the opposite one along its normal; from the lower corner of the body without one (m).
+/// The distance of the outer edges of a boundary from those of the opposite one along its normal; from the lower corner of the body without one (m).
 [[nodiscard]] double distance_across(const BlockSystem& system, int boundary);
 
 /// The two boundaries across `boundary`, on the side of its normal turned clockwise first; empty if there are not two.
 [[nodiscard]] std::vector<int> lateral_boundaries(const BlockSystem& system, int boundary);
 
-/// The mean width between the lateral boundaries, for a platen on `boundary`: its length where there are none.
+/// Edges of a boundary that a platen on it can be laid on: no part of the body lies in front of them, as it does of the
+/// floor and the roof of an opening.
+[[nodiscard]] std::vector<BoundaryEdge> outer_edges(const BlockSystem& system, int boundary);
+
+/// How far these lie apart along the normal of the boundary (m).
+[[nodiscard]] double unevenness(const BlockSystem& system, int boundary);
+
+/// For a platen on `boundary`: the width of its outer edges, and how it grows with the mean distance of the lateral boundaries, in
+/// proportion to it.
 [[nodiscard]] PlatenForce width_across(const BlockSystem& system, int boundary);
 
 } // namespace kluft

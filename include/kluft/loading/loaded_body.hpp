@@ -74,6 +74,8 @@ void external_forces(const LoadedBody& body, const Eigen::VectorXd& q, Eigen::Ve
 
 /// The sum of the magnitudes of weight, pressures and point loads at q, per block (N/m).
 [[nodiscard]] std::vector<double> load_magnitudes(const LoadedBody& body, const Eigen::VectorXd& q);
+/// The weight and the magnitude of the resultant of pressures and point loads at q, per block (N/m).
+[[nodiscard]] std::vector<double> driving_loads(const LoadedBody& body, const Eigen::VectorXd& q);
 
 struct GapAndSlip {
     double gap = 0.0;  ///< total (m)

@@ -69,7 +69,8 @@ public:
     void add_costs(RunCosts& costs) const;
 
 private:
-    template <class Solve> Equilibrium find_touching(const EquilibriumProblem& problem, Solve solve);
+    template <class Solve>
+    Equilibrium find_touching(const EquilibriumProblem& problem, Aim aim, const BlockGoal& balance, Solve solve);
     Equilibrium find_held(EquilibriumProblem problem, Eigen::VectorXd guess, const BlockGoal& balance, bool unloaded);
     Equilibrium move_held(const EquilibriumProblem& problem, Eigen::VectorXd guess, const BlockGoal& balance,
                           bool unloaded);

@@ -25,6 +25,8 @@ public:
     [[nodiscard]] const std::vector<Platen>& platens() const { return platens_; }
     /// Those that the platens are laid on at the start of the stage: all of their boundaries, touching.
     [[nodiscard]] const std::vector<PlatenPoint>& platen_points() const { return platen_points_; }
+    /// Puts the faces of the platens where their points are at the start of the stage.
+    void place_platens(const BlockSystem& system, const std::vector<PlatenPoint>& points);
     /// The force on a platen that is loaded by stress.
     [[nodiscard]] std::optional<PlatenForce> platen_force(double load_factor) const;
     [[nodiscard]] bool is_held(int boundary) const { return held_[boundary] != 0; }
