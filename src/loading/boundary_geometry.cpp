@@ -159,12 +159,14 @@ PlatenForce width_across(const BlockSystem& system, int boundary) {
     const auto sides = lateral_boundaries(system, boundary);
     if (sides.empty()) return force;
     const double apart = std::abs(lateral.dot(mean_position(system, sides[0]) - mean_position(system, sides[1])));
+    force.width = std::max(force.width, apart);
+    const double of_all_parts = force.width / apart; // columns side by side widen each
     for (const int i : sides) {
-        const double side = i == sides.front() ? 1.0 : -1.0;
+        const double side = i == sides.front() ? of_all_parts : -of_all_parts;
         const double length = boundary_frame(system, i).length;
         for_each_edge(system, i, [&](int b, const Vec2& start, const Vec2& end) {
             const Vec2 xi = block_coordinates(system.blocks[b], 0.5 * (start + end));
-            const double share = side * (force.width / apart) * (end - start).norm() / length;
+            const double share = side * (end - start).norm() / length;
             force.widening.segment<n_block_unknowns>(n_block_unknowns * b) += share * displacement_row(lateral, xi);
         });
     }

@@ -572,9 +572,9 @@ std::vector<KeyRule> loading_rules() {
          .type = KeyType::number,
          .measure = Measure::stress,
          .required = true,
-         .doc = "Stress on the platen at the end of the stage: its force over the width of the sides that it is laid "
-                "on, as wide as they are by "
-                "then."},
+         .doc = "Stress on the platen at the end of the stage: its force over the current mean width of the body, or "
+                "over the sides that it "
+                "is laid on where these are wider."},
         {.path = "stages.#.stress.glued",
          .type = KeyType::boolean,
          .fallback = "false",

@@ -383,9 +383,9 @@ TEST(ClosedForms, BondedJointFallsFromItsPeakToItsResidualStrengthInDirectShear)
                      "cohesion: 1 MPa, friction_angle: 30, tensile_strength: 0.5 MPa}}",
                      "bond", "none", pressed_by_1_mpa, 3e-5, 7));
     ASSERT_TRUE(stands(run)) << run.report.diagnosis;
-    double peak = 0.0; // all shear of the joint of 1 m is the push of the platen, which is 0.5 m wide
+    double peak = 0.0; // the platen's force over its joint of 1 m: all shear is the push
     for (const auto& record : run.equilibria) {
-        if (record.stage == 1) peak = std::max(peak, 0.5 * record.axial_stress);
+        if (record.stage == 1) peak = std::max(peak, record.axial_stress);
     }
     ASSERT_EQ(run.cracks.size(), 1U);
     EXPECT_EQ(run.cracks.front().mode, CrackMode::shear);

@@ -40,8 +40,8 @@ struct BoundaryFrame {
 /// How far these lie apart along the normal of the boundary (m).
 [[nodiscard]] double unevenness(const BlockSystem& system, int boundary);
 
-/// For a platen on `boundary`: the width of its outer edges, and how it grows with the mean distance of the lateral boundaries, in
-/// proportion to it.
+/// The mean width of the body under a platen on `boundary`: the mean distance of the lateral boundaries, or the width of its outer edges
+/// where that is more, as with columns side by side; it grows in proportion to the former.
 [[nodiscard]] PlatenForce width_across(const BlockSystem& system, int boundary);
 
 } // namespace kluft
