@@ -137,6 +137,11 @@ std::vector<LegendEntry> size_notes(const BlockSystem& system) {
             {fmt::format("y {:.7g} \u2026 {:.7g} m", low.y(), high.y()), {}}};
 }
 
+std::vector<LegendEntry> outside_note(int n) {
+    if (n == 0) return {};
+    return {{fmt::format("{} {} outside the picture", n, n == 1 ? "block" : "blocks"), {}}};
+}
+
 } // namespace
 
 std::string after_title(const std::vector<StepRecord>& history) {
@@ -160,6 +165,7 @@ std::string draw_blocks(const BlockSystem& system, const FieldRecord& fields, co
     constexpr double bar_height = 190.0;
     constexpr double bar_gap = 24.0;
     const Box box = box_of(after);
+    append(entries, outside_note(count_outside(box, after)));
     const PageLayout layout = page_layout(box, 2, bar_height + bar_gap + column_height(entries), {360.0, 450.0});
     return draw_picture(
         format, layout.page.x(), layout.page.y(), body_pixels_per_point(system, layout.scale), [&](Canvas& canvas) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "kluft/output/block_outline.hpp"
 
@@ -189,6 +190,24 @@ Box box_of(const DrawnBody& body) {
             box.upper = box.upper.cwiseMax(x).cwiseMin(highest);
         }
     return box;
+}
+
+int count_outside(const Box& box, const DrawnBody& body) {
+    int n = 0;
+    for (int i = 0; i < body.system.n_blocks(); ++i) {
+        const Block& block = body.system.blocks[i];
+        Vec2 lowest = Vec2::Constant(std::numeric_limits<double>::infinity());
+        Vec2 highest = -lowest;
+        for (std::size_t e = 0; e < block.edges.size(); ++e) {
+            const Vec2 x = edge_start(body.system, block.edges[e]) + body.displacement[body.first[i] + e];
+            lowest = lowest.cwiseMin(x);
+            highest = highest.cwiseMax(x);
+        }
+        const bool touches =
+            (lowest.array() <= box.upper.array()).all() && (highest.array() >= box.lower.array()).all();
+        if (!touches) ++n;
+    }
+    return n;
 }
 
 LargestMovements largest_movements(const DrawnBody& body) {

@@ -68,6 +68,9 @@ struct DrawnBody {
 /// The box of the body; a deformed one reaches beyond the box before loading by at most a fifth.
 [[nodiscard]] Box box_of(const DrawnBody& body);
 
+/// Blocks of which no part lies in the box, by the boxes around them.
+[[nodiscard]] int count_outside(const Box& box, const DrawnBody& body);
+
 /// The movements that get the thickest lines: exceeded by one crack in twenty, by one sliding fracture in twenty (m).
 struct LargestMovements {
     double cracks = 0.0;

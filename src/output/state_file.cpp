@@ -15,7 +15,7 @@ namespace kluft {
 
 namespace {
 
-constexpr int format_version = 7;
+constexpr int format_version = 8;
 constexpr std::string_view format_name = "kluft state";
 
 /// What went wrong inside HDF5; the callers add the file's name.
@@ -169,6 +169,17 @@ struct Writer {
         write_array(file, (std::string(name) + "_keys").c_str(), keys.data(), keys.size());
         write_array(file, (std::string(name) + "_numbers").c_str(), numbers.data(), numbers.size());
     }
+    /// Two integers and two numbers each.
+    void operator()(const char* name, const std::vector<MovingBlock>& v) {
+        std::vector<int> blocks;
+        std::vector<double> directions;
+        for (const auto& [block, direction, turn] : v) {
+            blocks.insert(blocks.end(), {block, turn});
+            directions.insert(directions.end(), {direction.x(), direction.y()});
+        }
+        write_array(file, (std::string(name) + "_blocks").c_str(), blocks.data(), blocks.size());
+        write_array(file, (std::string(name) + "_directions").c_str(), directions.data(), directions.size());
+    }
     void operator()(const char* name, const std::vector<std::pair<int, int>>& v) {
         std::vector<int> numbers;
         for (const auto& [a, b] : v) numbers.insert(numbers.end(), {a, b});
@@ -218,6 +229,14 @@ struct Reader {
             v[i] = {key[0],    key[1],    key[2],   key[3] != 0, static_cast<PlatenContact>(key[4]),
                     number[0], number[1], number[2]};
         }
+    }
+    void operator()(const char* name, std::vector<MovingBlock>& v) {
+        const auto blocks = read_array<int>(file, (std::string(name) + "_blocks").c_str());
+        const auto directions = read_array<double>(file, (std::string(name) + "_directions").c_str());
+        if (blocks.size() % 2 != 0 || blocks.size() != directions.size()) throw Hdf5Failure{name};
+        v.clear();
+        for (std::size_t i = 0; i < blocks.size(); i += 2)
+            v.push_back({blocks[i], Vec2(directions[i], directions[i + 1]), blocks[i + 1]});
     }
     void operator()(const char* name, std::vector<std::pair<int, int>>& v) {
         const auto numbers = read_array<int>(file, name);

@@ -45,13 +45,17 @@ public:
         has_gravity_ = has_gravity_ || stage.gravity.has_value();
         for (const auto& force : section.sections("forces")) read_force(force, stage);
         read_platen(section, stage);
+        const bool has_platen =
+            std::any_of(platen_keys.begin(), platen_keys.end(), [&](auto key) { return section.has(key); });
+        if (section.has("platens") && !has_platen)
+            context_.fail(section, "platens",
+                          "expected a moved boundary (displacement, strain or stress) in the same stage, found none; "
+                          "there are platens only in stages that move one");
         if (section.has("strength_reduction")) {
             read_strength_reduction(section, stage);
             loads_.stages.push_back(std::move(stage));
             return;
         }
-        const bool has_platen =
-            std::any_of(platen_keys.begin(), platen_keys.end(), [&](auto key) { return section.has(key); });
         const bool has_pressure = section.has("pressure") && !section.value("pressure")->items.empty();
         if (!has_gravity_ && !has_platen && !has_pressure && loads_.forces.empty() && section.node()->is_mapping())
             context_.fail(section, {},
@@ -116,8 +120,8 @@ private:
             const auto name = platen.given_text("boundary");
             const auto boundary = name ? boundary_index(platen, "boundary", *name) : std::nullopt;
             if (!boundary) continue;
-            stage.motion =
-                PlatenMotion{static_cast<PlatenControl>(i), *boundary, platen.number("value"), platen.boolean("glued")};
+            stage.motion = PlatenMotion{static_cast<PlatenControl>(i), *boundary, platen.number("value"),
+                                        platen.boolean("glued"), context_.place(platen, "boundary")};
             check_platen(platen, *name, stage);
             if (stage.motion->value < 0.0 && !stage.motion->glued && !was_moved(*boundary))
                 context_.warn(
@@ -148,7 +152,8 @@ private:
         reduction.to = section.number("to");
         reduction.tolerance = section.number("tolerance");
         if (section.has("to") && !(reduction.to > reduction.from))
-            context_.fail(section, "to", fmt::format("expected a number > from ({:g})", reduction.from));
+            context_.fail(section, "to",
+                          fmt::format("expected a number > from ({:g}), found {:g}", reduction.from, reduction.to));
         if (const SceneNode* names = section.value("interfaces"); names != nullptr && names->is_list()) {
             for (const SceneNode& name : names->items) {
                 if (!name.is_scalar()) continue;

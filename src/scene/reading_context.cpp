@@ -13,8 +13,12 @@ void ReadingContext::fail(const SceneSection& section, std::string_view key, con
 }
 
 void ReadingContext::warn(const SceneSection& section, std::string_view key, const std::string& what) {
-    warnings.push_back(fmt::format("{}: {}: {}", errors.sources().place(section.position(key)),
-                                   key.empty() ? section.path() : section.path_of(key), what));
+    warnings.push_back(fmt::format("{}: {}", place(section, key), what));
+}
+
+std::string ReadingContext::place(const SceneSection& section, std::string_view key) const {
+    return fmt::format("{}: {}", errors.sources().place(section.position(key)),
+                       key.empty() ? section.path() : section.path_of(key));
 }
 
 std::optional<int> ReadingContext::index_of(const SceneSection& section, std::string_view key, const std::string& name,

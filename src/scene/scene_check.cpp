@@ -57,8 +57,12 @@ std::string number_problem(const SceneNode& node, Measure measure, const Range& 
 std::string integer_problem(const SceneNode& node, const Range& range) {
     if (!node.is_scalar() || node.quoted) return found_text(node);
     const auto value = read_integer(node.text);
-    if (!value) return found_text(node) + number_flaw(node.text);
-    return inside(static_cast<double>(*value), range.least, range.most, range) ? std::string{} : found_text(node);
+    if (value && inside(static_cast<double>(*value), range.least, range.most, range)) return {};
+    const bool says_most = range.most < largest_integer; // what is expected names the limit (range_text)
+    const auto number = read_number(node.text);
+    if (!says_most && number && *number > range.most)
+        return fmt::format("{}, which is beyond {:.0f}", found_text(node), range.most);
+    return found_text(node) + (value ? "" : number_flaw(node.text));
 }
 
 std::string choice_problem(const SceneNode& node, const KeyRule& rule) {

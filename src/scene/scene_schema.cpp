@@ -17,8 +17,8 @@ constexpr Range positive{.least = 0.0, .open_below = true};
 constexpr Range not_negative{.least = 0.0};
 constexpr Range below_ninety{.least = 0.0, .most = 90.0, .open_above = true};
 constexpr Range between_zero_and_one{.least = 0.0, .most = 1.0, .open_below = true, .open_above = true};
-constexpr Range positive_integer{.least = 1.0, .most = 2147483647.0};
-constexpr Range natural{.least = 0.0, .most = 2147483647.0};
+constexpr Range positive_integer{.least = 1.0, .most = largest_integer};
+constexpr Range natural{.least = 0.0, .most = largest_integer};
 
 std::vector<KeyRule> analysis_rules() {
     return {
@@ -591,7 +591,7 @@ std::vector<KeyRule> loading_rules() {
                 "it touches them, and on those with a "
                 "friction_angle it slides by Coulomb's law. The platen opposite to the moved one is rough where its "
                 "boundary has a `fixed` support, and one vertex near its middle does not move along it if it is smooth "
-                "and has no `smooth` support."},
+                "and has no `smooth` support. Only in a stage that moves a boundary."},
         {.path = "stages.#.platens.friction_angle",
          .type = KeyType::number,
          .measure = Measure::angle,
@@ -855,7 +855,7 @@ std::vector<std::string> child_keys(std::string_view pattern) {
 
 std::string range_text(const Range& range, bool whole) {
     const bool below = std::isfinite(range.least);
-    const bool above = std::isfinite(range.most) && !(whole && range.most >= 2147483647.0);
+    const bool above = std::isfinite(range.most) && !(whole && range.most >= largest_integer);
     if (below && above && range.least == range.most) return " equal to " + number_text(range.least);
     if (below && above && !range.open_below && !range.open_above)
         return fmt::format(" from {} to {}", number_text(range.least), number_text(range.most));

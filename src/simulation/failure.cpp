@@ -1,5 +1,6 @@
 #include "kluft/simulation/failure.hpp"
 
+#include <cmath>
 #include <set>
 
 #include <fmt/format.h>
@@ -27,14 +28,19 @@ std::set<int> blocks_of(const std::vector<MovingBlock>& moving) {
     return blocks;
 }
 
+/// A unit vector with two digits; what is less than their last one beside its larger component is none.
+std::string direction_text(const Vec2& direction) {
+    const auto rounded = [](double component) { return std::abs(component) < 0.005 ? 0.0 : component; };
+    return fmt::format("({:.2g}, {:.2g})", rounded(direction.x()), rounded(direction.y()));
+}
+
 } // namespace
 
 std::string description(const Model& model, const std::vector<MovingBlock>& moving) {
     if (moving.empty()) return "";
     const auto& [block, direction, turn] = moving.front();
     std::string text = block_description(model.system, block);
-    text += direction.norm() > 0.0 ? fmt::format(" moves towards ({:.2g}, {:.2g})", direction.x(), direction.y())
-                                   : std::string(" turns");
+    text += direction.norm() > 0.0 ? " moves towards " + direction_text(direction) : std::string(" turns");
     if (turn != 0 && direction.norm() > 0.0) text += " and turns";
     const std::set<int> all = blocks_of(moving);
     if (all.size() > 1) text += fmt::format(", and {} more", all.size() - 1);

@@ -98,10 +98,10 @@ RunReport Journal::ended(const State& state, const StageEnd& end) const {
     const Stage& stage = model_.loads.stages[state.at.stage];
     if (!end.failure) {
         std::string why = fmt::format("stage {} ends out of balance", state.at.stage);
-        if (!end.moving.empty()) why += ": " + description(model_, end.moving);
+        if (!state.imbalance.moving.empty()) why += ": " + description(model_, state.imbalance.moving);
         why += listed(end.causes);
         RunReport report = cut_short(RunStatus::unbalanced, std::move(why));
-        report.falling = falling_blocks(model_, state, end.moving);
+        report.falling = falling_blocks(model_, state, state.imbalance.moving);
         return report;
     }
     const bool has_stood = state.at.stage > 0 || state.at.step_in_stage > 0; // through a whole load step
@@ -129,6 +129,8 @@ void commit(Step step, StepKind kind, State& state, Journal& journal) {
     if (kind.regular) ++next.at.step_in_stage;
     ++next.at.step;
     next.unbalanced_in_succession = step.balanced ? 0 : next.unbalanced_in_succession + 1;
+    next.imbalance = {};
+    if (!step.balanced) next.imbalance = {step.worst_block, step.worst_share, std::move(step.moving)};
     if (!step.balanced) ++journal.report().unbalanced_steps;
     journal.report().costs.events += step.crack_passes;
     next.costs = journal.costs();
@@ -142,9 +144,12 @@ void commit(Step step, StepKind kind, State& state, Journal& journal) {
 }
 
 StageEnd commit_balanced_part(Step step, State& state, Journal& journal) {
-    StageEnd end{.failure = step.failure, .step = state.at.step + 1};
+    const bool is_further = state.is_settled || step.end.at.load_factor > state.at.load_factor || !step.cracks.empty();
+    const bool has_part = is_further && !step.equilibria.empty();
+    // An unsettled state is the part of a load step that has failed before: its row has the number of that step.
+    StageEnd end{.failure = step.failure, .step = has_part || state.is_settled ? state.at.step + 1 : state.at.step};
     journal.warn(step, end.step);
-    if (!step.equilibria.empty()) commit(std::move(step), {.regular = false}, state, journal);
+    if (has_part) commit(std::move(step), {.regular = false}, state, journal);
     return end;
 }
 

@@ -6,6 +6,7 @@
 #include "kluft/simulation/breaking.hpp"
 #include "kluft/simulation/contact_following.hpp"
 #include "kluft/simulation/jump.hpp"
+#include "kluft/simulation/strength_reduction.hpp"
 
 namespace kluft {
 
@@ -82,17 +83,21 @@ void begin_load_step(const StepBench& bench) {
 }
 
 StageEnd commit_regular_step(const StepBench& bench, Step step, bool last_of_stage, State& state) {
-    Failure failure{.worst_block = step.worst_block,
-                    .residual_ratio = step.worst_share,
-                    .load_factor = step.in_place.at.load_factor,
-                    .strength_factor = step.in_place.at.strength_factor,
-                    .moving = step.moving};
-    StageEnd end;
-    end.forces = std::move(step.forces);
-    end.moving = step.moving;
+    Eigen::VectorXd forces = std::move(step.forces);
     commit(std::move(step), {.last_of_stage = last_of_stage}, state, bench.journal);
-    end.step = state.at.step + 1;
-    if (state.unbalanced_in_succession >= bench.solver.max_unbalanced_steps) end.failure = std::move(failure);
+    StageEnd end = end_after(bench, state);
+    end.forces = std::move(forces);
+    return end;
+}
+
+StageEnd end_after(const StepBench& bench, const State& state) {
+    StageEnd end{.step = state.at.step};
+    if (state.unbalanced_in_succession < bench.solver.max_unbalanced_steps) return end;
+    end.failure = Failure{.worst_block = state.imbalance.worst_block,
+                          .residual_ratio = state.imbalance.share,
+                          .load_factor = state.at.load_factor,
+                          .strength_factor = strength_factor(bench.model.loads, state.at.stage, state.at.load_factor),
+                          .moving = state.imbalance.moving};
     return end;
 }
 

@@ -34,9 +34,13 @@ MeasuredState measure_state(const StepBench& bench, const State& state, double l
     return result;
 }
 
-void tell_initial_state(const StepBench& bench, const State& state) {
-    const MeasuredState at_rest = measure_state(bench, state, 0.0);
-    bench.journal.begin(at_rest.measured.row, state, at_rest.in_place);
+/// Tells the state before any load; a resumed run goes on from the row of its state, which was told before.
+void begin_run(const StepBench& bench, const State& state) {
+    MeasuredState start = measure_state(bench, state, state.at.load_factor);
+    start.measured.row.step = state.at.step;
+    if (state.at.step == 0 && state.at.stage == 0)
+        return bench.journal.begin(start.measured.row, state, start.in_place);
+    bench.journal.go_on_from(std::move(start.measured.row));
 }
 
 StageLoads begin_stage(const Model& model, const SolverOptions& solver, EquilibriumSearch& search, State& state) {
@@ -54,6 +58,7 @@ StageLoads begin_stage(const Model& model, const SolverOptions& solver, Equilibr
 
 StageEnd run_stage(const StepBench& bench, State& state) {
     if (bench.stage(state).strength_reduction) return find_strength_limit(bench, state);
+    if (StageEnd end = end_after(bench, state); end.failure) return end; // the run had ended here before it was resumed
     if (bench.solver.accuracy > 0.0) return run_accurate_steps(bench, state);
     return run_fixed_steps(bench, state);
 }
@@ -69,7 +74,7 @@ std::vector<std::string> causes_of(const StepBench& bench, const State& state, c
     if (balanced) return {};
     const double load_factor = end.failure ? end.failure->load_factor : 1.0;
     const LoadsAt at = loads_at(bench, state, load_factor);
-    return likely_causes(bench.model, at, end.failure ? end.failure->moving : end.moving);
+    return likely_causes(bench.model, at, end.failure ? end.failure->moving : state.imbalance.moving);
 }
 
 /// The next stage starts from the loads at the end of this one.
@@ -104,10 +109,10 @@ RunReport run_simulation(const Model& model, const CrackOptions& cracks, const S
     Journal journal(model, state, observer, solver.accuracy > 0.0 ? 0 : number_of_steps(model), &search);
     RunReport report = report_of(journal, [&] {
         if (!state.memory.near_pairs.empty()) search.order_for(state.memory.near_pairs);
-        for (;;) {
+        for (bool begins = true;; begins = false) {
             const StageLoads loads = begin_stage(model, solver, search, state);
             const StepBench bench{model, cracks, solver, loads, search, journal, stop};
-            if (state.at.step == 0 && state.at.stage == 0) tell_initial_state(bench, state);
+            if (begins) begin_run(bench, state);
             StageEnd end = run_stage(bench, state);
             const bool last = state.at.stage + 1 == static_cast<int>(model.loads.stages.size());
             end.causes = causes_of(bench, state, end);

@@ -144,6 +144,11 @@ void lay_platens(const StageLoads& loads, std::vector<PlatenPoint>& points) {
                          [&](const PlatenPoint& point) { return !is_present(before, point.boundary); });
 }
 
+Constraints constraints_of(const Model& model, std::vector<PrescribedDisplacement> rows, const StageStart& start) {
+    return model.kinematics == Kinematics::rigid ? Constraints(std::move(rows), model.system, start.displacement)
+                                                 : Constraints(std::move(rows));
+}
+
 } // namespace
 
 StageLoads::StageLoads(const Model& model, const StageStart& start, const Stage& stage)
@@ -177,8 +182,7 @@ StageLoads::StageLoads(const Model& model, const StageStart& start, const Stage&
     }
     place_platens(system, platen_points_);
     add_fixed_blocks(system, rows);
-    constraints_ = model.kinematics == Kinematics::rigid ? Constraints(std::move(rows), system, start.displacement)
-                                                         : Constraints(std::move(rows));
+    constraints_ = constraints_of(model, std::move(rows), start);
     for (int boundary = 0; boundary < n; ++boundary) {
         if (start_pressure_[boundary] == 0.0 && end_pressure_[boundary] == 0.0) continue;
         const auto more = pressure_edges(system, boundary);
@@ -209,6 +213,26 @@ const PrescribedDisplacement* StageLoads::contradicting_row() const {
     return row < 0 ? nullptr : &constraints_.rows()[row];
 }
 
+namespace {
+
+/// Whether the rows could be met without those of a boundary.
+bool agree_without(int boundary, const Model& model, std::vector<PrescribedDisplacement> rows, const StageStart& rest) {
+    std::erase_if(rows, [&](const PrescribedDisplacement& row) { return row.boundary == boundary; });
+    return constraints_of(model, std::move(rows), rest).contradicting_row() < 0;
+}
+
+std::string shared_block_message(const Model& model, const Stage& stage, int opposite, int block) {
+    const BlockSystem& system = model.system;
+    const Vec2 at = system.origin + system.blocks[block].centroid;
+    return fmt::format(
+        "{}: expected a boundary that shares no block with '{}', which rests on the fixed platen opposite to it; found "
+        "'{}' in {}, and the block {} at ({:.6g}, {:.6g}) on both, which cannot follow the one and stay on the other",
+        stage.motion->place.empty() ? stage.name : stage.motion->place, system.boundaries[opposite].name,
+        system.boundaries[stage.motion->boundary].name, stage.name, block_label(system, block), at.x(), at.y());
+}
+
+} // namespace
+
 void refuse_contradicting_supports(const Model& model) {
     const BlockSystem& system = model.system;
     const StageStart rest{Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n_block_unknowns) * system.n_blocks()),
@@ -219,6 +243,9 @@ void refuse_contradicting_supports(const Model& model) {
         const PrescribedDisplacement* row = loads.contradicting_row();
         if (row == nullptr) continue;
         const int moved = stage.motion->boundary;
+        const int opposite = opposite_boundary(system, moved);
+        if (opposite >= 0 && agree_without(opposite, model, loads.constraints().rows(), rest))
+            throw InputError(shared_block_message(model, stage, opposite, row->block));
         std::string holding;
         for (const auto& other : loads.constraints().rows()) {
             if (other.block == row->block && other.boundary != moved && other.boundary != no_boundary)

@@ -557,6 +557,20 @@ TEST_F(CommandLine, GivenBlockThatSlidesAwayIsCalledByItsName) {
                    HasSubstr("'lower' and 'upper'"));
 }
 
+TEST_F(CommandLine, RunWithoutEquilibriumIsResumedWithTheSameVerdict) {
+    write("masonry.yaml", masonry_scene);
+    const Words words{"run", "masonry.yaml", "-o", "r", "--set", "stages.1.forces.push.force=[30 kN/m, 0]"};
+    const Result first = kluft(words);
+    EXPECT_EQ(first.code, 3);
+    const auto before = summary("r");
+    const std::string rows = content_of(path("r/history.csv"));
+    const Result resumed = kluft(with(words, {"--resume"}));
+    EXPECT_EQ(resumed.code, 3);
+    for (const char* name : {"status", "message"}) EXPECT_EQ(summary("r")[name], before[name]) << name;
+    EXPECT_EQ(summary("r")["falling_blocks"][0]["block"], "upper");
+    EXPECT_EQ(content_of(path("r/history.csv")), rows);
+}
+
 TEST_F(CommandLine, ExplicitRunWritesTheSameFilesAndItsOwnQuality) {
     write("tiny.yaml", tiny_scene);
     const std::vector<std::string> words{"run", "tiny.yaml", "-o", "r", "--set", "analysis.integrator=explicit"};

@@ -31,6 +31,7 @@ State state_of(int n_blocks) {
     state.body.contacts = {{{0, 1, 2, 3, -1}, {1.25e5, 1e-7}}, {{4, 5, 6, 7, 2}, {-0.1, 0.0}}};
     state.stage_start.boundary_pressure = {2e5, 0.0, 1.0 / 7.0};
     state.unbalanced_in_succession = 2;
+    state.imbalance = {1, 0.25, {{1, Vec2(0.6, -0.8), 0}, {0, Vec2::Zero(), -1}}};
     state.jumps = 3;
     state.memory.rate = 3.0 * state.body.displacement;
     state.memory.near_pairs = {{0, 3}, {2, 1}};
@@ -62,6 +63,7 @@ void expect_same(const State& a, const State& b) {
     EXPECT_EQ(a.is_settled, b.is_settled);
     EXPECT_EQ(a.stresses, b.stresses);
     EXPECT_EQ(a.unbalanced_in_succession, b.unbalanced_in_succession);
+    EXPECT_EQ(a.imbalance, b.imbalance);
     EXPECT_EQ(a.jumps, b.jumps);
     EXPECT_EQ(a.memory.rate, b.memory.rate);
     EXPECT_EQ(a.memory.near_pairs, b.memory.near_pairs);

@@ -171,7 +171,10 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"cracks.strength_noise=-0.01",
                 "cracks.strength_noise: expected a number >= 0 and < 0.3, found '-0.01'"},
         Refusal{"cracks.strength_seed=-1", "cracks.strength_seed: expected an integer >= 0, found '-1'"},
-        Refusal{"stages.0.steps=3000000000", "stages.0.steps: expected an integer >= 1, found '3000000000'"},
+        Refusal{"stages.0.steps=3000000000",
+                "stages.0.steps: expected an integer >= 1, found '3000000000', which is beyond 2147483647"},
+        Refusal{"stages.0.steps=99999999999999999999",
+                "stages.0.steps: expected an integer >= 1, found '99999999999999999999', which is beyond 2147483647"},
         Refusal{"stages.1.strain.value=1.5", "stages.1.strain.value: expected a number from -0.5 to 0.5, found '1.5'"},
         Refusal{"geometry.domain.rectangle.width=1e300",
                 "geometry.domain.rectangle.width: expected a number > 0 in m, found '1e300', which is beyond 1e+09 m"},
@@ -352,6 +355,21 @@ TEST(SceneErrors, AStageNeedsALoadOrGravity) {
     EXPECT_THAT(errors_in(test::short_scene,
                           {"stages=[{name: weight}]", "analysis.gravity=9.81", "materials.rock.density=2000"}),
                 IsEmpty());
+}
+
+TEST(SceneErrors, PlatensAreThoseOfAMovedBoundaryInTheSameStage) {
+    EXPECT_THAT(errors_in(test::short_scene, {"stages=[{pressure: {left: 1 kPa}, platens: rough}]"}),
+                ElementsAre(HasSubstr("stages.0.platens: expected a moved boundary (displacement, strain or stress) in "
+                                      "the same stage, found none")));
+    EXPECT_THAT(errors_with({"stages=[{pressure: {left: 1 kPa}}, {strength_reduction: {to: 2}, platens: smooth}]"}),
+                ElementsAre(HasSubstr("stages.1.platens: expected a moved boundary")));
+    EXPECT_THAT(errors_in(test::short_scene, {"stages=[{stress: {boundary: top, value: 1 kPa}, platens: rough}]"}),
+                IsEmpty());
+}
+
+TEST(SceneErrors, AStrengthReductionGoesUp) {
+    EXPECT_THAT(errors_with({"stages=[{pressure: {left: 1 kPa}}, {strength_reduction: {from: 1.5, to: 1.25}}]"}),
+                ElementsAre(HasSubstr("stages.1.strength_reduction.to: expected a number > from (1.5), found 1.25")));
 }
 
 TEST(SceneErrors, APlatenAndAPressureExcludeEachOtherOnABoundary) {

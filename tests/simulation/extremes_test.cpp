@@ -155,6 +155,38 @@ TEST(Extremes, PlatenAgainstASupportIsRefusedAndAlongItIsNot) {
     }
 }
 
+std::string refusal(const std::string& scene) {
+    try {
+        (void)build_scene_model(read_scene_text(scene, {}, "scene.yaml"));
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+// The block at a corner of a square on its tip is on an upper and on a lower side: no support of the scene holds it.
+TEST(Extremes, BlockOnTwoPlatensThatCannotFollowBothIsRefused) {
+    const std::string square = std::string(materials_and_joint) + R"(
+geometry: {domain: {polygon: [[0, -1], [1, 0], [0, 1], [-1, 0]]}, tessellation: {hexagons: {spacing: 0.15}, interface: joint}}
+stages:
+  - strain: {boundary: top, value: 0.5 %}
+    platens: rough
+)";
+    EXPECT_THAT(refusal(square), testing::AllOf(testing::StartsWith("scene.yaml:11:24: stages.0.strain.boundary: "
+                                                                    "expected a boundary that shares no block with "
+                                                                    "'bottom', which rests on the fixed platen"),
+                                                HasSubstr("found 'top' in stage 0, and the block ")));
+    const std::string rigid = std::string(materials_and_joint) + R"(
+geometry:
+  blocks: [{name: a, polygon: [[0, 0], [1, 0], [1, 1], [0, 1]]}, {name: b, polygon: [[0, 1], [1, 1], [1, 2], [0, 2]]}]
+stages: [{strain: {boundary: right, value: 0.1 %}}]
+)";
+    EXPECT_EQ(refusal(rigid), ""); // affine blocks shorten
+    std::string stiff = rigid;
+    stiff.replace(stiff.find("plane: stress"), 13, "plane: stress, kinematics: rigid");
+    EXPECT_THAT(refusal(stiff), testing::AllOf(HasSubstr("shares no block with 'left'"), HasSubstr("the block 'a'")));
+}
+
 // sigma = E strain/(1 + strain) of a bar with nu = 0 that keeps its width: P = E strain, divided by the width.
 TEST(Extremes, StressOfATinyStrainHasAllItsDigits) {
     const ElasticModuli moduli{0.0, 0.5e10};

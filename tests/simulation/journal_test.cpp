@@ -176,8 +176,10 @@ TEST(Ending, IsACollapseOnlyUnderThePlatensStressAndAfterTheFirstLoadStep) {
 
 TEST(Ending, InAStepThatIsNotBalancedIsNotDone) {
     MadeUpRun run;
-    commit(run.step_to(0.25, false), {}, run.state, run.journal);
-    const RunReport report = run.journal.ended(run.state, {.moving = {{0, Vec2(0, -1)}}});
+    Step step = run.step_to(0.25, false);
+    step.moving = {{0, Vec2(0, -1)}};
+    commit(std::move(step), {}, run.state, run.journal);
+    const RunReport report = run.journal.ended(run.state, {});
     EXPECT_EQ(report.status, RunStatus::unbalanced);
     EXPECT_THAT(report.diagnosis, StartsWith("stage 0 ends out of balance: block 0 at (0.5, 0.5)"));
     ASSERT_EQ(report.falling.size(), 1U);

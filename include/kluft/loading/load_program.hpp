@@ -19,6 +19,7 @@ struct PlatenMotion {
     double value = 0.0; ///< m (displacement), fraction of the body's length (strain) or Pa (stress), reached at the end
                         ///< of the stage, counted from the stage's start for displacement and strain
     bool glued = false; ///< both platens hold the body in tension too
+    std::string place;  ///< where the scene names the boundary, for messages; "" for a program made in code
 };
 
 /// A dead load: a force of constant direction on a material point of a block.

@@ -20,6 +20,9 @@ struct ReadingContext {
     /// Something that is accepted, but hardly meant.
     void warn(const SceneSection& section, std::string_view key, const std::string& what);
 
+    /// Where a key's value stands, or the section without it, for messages: file, line, column and the key's path.
+    [[nodiscard]] std::string place(const SceneSection& section, std::string_view key) const;
+
     /// Index of `name`; nothing (and an error at the key) if it is unknown. `what`: "a material".
     std::optional<int> index_of(const SceneSection& section, std::string_view key, const std::string& name,
                                 const std::vector<std::string>& names, const std::string& what);

@@ -35,6 +35,9 @@ struct Range {
     bool open_above = false;
 };
 
+/// Integers go up to here, which range_text does not say.
+inline constexpr double largest_integer = 2147483647.0;
+
 struct KeyRule {
     std::string_view path; ///< "materials.*.density", "stages.#.steps": '*' a name, '#' an index
     KeyType type = KeyType::text;

@@ -5,6 +5,7 @@
 #include <new>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -27,9 +28,8 @@ struct Interrupted {};
 /// How a stage ended.
 struct StageEnd {
     std::optional<Failure> failure;         ///< the run ends here
-    int step = 0;                           ///< the load step that failed or comes next, through all stages
+    int step = 0;                           ///< the load step that failed, through all stages
     std::optional<double> factor_of_safety; ///< the failure is what was looked for
-    std::vector<MovingBlock> moving;        ///< after a last load step that is not balanced
     Eigen::VectorXd forces; ///< at the end, internal - external without the supports' (N/m); empty without a load step
     std::vector<std::string> causes; ///< of an end out of balance that are likely, in words
 };
@@ -54,11 +54,13 @@ public:
     [[nodiscard]] RunCosts costs() const;
     /// Wall-clock time of the same (s).
     [[nodiscard]] double elapsed() const;
-    /// The last row that was told; of a resumed run an empty one before the first.
+    /// The last row that was told, or that a resumed run goes on from.
     [[nodiscard]] const StepRecord& last_row() const { return last_row_; }
 
     /// Tells the state before any load.
     void begin(StepRecord row, const State& state, const LoadedPlacement& in_place);
+    /// A resumed run goes on from the load step of this row, which was told before.
+    void go_on_from(StepRecord row) { last_row_ = std::move(row); }
     /// Tells the equilibria, the cracks and the jumps of a step.
     void tell(const Step& step);
     /// Keeps the warning of a load step with this number, the first of a run.
@@ -88,7 +90,7 @@ private:
 void commit(Step step, StepKind kind, State& state, Journal& journal);
 
 /// Commits what there is of a load step that failed, which ends at its last balanced equilibrium (keep_balanced_part);
-/// nothing where it has none.
+/// nothing where it has none, or where a resumed run has failed again without getting any further.
 [[nodiscard]] StageEnd commit_balanced_part(Step step, State& state, Journal& journal);
 
 /// Load steps of all stages.

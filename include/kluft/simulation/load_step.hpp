@@ -19,6 +19,9 @@ void begin_load_step(const StepBench& bench);
 /// Commits a load step of the stage. The stage ends with a failure where too many in succession were unbalanced.
 [[nodiscard]] StageEnd commit_regular_step(const StepBench& bench, Step step, bool last_of_stage, State& state);
 
+/// How a stage ends after its last committed load step: with a failure where too many in succession were unbalanced.
+[[nodiscard]] StageEnd end_after(const StepBench& bench, const State& state);
+
 /// Whether potential cracks are checked in the load step after `state`.
 [[nodiscard]] bool is_checked(const StepBench& bench, const State& state, bool last_of_stage);
 

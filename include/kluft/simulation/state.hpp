@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include "kluft/blocks/moving_block.hpp"
 #include "kluft/contact/contact.hpp"
 #include "kluft/loading/platen.hpp"
 #include "kluft/simulation/run_costs.hpp"
@@ -83,6 +84,15 @@ struct StressHistory {
     bool operator==(const StressHistory&) const = default;
 };
 
+/// What a load step has left out of balance.
+struct Imbalance {
+    int worst_block = -1;            ///< of the last solve; -1 after a balanced load step
+    double share = 0.0;              ///< the largest of the mass-like term in F_ref
+    std::vector<MovingBlock> moving; ///< at the last equilibrium, the worst first
+
+    bool operator==(const Imbalance&) const = default;
+};
+
 struct State {
     LoadPlace at;
     BodyState body;
@@ -93,6 +103,7 @@ struct State {
     StressHistory stresses;
     bool is_settled = true; ///< false: bonds failed here, or the load step did, and no equilibrium has been found since
     int unbalanced_in_succession = 0; ///< load steps
+    Imbalance imbalance;              ///< of the last load step: a run that ends with it ends the same when resumed
     int jumps = 0;                    ///< so far
     RunCosts costs;                   ///< so far
 };
@@ -128,6 +139,9 @@ template <class Members, class Visit> void visit_saved(Members& state, Visit&& v
     visit("stage_of_largest_stress", state.stresses.stage_of_largest);
     visit("is_settled", state.is_settled);
     visit("unbalanced_in_succession", state.unbalanced_in_succession);
+    visit("worst_block", state.imbalance.worst_block);
+    visit("imbalance", state.imbalance.share);
+    visit("moving", state.imbalance.moving);
     visit("jumps", state.jumps);
     visit("elapsed_s", state.costs.elapsed_s);
     visit_counts(state.costs, visit);
