@@ -9,8 +9,7 @@ void Border::add_to(double missing, const Eigen::VectorXd& response, Eigen::Vect
 
 Border border_of_platen(const EquilibriumProblem& problem, const Coordinates& coordinates) {
     Border border;
-    if (problem.body.loads->platen_force)
-        border.motion = problem.body.loads->constraints.travel_motion(coordinates.size());
+    border.motion = travel_of_platen(*problem.body.loads, coordinates.size());
     return border;
 }
 
@@ -33,9 +32,7 @@ double platen_imbalance(const EquilibriumProblem& problem, const Border& border,
 
 void keep_free_part(const EquilibriumProblem& problem, const Border& border, const Eigen::VectorXd& q,
                     Eigen::VectorXd& forces) {
-    const double missing = border.exists() ? platen_imbalance(problem, border, q, forces) : 0.0;
-    problem.body.loads->constraints.project(forces);
-    if (border.exists()) forces -= missing / border.motion.squaredNorm() * border.motion;
+    keep_free_part(*problem.body.loads, border.motion, q, forces);
 }
 
 } // namespace kluft

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "kluft/core/stopwatch.hpp"
-#include "kluft/equilibrium/block_balance.hpp"
+#include "kluft/equilibrium/left_over.hpp"
 #include "kluft/equilibrium/line_search.hpp"
 
 namespace kluft {

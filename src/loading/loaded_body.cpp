@@ -189,4 +189,15 @@ std::vector<Mat2> block_stresses(const LoadedBody& body, const Eigen::VectorXd& 
     return stresses;
 }
 
+Eigen::VectorXd travel_of_platen(const Loads& loads, Eigen::Index n_unknowns) {
+    return loads.platen_force ? loads.constraints.travel_motion(n_unknowns) : Eigen::VectorXd();
+}
+
+void keep_free_part(const Loads& loads, const Eigen::VectorXd& travel, const Eigen::VectorXd& q,
+                    Eigen::VectorXd& forces) {
+    const double missing = travel.size() > 0 ? loads.platen_force->at(q) - travel.dot(forces) : 0.0;
+    loads.constraints.project(forces);
+    if (travel.size() > 0) forces -= missing / travel.squaredNorm() * travel;
+}
+
 } // namespace kluft

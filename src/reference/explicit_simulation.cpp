@@ -3,15 +3,20 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "kluft/core/stopwatch.hpp"
 #include "kluft/fracture/crack_check.hpp"
+#include "kluft/loading/block_balance.hpp"
 #include "kluft/loading/boundary_geometry.hpp"
 #include "kluft/reference/block_inertia.hpp"
 #include "kluft/reference/explicit_motion.hpp"
+#include "kluft/simulation/causes.hpp"
 #include "kluft/simulation/journal.hpp"
 #include "kluft/simulation/measurements.hpp"
 #include "kluft/simulation/placement.hpp"
@@ -33,8 +38,10 @@ constexpr double reference_balance =
 constexpr double detection_motion = 5e-3; ///< of a block between two detections, in lattice spacings
 constexpr double wildest_motion = 0.1;    ///< of a block in one time step, in lattice spacings
 constexpr double collapse_motion = 0.5;   ///< of a block in one load step that is loaded by stress, in lattice spacings
-constexpr int watch_interval = 10;        ///< time steps between two looks at the motion
-constexpr int progress_interval = 1000;   ///< time steps
+constexpr double much_left_over =
+    100.0; ///< of `balance`: at the end of a stage that waits for nothing, a block that keeps more is warned of
+constexpr int watch_interval = 10;      ///< time steps between two looks at the motion
+constexpr int progress_interval = 1000; ///< time steps
 
 /// From 0 to 1 without a jump of the velocity at the ends.
 double smooth(double x) { return x * x * (3.0 - 2.0 * x); }
@@ -59,9 +66,10 @@ public:
                 const StageLoads loads = enter_stage(model_, state_);
                 loads_ = &loads;
                 begin_stage();
-                const StageEnd end = run_stage();
+                StageEnd end = run_stage();
                 const bool last = state_.at.stage + 1 == static_cast<int>(model_.loads.stages.size());
                 const bool unbalanced = !has_platen_velocity() && state_.unbalanced_in_succession > 0;
+                end.causes = causes_of(end);
                 if (end.failure || last || unbalanced) return journal_.ended(state_, end);
                 leave_stage(model_, loads, motion_.loads(), motion_.evaluate().forces, state_);
                 state_.costs = journal_.costs();
@@ -95,6 +103,21 @@ private:
     [[nodiscard]] bool failed() const { return step_.failure.has_value(); }
     void fail(FailureKind kind, std::string what) { step_.failure = Failure{.kind = kind, .what = std::move(what)}; }
 
+    [[nodiscard]] Failure failure_of(FailureKind kind, std::vector<MovingBlock> moving) const {
+        return {.kind = kind,
+                .residual_ratio = force_ratio(),
+                .load_factor = step_.end.at.load_factor,
+                .nothing_holds = loads_->constraints().rows().empty(),
+                .moving = std::move(moving)};
+    }
+
+    /// What the loads say of why a stage has ended out of balance.
+    [[nodiscard]] std::vector<std::string> causes_of(const StageEnd& end) {
+        if (!end.failure && state_.unbalanced_in_succession == 0) return {};
+        return likely_causes(model_, {motion_.loads(), model_.laws, state_.at.load_factor, 1.0},
+                             end.failure ? end.failure->moving : end.moving);
+    }
+
     void begin_stage() {
         begin_step();
         PlatenHold hold = hold_of(model_, *loads_, work().body);
@@ -112,7 +135,7 @@ private:
         }
         if (state_.at.step > 0 || state_.at.stage > 0) return;
         set_load(0.0);
-        const StepRecord row = measure();
+        const StepRecord row = measure({});
         journal_.begin(row, state_, in_place());
     }
 
@@ -126,8 +149,10 @@ private:
                 return commit_balanced_part(std::move(step_), state_, journal_);
             }
             const StepRecord row = step_.row;
+            end.moving = step_.moving;
+            if (last && has_platen_velocity()) warn_of_motion();
             commit(std::move(step_), {.last_of_stage = last}, state_, journal_);
-            end.failure = failure_after(row);
+            end.failure = failure_after(row, end.moving);
             end.step = state_.at.step + 1;
         }
         return end;
@@ -150,13 +175,16 @@ private:
         const double from = static_cast<double>(state_.at.step_in_stage) / stage().steps;
         const bool steady = has_platen_velocity();
         const double duration = steady ? platen_time() : load_time();
+        look_ = {};
         move_load(from, to, duration, steady);
-        if (!steady) wait(longest_wait * duration);
+        const bool rests = !steady && wait(longest_wait * duration);
         if (failed()) return;
         set_load(to);
         keep_state();
         if (failed()) return;
-        step_.row = measure();
+        const BlockVerdict verdict = rests ? look_.verdict : verdict_without_rest();
+        step_.row = measure(verdict);
+        if (!step_.row.balanced) step_.moving = moving_blocks(verdict);
         step_.row.load_factor = to;
         step_.equilibria.push_back(step_.row);
         step_.balanced = step_.row.balanced;
@@ -170,11 +198,12 @@ private:
     }
 
     /// A platen of constant velocity waits for nothing, so that its load steps may be unbalanced.
-    [[nodiscard]] std::optional<Failure> failure_after(const StepRecord& row) const {
+    [[nodiscard]] std::optional<Failure> failure_after(const StepRecord& row,
+                                                       const std::vector<MovingBlock>& moving) const {
         if (has_platen_velocity()) return std::nullopt;
         const bool past_strength = !row.balanced && is_platen_loaded_by_stress(stage());
         if (!past_strength && state_.unbalanced_in_succession < solver_.max_unbalanced_steps) return std::nullopt;
-        return Failure{.what = fmt::format("the unbalanced force is {:.2g} of the forces", row.unbalanced_ratio)};
+        return failure_of(FailureKind::no_equilibrium, moving);
     }
 
     [[nodiscard]] bool has_platen_velocity() const {
@@ -210,12 +239,57 @@ private:
         if (!failed()) set_load(to);
     }
 
-    void wait(double longest) {
+    /// For the body and each of its blocks to come to rest; false where they do not.
+    bool wait(double longest) {
         const double balance = reference_balance * solver_.balance;
         for (double passed = 0.0; passed < longest && !failed(); passed += motion_.time_step()) {
             advance();
-            if (time_steps_ % watch_interval == 0 && force_ratio() <= balance && is_at_rest(balance)) return;
+            if (failed() || time_steps_ % watch_interval != 0) continue;
+            if (force_ratio() <= balance && is_at_rest(balance) && look_at_blocks()) return true;
         }
+        return false;
+    }
+
+    [[nodiscard]] BlockBalance blocks_now() const {
+        return affine_block_balance(motion_.body(), motion_.displacement());
+    }
+    [[nodiscard]] BlockGoal block_goal() const { return {.share = solver_.balance}; }
+
+    /// Whether they are at rest: balanced now and in the look before, since a block that swings is balanced for a moment
+    /// where it passes its equilibrium.
+    bool look_at_blocks() {
+        const bool balanced_before = look_.is_taken() && look_.verdict.balanced();
+        BlockBalance blocks = blocks_now();
+        look_.verdict = judge_blocks(blocks, look_.is_taken() ? &look_.blocks : nullptr, block_goal());
+        look_.blocks = std::move(blocks);
+        return balanced_before && look_.verdict.balanced();
+    }
+
+    /// Of the blocks now, or of those that the last look has found in motion.
+    [[nodiscard]] BlockVerdict verdict_without_rest() {
+        BlockVerdict before = look_.verdict;
+        look_at_blocks();
+        return look_.verdict.balanced() && !before.balanced() ? before : look_.verdict;
+    }
+
+    /// Those of the verdict; where it names none, since a body drifts or swings as a whole, the fastest one.
+    [[nodiscard]] std::vector<MovingBlock> moving_blocks(const BlockVerdict& verdict) const {
+        std::vector<MovingBlock> moving = verdict.moving;
+        if (moving.empty()) moving = fastest_block();
+        return moving_on(model_.system, motion_.displacement() - state_.body.displacement, std::move(moving));
+    }
+
+    /// Empty where nothing moves.
+    [[nodiscard]] std::vector<MovingBlock> fastest_block() const {
+        MovingBlock fastest;
+        double speed = 0.0;
+        for (int b = 0; b < model_.system.n_blocks(); ++b) {
+            const Vec2 velocity = motion_.velocity().segment<2>(n_block_unknowns * b);
+            if (!(velocity.norm() > speed)) continue;
+            speed = velocity.norm();
+            fastest = {b, velocity / speed, 0};
+        }
+        return speed > 0.0 ? std::vector{fastest} : std::vector<MovingBlock>{};
     }
 
     void advance() {
@@ -255,11 +329,28 @@ private:
                         fmt::format("after {} time steps blocks move without limit", time_steps_));
         if (is_loaded_by_stress(stage()) &&
             largest_motion(motion_.displacement() - state_.body.displacement) > collapse_motion * spacing)
-            return fail(FailureKind::falling, "the body falls or flows");
+            return fail_by_falling();
         if (largest_motion(motion_.displacement() - detected_at_) > detection_motion * spacing) {
             keep_state();
             if (!failed()) motion_.add_detection_energy(detect());
         }
+    }
+
+    void fail_by_falling() {
+        (void)motion_.evaluate();
+        step_.failure =
+            failure_of(FailureKind::falling, moving_blocks(judge_blocks(blocks_now(), nullptr, block_goal())));
+    }
+
+    /// Nothing has waited for the blocks to come to rest, so that one may fall at the end of the stage.
+    void warn_of_motion() {
+        const BlockVerdict verdict = judge_blocks(blocks_now(), nullptr, {.share = much_left_over * solver_.balance});
+        if (verdict.balanced()) return;
+        journal_.report().warnings.push_back(fmt::format("stage {} ends in motion, since a platen with loading_rate "
+                                                         "waits for nothing; out of balance by {:.2g} of its "
+                                                         "own force, {}",
+                                                         state_.at.stage, verdict.error,
+                                                         description(model_, moving_blocks(verdict))));
     }
 
     /// Of any point of a block; NaN and infinity come out as infinity.
@@ -312,7 +403,7 @@ private:
         if (!std::isfinite(motion_.unbalanced_force())) return; // watch_motion ends the run
         keep_state();
         if (failed()) return;
-        const StepRecord before = measure();
+        const StepRecord before = measure(judge_blocks(blocks_now(), nullptr, block_goal()));
         if (failed()) return;
         if (before.balanced) step_.equilibria.push_back(before);
         double energy = energy_of_interfaces(broken);
@@ -346,7 +437,8 @@ private:
 
     // ---- measurements and messages ---------------------------------------------------------------------------
 
-    StepRecord measure() {
+    /// Where the platen waits for nothing, only the body as a whole is asked to be in balance.
+    StepRecord measure(const BlockVerdict& verdict) {
         const BodyForces forces = motion_.evaluate();
         force_scale_ = forces.magnitudes.norm();
         StepRecord record = measure_step(model_, journal_.gauges(), work(), motion_.body(), *loads_,
@@ -367,7 +459,8 @@ private:
         worst_energy_error_ = std::max(worst_energy_error_, std::abs(motion.energy_error));
         record.motion = motion;
         record.unbalanced_ratio = time_steps_ > 0 ? force_ratio() : 0.0;
-        record.balanced = record.unbalanced_ratio <= solver_.balance;
+        record.balance_error = verdict.error;
+        record.balanced = record.unbalanced_ratio <= solver_.balance && (has_platen_velocity() || verdict.balanced());
         record.crack_passes = step_.crack_passes;
         record.elapsed_s = journal_.elapsed();
         if (!std::isfinite(record.axial_stress) || !std::isfinite(energy.external_work))
@@ -395,6 +488,13 @@ private:
         journal_.progress(work(), step_.row, work().at.load_factor, static_cast<int>(time_steps_));
     }
 
+    /// At the blocks of a body that waits.
+    struct Look {
+        BlockBalance blocks;
+        BlockVerdict verdict;
+        [[nodiscard]] bool is_taken() const { return !blocks.left.empty(); }
+    };
+
     const Model& model_;
     const CrackOptions& cracks_;
     const SolverOptions& solver_;
@@ -408,6 +508,7 @@ private:
     ExplicitMotion motion_;
     double crossing_time_;
     Eigen::VectorXd detected_at_;
+    Look look_;                   ///< the last one of the load step in progress
     std::vector<double> extents_; ///< largest distance from the centroid in block coordinates, per block
     long time_steps_ = 0;
     double load_rate_ = 1.0;

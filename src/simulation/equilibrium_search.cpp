@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kluft/equilibrium/left_over.hpp"
 #include "kluft/simulation/mass_term.hpp"
 #include "kluft/simulation/whole_body.hpp"
 

@@ -6,10 +6,13 @@
 #include <fmt/format.h>
 
 #include "kluft/blocks/block_search.hpp"
+#include "kluft/kinematics/affine.hpp"
 
 namespace kluft {
 
 namespace {
+
+constexpr double clear_motion = 0.1; ///< of a block in a load step, in spacings of hexagons of its size
 
 std::string block_description(const BlockSystem& system, int index) {
     const Block& block = system.blocks[index];
@@ -35,6 +38,15 @@ std::string direction_text(const Vec2& direction) {
 }
 
 } // namespace
+
+std::vector<MovingBlock> moving_on(const BlockSystem& system, const Eigen::VectorXd& moved,
+                                   std::vector<MovingBlock> moving) {
+    for (MovingBlock& each : moving) {
+        const Vec2 motion = moved.segment<2>(n_block_unknowns * each.block);
+        if (motion.norm() > clear_motion * spacing_of(system.blocks[each.block])) each.direction = motion.normalized();
+    }
+    return moving;
+}
 
 std::string description(const Model& model, const std::vector<MovingBlock>& moving) {
     if (moving.empty()) return "";

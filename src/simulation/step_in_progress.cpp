@@ -18,7 +18,6 @@ namespace kluft {
 namespace {
 
 constexpr double kept_motion = 5e-3; ///< of a block, after which contact points are not kept (relative_motion)
-constexpr double clear_motion = 0.1; ///< of a block in a load step, in spacings of hexagons of its size
 
 /// Detects the contacts of surfaces that may touch.
 DetectedContacts detect(StepInProgress& p) {
@@ -203,13 +202,7 @@ Measured measure(const StepInProgress& p, const PlacedState& placed, const Loads
 }
 
 std::vector<MovingBlock> moving_on(const StepInProgress& p, const Eigen::VectorXd& q, std::vector<MovingBlock> moving) {
-    const Eigen::VectorXd moved = q - p.from.body.displacement;
-    for (MovingBlock& each : moving) {
-        const Vec2 motion = moved.segment<2>(n_block_unknowns * each.block);
-        if (motion.norm() > clear_motion * spacing_of(p.bench.model.system.blocks[each.block]))
-            each.direction = motion.normalized();
-    }
-    return moving;
+    return moving_on(p.bench.model.system, q - p.from.body.displacement, std::move(moving));
 }
 
 void fail(StepInProgress& p, const Equilibrium& found, double residual_ratio, FailureKind kind) {

@@ -1,5 +1,5 @@
 // What is left over on blocks and groups, on bodies of two blocks that are posed in code.
-#include "kluft/equilibrium/block_balance.hpp"
+#include "kluft/equilibrium/left_over.hpp"
 
 #include <cmath>
 

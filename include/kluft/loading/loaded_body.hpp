@@ -72,6 +72,13 @@ void body_forces(const LoadedBody& body, const Eigen::VectorXd& q, BodyForces& r
 /// (N/m).
 void external_forces(const LoadedBody& body, const Eigen::VectorXd& q, Eigen::VectorXd& result);
 
+/// The motion of all `n_unknowns` for unit travel of the platen under a given force (1); empty where there is none.
+[[nodiscard]] Eigen::VectorXd travel_of_platen(const Loads& loads, Eigen::Index n_unknowns);
+/// Takes the reactions of supports and platens out of `forces` at q on the unknowns, internal - external (N/m). What remains
+/// has the work of the forces in every free motion, the `travel` of the platen included.
+void keep_free_part(const Loads& loads, const Eigen::VectorXd& travel, const Eigen::VectorXd& q,
+                    Eigen::VectorXd& forces);
+
 /// The sum of the magnitudes of weight, pressures and point loads at q, per block (N/m).
 [[nodiscard]] std::vector<double> load_magnitudes(const LoadedBody& body, const Eigen::VectorXd& q);
 /// The weight and the magnitude of the resultant of pressures and point loads at q, per block (N/m).

@@ -9,9 +9,9 @@
 
 #include "kluft/assembly/block_matrix.hpp"
 #include "kluft/assembly/linear_solver.hpp"
-#include "kluft/equilibrium/block_balance.hpp"
 #include "kluft/equilibrium/equilibrium_problem.hpp"
 #include "kluft/equilibrium/open_close_solver.hpp"
+#include "kluft/loading/block_balance.hpp"
 #include "kluft/simulation/model.hpp"
 #include "kluft/simulation/run_costs.hpp"
 #include "kluft/simulation/simulation_options.hpp"

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "kluft/blocks/moving_block.hpp"
 #include "kluft/simulation/model.hpp"
 
@@ -28,6 +30,11 @@ struct Failure {
     /// Whether the body may just have reached what it carries, where its load is a stress.
     [[nodiscard]] bool may_be_collapse() const { return !nothing_holds && kind != FailureKind::broken_body; }
 };
+
+/// Where blocks have moved away by `moved` in the load step (m), they go on in that direction, whatever pushes them at the
+/// moment.
+[[nodiscard]] std::vector<MovingBlock> moving_on(const BlockSystem& system, const Eigen::VectorXd& moved,
+                                                 std::vector<MovingBlock> moving);
 
 /// In words the blocks that move and where to; "" without any.
 [[nodiscard]] std::string description(const Model& model, const std::vector<MovingBlock>& moving);

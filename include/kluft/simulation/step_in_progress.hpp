@@ -121,7 +121,7 @@ template <class IndexAt>
         });
 }
 
-/// Where blocks have moved away in the load step up to q, they go on in that direction, whatever pushes them at the moment.
+/// Where blocks have moved away in the load step up to q, they go on in that direction (failure.hpp).
 [[nodiscard]] std::vector<MovingBlock> moving_on(const StepInProgress& in_progress, const Eigen::VectorXd& q,
                                                  std::vector<MovingBlock> moving);
 

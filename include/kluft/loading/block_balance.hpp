@@ -8,7 +8,6 @@
 #include <Eigen/Core>
 
 #include "kluft/blocks/moving_block.hpp"
-#include "kluft/equilibrium/coordinates.hpp"
 #include "kluft/loading/loaded_body.hpp"
 
 namespace kluft {
@@ -25,10 +24,10 @@ struct OwnForces {
 };
 [[nodiscard]] OwnForces own_forces(const LoadedBody& body, const Eigen::VectorXd& q);
 
-/// The rigid part of `forces` on the unknowns of block `b` at q: force, and moment about the centroid over sqrt(area)
-/// (N/m).
-[[nodiscard]] Vec3 rigid_part(const Coordinates& coordinates, const BlockSystem& system, const Eigen::VectorXd& q,
-                              const Eigen::VectorXd& forces, int b);
+/// The rigid part of `forces` on the six unknowns of the affine block `b` at q: force, and moment about the centroid over
+/// sqrt(area) (N/m).
+[[nodiscard]] Vec3 affine_rigid_part(const BlockSystem& system, const Eigen::VectorXd& q, const Eigen::VectorXd& forces,
+                                     int b);
 /// The larger of force and moment over sqrt(area) (N/m).
 [[nodiscard]] inline double size_of(const Vec3& rigid_part) {
     return std::max(rigid_part.head<2>().norm(), std::abs(rigid_part[2]));
@@ -37,12 +36,15 @@ struct OwnForces {
 /// What is left over on the blocks of a body.
 struct BlockBalance {
     OwnForces forces;
-    std::vector<Vec3> left;               ///< external - internal, in the free motions, as rigid_part
-    std::vector<Vec2> position;           ///< of the centroid (m)
-    std::vector<double> area;             ///< m2
+    std::vector<Vec3> left;     ///< external - internal, in the free motions: force, and moment over sqrt(area)
+    std::vector<Vec2> position; ///< of the centroid (m)
+    std::vector<double> area;   ///< m2
     std::vector<std::vector<int>> groups; ///< blocks held together by bonds and locked contact points; two or more each
 };
-[[nodiscard]] BlockBalance block_balance(const LoadedBody& body, const Eigen::VectorXd& q);
+/// By what is `left` over.
+[[nodiscard]] BlockBalance block_balance(const LoadedBody& body, const Eigen::VectorXd& q, std::vector<Vec3> left);
+/// Of affine blocks.
+[[nodiscard]] BlockBalance affine_block_balance(const LoadedBody& body, const Eigen::VectorXd& q);
 
 /// What is asked of the blocks of a body that stands.
 struct BlockGoal {

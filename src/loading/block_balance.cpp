@@ -1,4 +1,4 @@
-#include "kluft/equilibrium/block_balance.hpp"
+#include "kluft/loading/block_balance.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "kluft/core/disjoint_sets.hpp"
-#include "kluft/equilibrium/border.hpp"
 
 namespace kluft {
 
@@ -186,39 +185,35 @@ OwnForces own_forces(const LoadedBody& body, const Eigen::VectorXd& q) {
 }
 
 /// The moment is h times the force on w, h dtheta = dw.
-Vec3 rigid_part(const Coordinates& coordinates, const BlockSystem& system, const Eigen::VectorXd& q,
-                const Eigen::VectorXd& forces, int b) {
+Vec3 affine_rigid_part(const BlockSystem& system, const Eigen::VectorXd& q, const Eigen::VectorXd& forces, int b) {
     const Block& block = system.blocks[b];
-    Vec3 part;
-    if (coordinates.are_rigid()) {
-        part = forces.segment<n_rigid_unknowns>(n_rigid_unknowns * b);
-    } else {
-        part = rigid_motion(q, b, block.size).transpose() * forces.segment<n_block_unknowns>(n_block_unknowns * b);
-    }
+    Vec3 part = rigid_motion(q, b, block.size).transpose() * forces.segment<n_block_unknowns>(n_block_unknowns * b);
     part[2] *= block.size / std::sqrt(block.area);
     return part;
 }
 
-BlockBalance block_balance(const LoadedBody& body, const Eigen::VectorXd& q) {
+BlockBalance block_balance(const LoadedBody& body, const Eigen::VectorXd& q, std::vector<Vec3> left) {
     const BlockSystem& system = *body.system;
-    const EquilibriumProblem problem{body, {}, 0.0, {}};
-    Coordinates coordinates(system, body.kinematics);
-    coordinates.turn_to(q);
-    BodyForces sum;
-    body_forces(body, q, sum);
-    Eigen::VectorXd left;
-    coordinates.reduce(sum.forces, left);
-    keep_free_part(problem, border_of_platen(problem, coordinates), q, left);
     BlockBalance result;
     const std::vector<Meeting> meetings = meetings_of(body, q);
     result.forces = own_forces(body, q, meetings);
     result.groups = groups_of(system.n_blocks(), meetings);
+    result.left = std::move(left);
     for (int b = 0; b < system.n_blocks(); ++b) {
-        result.left.push_back(-rigid_part(coordinates, system, q, left, b));
         result.position.push_back(system.blocks[b].centroid + q.segment<2>(n_block_unknowns * b));
         result.area.push_back(system.blocks[b].area);
     }
     return result;
+}
+
+BlockBalance affine_block_balance(const LoadedBody& body, const Eigen::VectorXd& q) {
+    BodyForces sum;
+    body_forces(body, q, sum);
+    keep_free_part(*body.loads, travel_of_platen(*body.loads, q.size()), q, sum.forces);
+    std::vector<Vec3> left;
+    for (int b = 0; b < body.system->n_blocks(); ++b)
+        left.push_back(-affine_rigid_part(*body.system, q, sum.forces, b));
+    return block_balance(body, q, std::move(left));
 }
 
 BlockVerdict judge_blocks(const BlockBalance& now, const BlockBalance* before, const BlockGoal& goal) {
