@@ -115,7 +115,7 @@ private:
     [[nodiscard]] std::vector<std::string> causes_of(const StageEnd& end) {
         if (!end.failure && state_.unbalanced_in_succession == 0) return {};
         return likely_causes(model_, {motion_.loads(), model_.laws, state_.at.load_factor, 1.0},
-                             end.failure ? end.failure->moving : end.moving);
+                             end.failure ? end.failure->moving : state_.imbalance.moving);
     }
 
     void begin_stage() {
@@ -149,11 +149,11 @@ private:
                 return commit_balanced_part(std::move(step_), state_, journal_);
             }
             const StepRecord row = step_.row;
-            end.moving = step_.moving;
+            const std::vector<MovingBlock> moving = step_.moving;
             if (last && has_platen_velocity()) warn_of_motion();
             commit(std::move(step_), {.last_of_stage = last}, state_, journal_);
-            end.failure = failure_after(row, end.moving);
-            end.step = state_.at.step + 1;
+            end.failure = failure_after(row, moving);
+            end.step = state_.at.step;
         }
         return end;
     }
