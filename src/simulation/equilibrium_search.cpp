@@ -91,8 +91,13 @@ Equilibrium EquilibriumSearch::find_touching(const EquilibriumProblem& problem, 
         const bool is_left =
             held.eta.empty() && viscosity_ > 0.0 && !free_motions(resistance(model_.system, loads.constraints)).empty();
         if (is_left) held.eta.assign(model_.system.blocks.size(), mass_coefficient(model_, viscosity_));
-        const int iterations = found.iterations;
+        int iterations = found.iterations;
         found = solve(held, is_left ? nullptr : &found);
+        if (!is_on_the_way(found) &&
+            !is_left) { // what a platen has stretched before it opened may be at rest where it was
+            iterations += found.iterations;
+            found = solve(held, nullptr);
+        }
         found.iterations += iterations;
         found.balanced = found.balanced && round < max_platen_rounds;
         if (round == max_platen_rounds) break;

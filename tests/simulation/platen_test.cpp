@@ -50,6 +50,26 @@ TEST(Platens, DoNotPullTheBody) {
     }
 }
 
+// A body without loads is at rest where it was, whatever the platen has stretched before it let go.
+TEST(Platens, LeaveLooseBlocksAtRest) {
+    for (const double strain : {1e-9, 1e-6, 1e-3, 0.1}) {
+        const SceneRun run = run_scene(fmt::format(R"(
+kluft: 1
+materials: {{rock: {{youngs_modulus: 10 GPa, poissons_ratio: 0.25}}}}
+interfaces: {{joint: {{kind: fracture, normal_stiffness: 1e10, shear_stiffness: 5e9, friction_angle: 30}}}}
+geometry:
+  domain: {{rectangle: {{width: 1, height: 4}}}}
+  fractures: [{{trace: [[-0.1, 1], [1.1, 1]]}}, {{trace: [[-0.1, 3], [1.1, 3]]}}]
+boundaries: {{bottom: {{support: pinned}}}}
+stages: [{{strain: {{boundary: top, value: -{}}}, steps: 4}}]
+)",
+                                                   strain));
+        EXPECT_EQ(run.report.status, RunStatus::done) << strain << ": " << run.report.diagnosis;
+        EXPECT_NEAR(run.history.back().axial_stress, 0.0, 1e-3);
+        EXPECT_LT(run.state.body.displacement.lpNorm<Eigen::Infinity>(), 1e-12);
+    }
+}
+
 // E = 10 GPa in tension as in compression.
 TEST(Platens, PullWhatIsGluedToThem) {
     const SceneRun run = press("[{strain: {boundary: top, value: -0.1 %, glued: true}}]");

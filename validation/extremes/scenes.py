@@ -46,7 +46,8 @@ def column(modulus=1e10, poisson=0.25, normal=1e10, shear=5e9, height=4.0, width
     fractures = [{"trace": across(height * joint, width)} for joint in joints]
     return body({"joint": fracture(normal, shear, friction_angle=friction)}, rock(modulus, poisson),
                 {"domain": {"rectangle": {"width": width, "height": height}}, "fractures": fractures},
-                [{"name": "platen", "displacement": {"boundary": "top", "value": strain * height}, "steps": steps}], **more)
+                [{"name": "platen", "displacement": {"boundary": "top", "value": strain * height, "glued": strain < 0 and not joints},
+                  "steps": steps}], **more)
 
 
 def column_modulus(modulus=1e10, normal=1e10, height=4.0, n_joints=4):
@@ -151,7 +152,7 @@ def bar(cohesion, friction, tension, pull, modulus=1e9, normal=1e10, failure=Non
                   "bond": bond(normal, 0.5 * normal, cohesion=cohesion, friction_angle=friction, tensile_strength=tension)}
     return body(interfaces, rock(modulus, 0), {"domain": {"rectangle": {"width": 1, "height": 2}},
                                                "fractures": [{"trace": across(1.0, 1.0), "interface": "bond"}]},
-                [{"name": "platen", "strain": {"boundary": "top", "value": -strain if pull else strain}, "steps": steps}],
+                [{"name": "platen", "strain": {"boundary": "top", "value": -strain if pull else strain, "glued": pull}, "steps": steps}],
                 cracks={"criterion": criterion, "event_tolerance": 1e-7}, **more)
 
 
