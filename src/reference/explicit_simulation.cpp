@@ -149,10 +149,9 @@ private:
                 return commit_balanced_part(std::move(step_), state_, journal_);
             }
             const StepRecord row = step_.row;
-            const std::vector<MovingBlock> moving = step_.moving;
             if (last && has_platen_velocity()) warn_of_motion();
             commit(std::move(step_), {.last_of_stage = last}, state_, journal_);
-            end.failure = failure_after(row, moving);
+            end.failure = failure_after(row);
             end.step = state_.at.step;
         }
         return end;
@@ -198,12 +197,11 @@ private:
     }
 
     /// A platen of constant velocity waits for nothing, so that its load steps may be unbalanced.
-    [[nodiscard]] std::optional<Failure> failure_after(const StepRecord& row,
-                                                       const std::vector<MovingBlock>& moving) const {
+    [[nodiscard]] std::optional<Failure> failure_after(const StepRecord& row) const {
         if (has_platen_velocity()) return std::nullopt;
         const bool past_strength = !row.balanced && is_platen_loaded_by_stress(stage());
         if (!past_strength && state_.unbalanced_in_succession < solver_.max_unbalanced_steps) return std::nullopt;
-        return failure_of(FailureKind::no_equilibrium, moving);
+        return failure_of(FailureKind::no_equilibrium, state_.imbalance.moving);
     }
 
     [[nodiscard]] bool has_platen_velocity() const {

@@ -296,10 +296,11 @@ StageLoads enter_stage(const Model& model, State& state) {
         if (stage.motion && state.strain_zero.size() == 0) state.strain_zero = state.body.displacement;
     }
     StageLoads loads(model, state.stage_start, stage);
-    if (state.at.is_at_stage_start()) lay_platens(loads, state.body.platen_points);
-    if (state.at.is_at_stage_start())
+    if (state.at.is_at_stage_start()) {
+        lay_platens(loads, state.body.platen_points);
         for (const Platen& platen : loads.platens())
             meet_anew(model.system, platen, state.body.displacement, state.body.platen_points);
+    }
     loads.place_platens(model.system, state.body.platen_points);
     return loads;
 }

@@ -27,7 +27,8 @@ struct BoundaryFrame {
 /// Mean displacement of a boundary, weighted by length (m).
 [[nodiscard]] Vec2 mean_displacement(const BlockSystem& system, const Eigen::VectorXd& q, int boundary);
 
-/// The distance of the outer edges of a boundary from those of the opposite one along its normal; from the lower corner of the body without one (m).
+/// The distance of the outer edges of a boundary from those of the opposite one along its normal; from the lower corner of
+/// the body without one (m).
 [[nodiscard]] double distance_across(const BlockSystem& system, int boundary);
 
 /// The two boundaries across `boundary`, on the side of its normal turned clockwise first; empty if there are not two.
@@ -40,8 +41,8 @@ struct BoundaryFrame {
 /// How far these lie apart along the normal of the boundary (m).
 [[nodiscard]] double unevenness(const BlockSystem& system, int boundary);
 
-/// The mean width of the body under a platen on `boundary`: the mean distance of the lateral boundaries, or the width of its outer edges
-/// where that is more, as with columns side by side; it grows in proportion to the former.
+/// The mean width of the body under a platen on `boundary` (m): the mean distance of the lateral boundaries, or the width of
+/// its outer edges where that is more, as with columns side by side; it grows in proportion to the former.
 [[nodiscard]] PlatenForce width_across(const BlockSystem& system, int boundary);
 
 } // namespace kluft

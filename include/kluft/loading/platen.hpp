@@ -84,8 +84,8 @@ void hold_by_platens(const LoadedBody& body, const Eigen::VectorXd& q, Loads& lo
 /// The largest pull of platens that are not glued on a point, over the largest force on one. `forces` as above.
 [[nodiscard]] double largest_pull(const Eigen::VectorXd& forces, const Loads& loads);
 
-/// At the start of a stage at q: the points of a platen that is there already stick or slide as its friction is now, and one under a given
-/// force that touches nothing comes to where it touches the body.
+/// At the start of a stage at q: the points of a platen that is there already stick or slide as its friction is now, and one
+/// under a given force that touches nothing comes to where it touches the body.
 void meet_anew(const BlockSystem& system, const Platen& platen, const Eigen::VectorXd& q,
                std::vector<PlatenPoint>& points);
 
