@@ -57,7 +57,11 @@ void keep_tables(const fs::path& table, const std::vector<std::string>& sources)
 
 /// The peaks of a directory of results or of a table.
 void add_peaks(const fs::path& source, std::vector<PeakPoint>& peaks) {
-    if (fs::is_directory(source) || source.extension() != ".csv") {
+    const bool is_table = source.extension() == ".csv" && !fs::is_directory(source);
+    if (!is_table && fs::is_regular_file(source))
+        throw InputError(source.string() +
+                         ": expected a directory of results or a table of tests (.csv), found another file");
+    if (!is_table) {
         peaks.push_back(read_peak(source, run_name(source)));
         return;
     }

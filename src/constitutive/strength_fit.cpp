@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "kluft/core/diagnostics.hpp"
+#include "kluft/core/units.hpp"
 
 namespace kluft {
 
@@ -92,7 +93,8 @@ std::size_t n_different(const std::vector<PeakPoint>& points) {
 
 bool has_two_lateral_stresses(const std::vector<PeakPoint>& strengths) {
     if (strengths.empty()) return false;
-    constexpr double distinct = 1e-6; // of the largest stress
+    constexpr double distinct = 1e-6;   // of the largest stress
+    constexpr double smallest = 1e-100; // Pa; the square of less is not a number any more
     double low = strengths.front().sigma_3;
     double high = low;
     double largest = 0.0;
@@ -101,7 +103,7 @@ bool has_two_lateral_stresses(const std::vector<PeakPoint>& strengths) {
         high = std::max(high, point.sigma_3);
         largest = std::max({largest, std::abs(point.sigma_3), std::abs(point.sigma_1)});
     }
-    return high - low > distinct * largest;
+    return high - low > std::max(distinct * largest, smallest);
 }
 
 std::string too_few_strengths(const std::vector<PeakPoint>& points, std::size_t n_strengths) {
@@ -193,7 +195,8 @@ HoekBrownFit fit_hoek_brown(const std::vector<PeakPoint>& points) {
         pairs.emplace_back(point.sigma_3, difference * difference);
     }
     const RegressionLine line = regression(pairs);
-    if (!(line.intercept > 0.0)) return {{}, fmt::format("sigma_ci^2 = {:.3g} Pa^2 is not above 0", line.intercept)};
+    if (!(line.intercept > 0.0))
+        return {{}, fmt::format("sigma_ci^2 = {:.3g} MPa^2 is not above 0", line.intercept / (mega * mega))};
     const double sigma_ci = std::sqrt(line.intercept);
     const double m_i = line.slope / sigma_ci;
     if (!(m_i > 0.0)) return {{}, fmt::format("m_i = {:.3g} is not above 0", m_i)};

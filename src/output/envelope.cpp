@@ -71,12 +71,15 @@ std::string quality(const Residuals& residuals) {
 
 std::string mohr_coulomb_text(const Envelope& envelope) {
     const auto angle_error = envelope.friction_angle_error();
-    return fmt::format("cohesion {}, friction angle {}\n  {}\n",
-                       in_mega({envelope.cohesion, envelope.cohesion_error()}),
-                       with_error(envelope.friction_angle * degrees,
-                                  angle_error ? std::optional(*angle_error * degrees) : std::nullopt, 2, " deg"),
-                       envelope.covariance ? "standard errors; " + quality(envelope.residuals)
-                                           : "standard errors unknown: a line through two points leaves no residual");
+    std::string text =
+        fmt::format("cohesion {}, friction angle {}\n  {}\n", in_mega({envelope.cohesion, envelope.cohesion_error()}),
+                    with_error(envelope.friction_angle * degrees,
+                               angle_error ? std::optional(*angle_error * degrees) : std::nullopt, 2, " deg"),
+                    envelope.covariance ? "standard errors; " + quality(envelope.residuals)
+                                        : "standard errors unknown: a line through two points leaves no residual");
+    if (envelope.cohesion < 0.0 || envelope.friction_angle < 0.0)
+        text += "  below zero: these strengths are not those of a Mohr-Coulomb rock\n";
+    return text;
 }
 
 std::string tension_text(const StrengthFit& fit, std::size_t n_tension) {

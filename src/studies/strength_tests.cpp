@@ -48,6 +48,15 @@ std::string trimmed(const std::string& text) {
     return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
+/// The beginning of a text for a message; control characters are question marks.
+std::string shown(std::string_view text) {
+    constexpr std::size_t longest = 60;
+    std::string beginning(text.substr(0, longest));
+    std::ranges::replace_if(
+        beginning, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, '?');
+    return beginning;
+}
+
 /// Cells between commas; quotes around a cell keep its commas, two quotes in it are one.
 std::vector<Cell> cells_of_line(std::string_view line) {
     std::vector<Cell> cells(1);
@@ -157,8 +166,7 @@ TableLayout layout_of(std::string_view line, TableFlaws& flaws) {
             flaws.add(1, column, fmt::format("unknown column '{}'{}", name, meant));
     for (const std::size_t needed : {sigma_3_column, sigma_1_column})
         if (!layout.index[needed])
-            flaws.add(1, 1,
-                      fmt::format("expected a column '{}', found '{}'", column_names[needed], line.substr(0, 80)));
+            flaws.add(1, 1, fmt::format("expected a column '{}', found '{}'", column_names[needed], shown(line)));
     return layout;
 }
 
@@ -168,16 +176,14 @@ std::optional<double> read_stress(const Cell& cell, std::size_t line, Column col
     const std::string& name = column_names[column];
     const auto number = read_number(cell.text);
     if (!number) {
-        flaws.add(
-            line, cell.column,
-            fmt::format("{}: expected a number, found '{}'{}", name, cell.text.substr(0, 40), number_flaw(cell.text)));
+        flaws.add(line, cell.column,
+                  fmt::format("{}: expected a number, found '{}'{}", name, shown(cell.text), number_flaw(cell.text)));
         return std::nullopt;
     }
     const double stress = *number * layout.factor[column];
     if (std::abs(stress) <= largest) return stress;
-    flaws.add(
-        line, cell.column,
-        fmt::format("{}: expected a stress within {:.0e} Pa, found '{}'", name, largest, cell.text.substr(0, 40)));
+    flaws.add(line, cell.column,
+              fmt::format("{}: expected a stress within {:.0e} Pa, found '{}'", name, largest, shown(cell.text)));
     return std::nullopt;
 }
 
@@ -190,7 +196,7 @@ bool read_flag(const std::vector<Cell>& cells, std::size_t line, Column column, 
     if (cell.text == "1" || cell.text == "true") return true;
     if (cell.text != "0" && cell.text != "false")
         flaws.add(line, cell.column,
-                  fmt::format("{}: expected 0 or 1, found '{}'", column_names[column], cell.text.substr(0, 40)));
+                  fmt::format("{}: expected 0 or 1, found '{}'", column_names[column], shown(cell.text)));
     return false;
 }
 

@@ -863,7 +863,7 @@ TEST_F(CommandLine, EnvelopeRefusesWhatIsNoRun) {
     write("file", "");
     fs::create_directory(path("empty"));
     expect_refused({"envelope", "absent"}, HasSubstr("absent: expected a directory of results, found nothing"));
-    expect_refused({"envelope", "file"}, HasSubstr("file: expected a directory of results, found a file"));
+    expect_refused({"envelope", "file"}, HasSubstr("file: expected a directory of results or a table of tests (.csv)"));
     expect_refused({"envelope", "empty"}, HasSubstr("found no history.csv"));
     expect_refused({"envelope", "empty", "--compare", "x"}, HasSubstr("--compare"));
     EXPECT_FALSE(fs::exists(path("envelope.png")));

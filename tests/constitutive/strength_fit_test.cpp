@@ -163,6 +163,7 @@ TEST(Envelope, NeedsTwoLateralStressesAndARisingLine) {
     EXPECT_THROW((void)fit_envelope({strength_at(0.2e6, 1e6)}), InputError);
     EXPECT_THROW((void)fit_envelope({strength_at(0.2e6, 1e6), strength_at(0.2e6, 1.1e6)}), InputError);
     EXPECT_THROW((void)fit_envelope({strength_at(0.0, 1e6), strength_at(0.2e6, 0.5e6)}), InputError);
+    EXPECT_THAT(message_of({strength_at(0.0, 1e-300), strength_at(1e-300, 2e-300)}), HasSubstr("different lateral"));
 }
 
 // ---- bounds --------------------------------------------------------------------------------------------------------

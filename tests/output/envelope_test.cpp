@@ -15,6 +15,7 @@
 namespace kluft {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -96,6 +97,14 @@ TEST(EnvelopeText, TellsErrorsTensionBoundsAndWhatContradicts) {
     EXPECT_THAT(text, ContainsRegex("Hoek-Brown: sigma_ci 1.1927 \\+- 0.[0-9]* MPa, m_i 8.173 \\+- "));
     EXPECT_THAT(text, HasSubstr("2 bounds, left out of the fit: rising (still rising), locked (net locked)"));
     EXPECT_THAT(text, HasSubstr("the fit is contradicted: it lies below what was carried by rising\n"));
+}
+
+// sigma_1 = 1 + 0.5 sigma_3: sin(phi) = (0.5 - 1)/(0.5 + 1) = -1/3.
+TEST(EnvelopeText, SaysWhereNoRockHasSuchAFit) {
+    const std::vector<PeakPoint> points{{"a", 0.0, 1e6}, {"b", 1e6, 1.5e6}};
+    EXPECT_THAT(envelope_text(points, fit_strength(points)),
+                AllOf(HasSubstr("friction angle -19.47 deg"), HasSubstr("not those of a Mohr-Coulomb rock")));
+    EXPECT_THAT(envelope_text(two_points(), fit_strength(two_points())), Not(HasSubstr("below zero")));
 }
 
 // sigma_t = 0.3 MPa is beyond c cot(phi) = 0.16/tan(36.2 deg) = 0.2186 MPa.

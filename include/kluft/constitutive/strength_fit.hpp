@@ -1,5 +1,5 @@
 // Strength parameters from tests: Mohr-Coulomb's line, tension cut-off and Hoek-Brown's curve by least squares, with
-// standard errors.
+// standard errors. The equations stand in docs/theory.md, (36) to (39).
 #pragma once
 
 #include <cstddef>
