@@ -114,6 +114,7 @@ std::string closing_line(const RunReport& report, const RunSummary& summary, con
         if (const int n = summary.numbers.jumps_to_peak; n > 0)
             text += fmt::format(" after {} {}", n, n == 1 ? "jump" : "jumps");
     }
+    if (!report.remark.empty()) text += ", " + report.remark;
     if (report.results.factor_of_safety)
         text += fmt::format(", factor of safety {:.6g}", *report.results.factor_of_safety);
     if (summary.results.estimated_error)

@@ -638,6 +638,16 @@ std::vector<KeyRule> loading_rules() {
          .range = positive_integer,
          .fallback = "1",
          .doc = "Load steps of the stage."},
+        {.path = "stages.#.stop_after_drop",
+         .type = KeyType::number,
+         .range = between_zero_and_one,
+         .fallback_note = "all steps of the stage are taken",
+         .doc =
+             "For the strength without the collapse, which may take most of the time: the run ends, as `done`, after "
+             "the first balanced load step of the stage whose axial stress is by this part below the largest one of "
+             "the stage; steps and stages that are left are not run. From 1 % on the peak counts as reached. Only in "
+             "a stage with a `displacement` or a `strain` of the boundary that the first platen moves. A run that "
+             "has ended so goes on when it is resumed without it."},
     };
 }
 

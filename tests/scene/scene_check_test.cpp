@@ -435,5 +435,20 @@ TEST(SceneErrors, ThePatternsOfTheTableAreNoKeys) {
     EXPECT_THAT(errors_in(test::short_scene + "'*': 1\n'#': 1\n"), testing::SizeIs(2));
 }
 
+TEST(SceneErrors, StopAfterADropNeedsAPlatenOfGivenTravelWhereTheAxialStressIs) {
+    EXPECT_THAT(
+        errors_with({"stages.0.stop_after_drop=0.2"}),
+        ElementsAre(HasSubstr("stages.0.stop_after_drop: expected a displacement or a strain of a platen in the "
+                              "same stage, found none")));
+    EXPECT_THAT(errors_with({"stages.3.stop_after_drop=0.2"}), ElementsAre(HasSubstr("found none"))); // by stress
+    EXPECT_THAT(errors_with({"stages.2.stop_after_drop=0.2"}),
+                ElementsAre(HasSubstr("expected a platen on 'top', on which the axial stress is measured because it is "
+                                      "moved first, found one on 'right'")));
+    EXPECT_THAT(errors_with({"stages.1.stop_after_drop=20 %"}), IsEmpty());
+    for (const char* value : {"0", "1", "20"})
+        EXPECT_THAT(errors_with({std::string("stages.1.stop_after_drop=") + value}),
+                    ElementsAre(HasSubstr("expected a number > 0 and < 1")));
+}
+
 } // namespace
 } // namespace kluft

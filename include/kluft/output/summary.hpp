@@ -69,7 +69,7 @@ struct RunSummary {
     double cpu_s = 0.0; ///< processor time of all threads, in the system included
     std::int64_t peak_memory_bytes = 0;
     std::string version;
-    std::string message; ///< why the run ended, if not done
+    std::string message; ///< why the run ended, if not with the last load step
     RunResults results;
     std::vector<FallingBlock> falling;  ///< blocks that move where the run has ended
     std::optional<MotionReport> motion; ///< of an explicit run
