@@ -162,9 +162,13 @@ std::vector<KeyRule> stiffness_rules() {
         {.path = "interfaces.*.stiffness_ratio",
          .type = KeyType::number,
          .range = positive,
-         .fallback_note = "10, where no other stiffness key is given",
+         .fallback_note = "10, where no other stiffness key is given; none on mapped fractures",
          .doc = "k_n d/E with E of the material. With it `youngs_modulus` and `poissons_ratio` are those of the rock: "
-                "the blocks' own moduli follow so that the tessellated body has them. 5 to 20 is the good range."},
+                "the blocks' own moduli follow so that the tessellated body has them. Of a net of hexagons or Voronoi "
+                "cells "
+                "5 to 20 is the good range, however the stiffness is given: below, the joints carry most of the "
+                "deformation; above, affine blocks are too stiff in bending, and a body without strength noise fails "
+                "everywhere at once."},
         {.path = "interfaces.*.shear_ratio",
          .type = KeyType::number,
          .range = positive,
@@ -179,7 +183,8 @@ std::vector<KeyRule> interface_rules() {
          .type = KeyType::named,
          .doc = "Kinds of interfaces between blocks, by name. Stiffness is given in one of three ways: "
                 "`normal_stiffness` and `shear_stiffness`; or the same two `..._times_spacing`; or `stiffness_ratio` "
-                "and `shear_ratio`."},
+                "and `shear_ratio`. That of mapped fractures, and of what they fail to, has to be given: it is the "
+                "joint's and does not follow from the net."},
         {.path = "interfaces.*", .type = KeyType::mapping, .doc = "One kind of interface."},
         {.path = "interfaces.*.kind",
          .type = KeyType::choice,
@@ -342,7 +347,9 @@ std::vector<KeyRule> cut_rules() {
         {.path = "geometry.tessellation.voronoi",
          .type = KeyType::mapping,
          .doc = "A net of Voronoi cells of random points, without the hexagons' few directions. Their faces interlock "
-                "less regularly and are of all lengths; the body has the rock's moduli only nearly (docs/theory.md)."},
+                "less regularly and are of all lengths, and lock all the same where all bonds have failed to joints of "
+                "high "
+                "friction; the body has the rock's moduli only nearly (docs/theory.md)."},
         {.path = "geometry.tessellation.voronoi.spacing",
          .type = KeyType::number,
          .measure = Measure::length,

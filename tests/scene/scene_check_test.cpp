@@ -247,7 +247,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"interfaces.joint.fails_to=joint",
                 "interfaces.joint.fails_to: expected nothing for a fracture, which has failed already, found 'joint'"},
         Refusal{"interfaces.joint.dilation_angle=31",
-                "interfaces.joint.dilation_angle: expected at most the friction angle (30 deg), found '31'"},
+                "interfaces.joint.dilation_angle: expected at most the friction angle (25 deg), found '31'"},
         Refusal{"boundaries.left.sides=[3]", "boundaries.left.sides: expected nothing for a rectangle, whose "
                                              "boundaries are bottom, right, top, left, found a list of 1"},
         Refusal{"stages.1.stress={boundary: right, value: 1}",
