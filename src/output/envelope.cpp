@@ -49,7 +49,7 @@ PeakPoint peak_point(const std::string& run, const std::vector<StepRecord>& equi
     const auto peak = peak_row(equilibria, std::nullopt);
     if (!peak) throw InputError(run + ": no balanced equilibrium, so no peak");
     const auto numbers = curve_numbers(equilibria, {}, std::nullopt, Plane::strain);
-    return {run, peak->lateral_stress, peak->axial_stress, numbers.peak_reached};
+    return {run, peak->lateral_stress, peak->axial_stress, numbers.peak_reached, peak_remark(numbers)};
 }
 
 Envelope fit_envelope(const std::vector<PeakPoint>& points) {
@@ -75,9 +75,9 @@ std::string envelope_text(const std::vector<PeakPoint>& points, const Envelope& 
     for (const PeakPoint& point : points) width = std::max(width, point.run.size());
     std::string text = fmt::format("{:<{}}  sigma_3 (MPa)  sigma_1 (MPa)  fitted (MPa)\n", "run", width);
     for (const PeakPoint& point : points)
-        text += fmt::format("{:<{}}  {:13.4f}  {:13.4f}  {:12.4f}{}\n", point.run, width, point.sigma_3 / mega,
-                            point.sigma_1 / mega, fit.sigma_1(point.sigma_3) / mega,
-                            point.peak_reached ? "" : "  still rising");
+        text += fmt::format("{:<{}}  {:13.4f}  {:13.4f}  {:12.4f}{}{}\n", point.run, width, point.sigma_3 / mega,
+                            point.sigma_1 / mega, fit.sigma_1(point.sigma_3) / mega, point.peak_reached ? "" : "  ",
+                            point.remark);
     return text + fmt::format("cohesion {:.4f} MPa, friction angle {:.2f} deg\n", fit.cohesion / mega,
                               fit.friction_angle * degrees);
 }

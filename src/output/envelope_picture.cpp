@@ -89,7 +89,7 @@ std::vector<LegendEntry> legend_of(const std::vector<PeakPoint>& points, const E
     for (std::size_t i = 0; i < points.size(); ++i)
         entries.push_back(line_entry(fmt::format("{}: \u03c3\u2083 = {:.2f}, \u03c3\u2081 = {:#.3g} MPa{}",
                                                  points[i].run, points[i].sigma_3 / mega, points[i].sigma_1 / mega,
-                                                 points[i].peak_reached ? "" : ", still rising"),
+                                                 points[i].peak_reached ? "" : ", " + points[i].remark),
                                      circle_stroke(i, points[i].peak_reached)));
     return entries;
 }

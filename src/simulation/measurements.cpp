@@ -34,6 +34,31 @@ void count(ContactState state, ContactCounts& counts) {
 
 PairOfEdges edges_of(const ContactKey& key) { return {key.block_a, key.edge_a, key.block_b, key.edge_b}; }
 
+/// Potential cracks of the net between the quarters of the body's extent along `axis`.
+std::vector<int> bonds_in_the_middle(const Model& model, const Vec2& axis) {
+    const BlockSystem& system = model.system;
+    std::vector<double> heights;
+    for (const Vec2& vertex : system.vertices) heights.push_back(axis.dot(vertex));
+    const auto [low, high] = std::ranges::minmax(heights);
+    const double quarter = 0.25 * (high - low);
+    std::vector<int> bonds;
+    for (int i = 0; i < system.n_interfaces(); ++i) {
+        const Interface& interface = system.interfaces[i];
+        if (interface.origin != EdgeOrigin::tessellation || !model.bonds[interface.interface_type]) continue;
+        const Edge& edge = system.blocks[interface.block_a].edges[interface.edge_a];
+        const double middle = axis.dot(0.5 * (edge_start(system, edge) + edge_end(system, edge)));
+        if (middle >= low + quarter && middle <= high - quarter) bonds.push_back(i);
+    }
+    return bonds;
+}
+
+/// 0 where there are none.
+double broken_share(const std::vector<int>& bonds, const std::vector<InterfaceStatus>& interfaces) {
+    const auto broken =
+        std::ranges::count_if(bonds, [&](int i) { return interfaces[i] != InterfaceStatus::potential_crack; });
+    return bonds.empty() ? 0.0 : static_cast<double>(broken) / static_cast<double>(bonds.size());
+}
+
 } // namespace
 
 Gauges make_gauges(const Model& model) {
@@ -47,8 +72,9 @@ Gauges make_gauges(const Model& model) {
         break;
     }
     if (gauges.moved < 0) gauges.moved = uppermost_boundary(system);
+    if (gauges.moved >= 0) gauges.axial_normal = boundary_frame(system, gauges.moved).normal;
+    gauges.middle_bonds = bonds_in_the_middle(model, gauges.axial_normal);
     if (gauges.moved < 0) return gauges;
-    gauges.axial_normal = boundary_frame(system, gauges.moved).normal;
     gauges.lateral_normal = {gauges.axial_normal.y(), -gauges.axial_normal.x()};
     gauges.opposite = opposite_boundary(system, gauges.moved);
     gauges.length = distance_across(system, gauges.moved);
@@ -146,6 +172,7 @@ StepRecord measure_step(const Model& model, const Gauges& gauges, const State& s
     record.differential_stress = record.axial_stress - record.lateral_stress;
     record.cracks_tension = static_cast<int>(std::ranges::count(state.body.interfaces, InterfaceStatus::tension_crack));
     record.cracks_shear = static_cast<int>(std::ranges::count(state.body.interfaces, InterfaceStatus::shear_crack));
+    record.net_broken = broken_share(gauges.middle_bonds, state.body.interfaces);
     const auto counts = count_contacts(model, state, body, q);
     record.open = counts.open;
     record.sliding = counts.sliding;

@@ -61,15 +61,21 @@ TEST(Envelope, TakesTheLateralStressAtThePeak) {
     EXPECT_TRUE(point.peak_reached);
     rows[2].axial_stress = 1.39e6;
     EXPECT_FALSE(peak_point("c", rows).peak_reached);
+    EXPECT_EQ(peak_point("c", rows).remark, "still rising");
+    rows[1].net_broken = rows[2].net_broken = 1.0;
+    rows[2].axial_stress = 1.48e6; // by more than 5 % above what it carried when its bonds had failed
+    EXPECT_EQ(peak_point("c", rows).sigma_1, 1.4e6);
+    EXPECT_EQ(peak_point("c", rows).remark, "net locked");
     EXPECT_THROW((void)peak_point("c", {}), InputError);
 }
 
 TEST(Envelope, IsWrittenAsTextTableAndPictures) {
     const TemporaryDirectory directory;
     const Envelope exact{0.16e6, 36.2 * degree};
-    const std::vector<PeakPoint> points{{"c0", 0.0, exact.sigma_1(0.0)}, {"c1", 1e6, exact.sigma_1(1e6), false}};
+    const std::vector<PeakPoint> points{{"c0", 0.0, exact.sigma_1(0.0)},
+                                        {"c1", 1e6, exact.sigma_1(1e6), false, "net locked"}};
     EXPECT_THAT(envelope_text(points, exact), HasSubstr("cohesion 0.1600 MPa, friction angle 36.20 deg"));
-    EXPECT_THAT(envelope_text(points, exact), HasSubstr("still rising"));
+    EXPECT_THAT(envelope_text(points, exact), HasSubstr("  net locked\n"));
     EXPECT_THAT(envelope_csv(points, exact),
                 ::testing::StartsWith("run,sigma_3,sigma_1,fitted_sigma_1,peak_reached\nc0,0,"));
     write_envelope(directory / "e.png", "Envelope", points, exact, {{"published", {0.118e6, 39.6 * degree}}});

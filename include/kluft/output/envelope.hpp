@@ -16,7 +16,8 @@ struct PeakPoint {
     std::string run;
     double sigma_3 = 0.0;     ///< lateral stress at the peak
     double sigma_1 = 0.0;     ///< axial stress at the peak
-    bool peak_reached = true; ///< false: the stress was still rising, sigma_1 is a lower bound
+    bool peak_reached = true; ///< false: see `remark`
+    std::string remark{};     ///< of a peak that is not reached: "still rising", "net locked"
 };
 
 /// Mohr-Coulomb's line sigma_1 = 2 c cos(phi)/(1 - sin(phi)) + sigma_3 (1 + sin(phi))/(1 - sin(phi)).
