@@ -91,6 +91,8 @@ TEST(NetLocking, OnlyPotentialCracksOfTheNetCount) {
         return make_gauges(model).middle_bonds.size();
     };
     EXPECT_GT(bonds({}), 0U);
+    EXPECT_GT(bonds({"geometry.tessellation.region=[[0, 2], [5, 2], [5, 8], [0, 8]]"}), 0U);
+    EXPECT_EQ(bonds({"geometry.tessellation.region=[[1, 3], [4, 3], [4, 7], [1, 7]]"}), 0U); // in solid rock
     EXPECT_EQ(bonds({"geometry.tessellation.interface=joint"}), 0U);
     EXPECT_EQ(bonds({"geometry.tessellation=null", "geometry.fractures=[{trace: [[0, 5], [5, 5]], interface: bond}]"}),
               0U);
