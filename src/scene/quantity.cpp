@@ -49,10 +49,10 @@ constexpr std::array units{
     UnitRow{"MN", 6, newton},        UnitRow{"GN", 9, newton},
     UnitRow{"Pa", 0, pascal},        UnitRow{"hPa", 2, pascal},
     UnitRow{"kPa", 3, pascal},       UnitRow{"MPa", 6, pascal},
-    UnitRow{"GPa", 9, pascal},       UnitRow{"bar", 5, pascal},
-    UnitRow{"rad", 0, radian},       UnitRow{"deg", 0, radian, degree},
-    UnitRow{"°", 0, radian, degree}, UnitRow{"%", -2, none},
-    UnitRow{"‰", -3, none},
+    UnitRow{"GPa", 9, pascal},       UnitRow{"TPa", 12, pascal},
+    UnitRow{"bar", 5, pascal},       UnitRow{"rad", 0, radian},
+    UnitRow{"deg", 0, radian, degree}, UnitRow{"°", 0, radian, degree},
+    UnitRow{"%", -2, none},          UnitRow{"‰", -3, none},
 };
 
 Dimension dimension_of(Measure measure) {
