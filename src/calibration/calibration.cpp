@@ -82,8 +82,10 @@ void add_target_rules(const QuantityRow& row, std::vector<KeyRule>& rules) {
                      .range = above_zero,
                      .fallback = "1",
                      .doc = "Of the square of the difference over the tolerance, where targets oppose each other."});
-    rules.push_back({.path = path[5], .type = KeyType::named, .doc = "Keys of the scene and their values, for this "
-                                                                     "target alone."});
+    rules.push_back({.path = path[5],
+                     .type = KeyType::named,
+                     .doc = "Keys of the scene and their values, for this "
+                            "target alone."});
     rules.push_back({.path = path[6], .type = KeyType::text, .doc = "A value, as the scene has it."});
     rules.push_back({.path = path[7],
                      .type = KeyType::text,
@@ -204,7 +206,7 @@ std::vector<StudySetting> settings_at(const Calibration& calibration, const Eige
 
 namespace {
 
-Eigen::VectorXd logarithms(const Calibration& calibration, double CalibrationParameter::* member) {
+Eigen::VectorXd logarithms(const Calibration& calibration, double CalibrationParameter::*member) {
     Eigen::VectorXd x(static_cast<Eigen::Index>(calibration.parameters.size()));
     Eigen::Index next = 0;
     for (const auto& parameter : calibration.parameters) x[next++] = std::log(parameter.*member);

@@ -74,8 +74,8 @@ public:
         result_.name = file_.stem().string();
         result_.file = fs::absolute(file_).lexically_normal();
         if (!root_.is_mapping()) {
-            errors_.add(root_.at, "", "expected a mapping that begins with kluft_calibration: 1, found " +
-                                          found_text(root_));
+            errors_.add(root_.at, "",
+                        "expected a mapping that begins with kluft_calibration: 1, found " + found_text(root_));
             return std::move(result_);
         }
         check_keys(root_, "", "");
@@ -135,9 +135,9 @@ private:
         fs::path named = fs::absolute(file_.parent_path() / node.text).lexically_normal();
         std::error_code error;
         if (fs::is_regular_file(named, error)) return named;
-        errors_.add(node.at, path,
-                    fmt::format("expected a file, found {}, which is no file{}", in_quotes(node.text),
-                                nearest_file(named)));
+        errors_.add(
+            node.at, path,
+            fmt::format("expected a file, found {}, which is no file{}", in_quotes(node.text), nearest_file(named)));
         return {};
     }
 
@@ -227,8 +227,8 @@ private:
             key.at = name->at;
             key.times = number_of(item, "times", pattern, path, Measure::fraction).value_or(1.0);
         } else if (!item.is_scalar()) {
-            errors_.add(item.at, path, "expected a key of the scene or {key: ..., times: ...}, found " +
-                                           found_text(item));
+            errors_.add(item.at, path,
+                        "expected a key of the scene or {key: ..., times: ...}, found " + found_text(item));
             return std::nullopt;
         }
         if (!used_keys_.insert(key.key).second) {

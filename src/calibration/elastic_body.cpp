@@ -127,8 +127,7 @@ struct Slopes {
 };
 
 ElasticResponse rock_constants(const Slopes& slopes, Plane plane) {
-    if (plane == Plane::stress)
-        return {slopes.axial, slopes.lateral, slopes.axial_gradient, slopes.lateral_gradient};
+    if (plane == Plane::stress) return {slopes.axial, slopes.lateral, slopes.axial_gradient, slopes.lateral_gradient};
     ElasticResponse rock;
     const double sum = 1.0 + slopes.lateral;
     rock.poissons_ratio = slopes.lateral / sum;

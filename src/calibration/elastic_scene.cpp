@@ -15,9 +15,9 @@ namespace kluft {
 
 namespace {
 
-constexpr double log_step = 1e-3;      // error of order 4, 1e-12
+constexpr double log_step = 1e-3;        // error of order 4, 1e-12
 constexpr double least_influence = 1e-9; // of a unit of log(parameter) on log(E) or nu
-constexpr double to_start = 1e-5;      // pull towards the start, for what the targets do not determine
+constexpr double to_start = 1e-5;        // pull towards the start, for what the targets do not determine
 constexpr double least_singular = 1e-6;
 
 std::vector<StudySetting> joined(std::vector<StudySetting> first, const std::vector<StudySetting>& second) {
@@ -160,8 +160,7 @@ ElasticFit fit_elastic(const Calibration& calibration, ElasticTargets& targets, 
         all.values << own.values, to_start * (x - start);
         all.jacobian << own.jacobian, to_start * Eigen::MatrixXd::Identity(n, n);
         for (Eigen::Index i = 0; i < n_targets; ++i) {
-            const double weight =
-                std::sqrt(calibration.targets[targets.targets()[static_cast<std::size_t>(i)]].weight);
+            const double weight = std::sqrt(calibration.targets[targets.targets()[static_cast<std::size_t>(i)]].weight);
             all.values[i] *= weight;
             all.jacobian.row(i) *= weight;
         }

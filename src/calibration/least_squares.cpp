@@ -194,8 +194,7 @@ LeastSquaresResult minimise_squares(const ResidualFunction& function, const Eige
         if (residuals) residuals->jacobian = Eigen::MatrixXd(residuals->jacobian(Eigen::all, moving));
         return residuals;
     };
-    LeastSquaresResult result =
-        minimise_free(of_part, inside(moving), lower(moving), upper(moving), options);
+    LeastSquaresResult result = minimise_free(of_part, inside(moving), lower(moving), upper(moving), options);
     result.x = whole(result.x);
     return result;
 }

@@ -35,15 +35,15 @@ double largest_gradient_error(const Model& model) {
             return body.response(beside);
         };
         const auto p2 = moved(2), p1 = moved(1), m1 = moved(-1), m2 = moved(-2);
-        const auto difference = [&](double ElasticResponse::* value) {
+        const auto difference = [&](double ElasticResponse::*value) {
             return (8.0 * (p1.*value - m1.*value) - (p2.*value - m2.*value)) / (12.0 * 1e-3);
         };
         largest = std::max(largest, std::abs(difference(&ElasticResponse::youngs_modulus) -
                                              properties[i] * exact.modulus_gradient[i]) /
                                         exact.youngs_modulus);
-        largest = std::max(largest, std::abs(difference(&ElasticResponse::poissons_ratio) -
-                                             properties[i] * exact.ratio_gradient[i]) /
-                                        exact.poissons_ratio);
+        largest = std::max(
+            largest, std::abs(difference(&ElasticResponse::poissons_ratio) - properties[i] * exact.ratio_gradient[i]) /
+                         exact.poissons_ratio);
     }
     return largest;
 }
@@ -64,10 +64,10 @@ TEST(ElasticBody, AgreesWithARunOfTheSameBodyAtSmallStrain) {
     for (const std::string& net : {hexagons, jittered_hexagons, voronoi}) {
         const std::string scene = specimen(net, two_fractures);
         // Little strain, and so much friction that nothing slides.
-        const SceneRun run = run_scene(scene, {"stages.1.strain.value=1e-7", "stages.1.steps=4",
-                                               "interfaces.joint.friction_angle=89.9", "solver.tolerance=1e-10",
-                                               "interfaces.joint.contact_rounding=1e-6", "stages.0.pressure.left=100 Pa",
-                                               "stages.0.pressure.right=100 Pa"});
+        const SceneRun run =
+            run_scene(scene, {"stages.1.strain.value=1e-7", "stages.1.steps=4", "interfaces.joint.friction_angle=89.9",
+                              "solver.tolerance=1e-10", "interfaces.joint.contact_rounding=1e-6",
+                              "stages.0.pressure.left=100 Pa", "stages.0.pressure.right=100 Pa"});
         const CurveNumbers numbers = curve_numbers(run.equilibria, run.history, 1, Plane::strain);
         const ElasticResponse found = response_of(run.model);
         ASSERT_TRUE(numbers.youngs_modulus) << net;
