@@ -1,4 +1,5 @@
 // kluft-calibrate, which `kluft calibrate` starts: what needs Ipopt.
+#include <chrono>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -23,6 +24,22 @@ using kluft::ExitCode;
 
 constexpr std::size_t n_words = 6; ///< of the command line
 
+/// Says how the runs go on, from time to time.
+class RunProgress {
+public:
+    void show(const kluft::StudyProgress& progress) {
+        const auto now = Clock::now();
+        constexpr std::chrono::seconds pause{10};
+        if (now - last_ < pause) return;
+        last_ = now;
+        fmt::print(stderr, "  {}\n", kluft::study_progress_text(progress));
+    }
+
+private:
+    using Clock = std::chrono::steady_clock;
+    Clock::time_point last_ = Clock::now();
+};
+
 kluft::ExitCode run(const std::vector<std::string>& words) {
     const auto jobs = words.size() == n_words ? kluft::read_integer(words[4]) : std::nullopt;
     if (!jobs || *jobs < 1)
@@ -35,7 +52,11 @@ kluft::ExitCode run(const std::vector<std::string>& words) {
     kluft::listen_for_stop();
     kluft::CalibrationOptions options;
     options.place = {directory, words[1], static_cast<int>(*jobs), {}};
-    if (!quiet) options.say = [](const std::string& line) { fmt::print(stderr, "{}\n", line); };
+    RunProgress progress;
+    if (!quiet) {
+        options.say = [](const std::string& line) { fmt::print(stderr, "{}\n", line); };
+        options.place.show = [&](const kluft::StudyProgress& runs) { progress.show(runs); };
+    }
     const auto result = kluft::calibrate(calibration, options, kluft::stop_requested);
     if (result.stopped) {
         fmt::print(stderr, "stopped; the same command goes on from the runs in {}\n", directory.string());

@@ -57,9 +57,11 @@ public:
             const Eigen::VectorXd start = start_of(calibration_);
             elastic_ = std::make_unique<ElasticTargets>(calibration_, start);
             groups_ = runs_.groups;
-            for (std::size_t i = 0; i < elastic_->targets().size(); ++i)
-                groups_.push_back({runs_.n_rows + static_cast<Eigen::Index>(i), 1,
-                                   calibration_.targets[elastic_->targets()[i]].weight});
+            for (std::size_t i = 0; i < elastic_->targets().size(); ++i) {
+                const CalibrationTarget& target = calibration_.targets[elastic_->targets()[i]];
+                groups_.push_back(
+                    {runs_.n_rows + static_cast<Eigen::Index>(i), 1, target.weight, 1.0 / target.tolerance});
+            }
             fit_.x = start;
             fit_.influences.assign(calibration_.parameters.size(), 0);
             if (!elastic_->targets().empty()) elastic_stage(start);
@@ -202,8 +204,9 @@ private:
 
     void judge_targets() {
         result_.targets.resize(calibration_.targets.size());
+        if (!has_rows()) return judge_elastic_targets();
         copies_ = rows_of_copies();
-        for (std::size_t g = 0; has_rows() && g < groups_.size(); ++g) {
+        for (std::size_t g = 0; g < groups_.size(); ++g) {
             const CalibrationTarget& target = calibration_.targets[target_of(g)];
             TargetResult& found = result_.targets[target_of(g)];
             const bool is_curve = target.quantity == TargetQuantity::curve;
@@ -219,11 +222,23 @@ private:
         }
     }
 
+    /// Those are known where no run told anything.
+    void judge_elastic_targets() {
+        const auto rows = elastic_->residuals_at(result_.x);
+        for (std::size_t i = 0; rows && i < elastic_->targets().size(); ++i) {
+            const CalibrationTarget& target = calibration_.targets[elastic_->targets()[i]];
+            TargetResult& found = result_.targets[elastic_->targets()[i]];
+            found.error = target.tolerance * rows->values[static_cast<Eigen::Index>(i)];
+            found.found = target.value * (1.0 + found.error);
+            found.met = std::abs(found.error) <= target.tolerance;
+        }
+    }
+
     /// All rows of each copy at the best place, the elastic ones of its own net.
     [[nodiscard]] std::vector<Eigen::VectorXd> rows_of_copies() const {
         std::vector<Eigen::VectorXd> copies;
         const auto set = settings_at(calibration_, result_.x);
-        for (int replica = 0; has_rows() && replica < calibration_.replicas.count; ++replica) {
+        for (int replica = 0; replica < calibration_.replicas.count; ++replica) {
             Eigen::VectorXd rows = search_.rows;
             if (!runs_.targets.empty())
                 rows.head(runs_.n_rows) = search_.best.copies[static_cast<std::size_t>(replica)];

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <Eigen/SVD>
@@ -19,6 +20,7 @@ constexpr double log_step = 1e-3;        // error of order 4, 1e-12
 constexpr double least_influence = 1e-9; // of a unit of log(parameter) on log(E) or nu
 constexpr double to_start = 1e-5;        // pull towards the start, for what the targets do not determine
 constexpr double least_singular = 1e-6;
+constexpr double elastic_residual = 1e-7; // relative, where the fit ends
 
 std::vector<StudySetting> joined(std::vector<StudySetting> first, const std::vector<StudySetting>& second) {
     first.insert(first.end(), second.begin(), second.end());
@@ -41,6 +43,17 @@ Residuals relative_residuals(const Calibration& calibration, const std::vector<s
         result.jacobian.row(i) /= by_log ? value : target.value;
     }
     return result;
+}
+
+/// Roots of the weights over the tolerances; the tightest target has its own weight, so that residuals stay relative.
+Eigen::VectorXd weights_of(const Calibration& calibration, const std::vector<std::size_t>& targets) {
+    double tightest = std::numeric_limits<double>::infinity();
+    for (const std::size_t t : targets) tightest = std::min(tightest, calibration.targets[t].tolerance);
+    Eigen::VectorXd weights(static_cast<Eigen::Index>(targets.size()));
+    Eigen::Index next = 0;
+    for (const std::size_t t : targets)
+        weights[next++] = std::sqrt(calibration.targets[t].weight) * tightest / calibration.targets[t].tolerance;
+    return weights;
 }
 
 } // namespace
@@ -152,6 +165,7 @@ std::optional<Residuals> ElasticTargets::residuals_at(const Eigen::VectorXd& x) 
 ElasticFit fit_elastic(const Calibration& calibration, ElasticTargets& targets, const Eigen::VectorXd& start) {
     const Eigen::Index n = start.size();
     const auto n_targets = static_cast<Eigen::Index>(targets.targets().size());
+    const Eigen::VectorXd weights = weights_of(calibration, targets.targets());
     const ResidualFunction function = [&](const Eigen::VectorXd& x) -> std::optional<Residuals> {
         const auto values = targets.values_at(x);
         if (!values) return std::nullopt;
@@ -160,22 +174,31 @@ ElasticFit fit_elastic(const Calibration& calibration, ElasticTargets& targets, 
         all.values << own.values, to_start * (x - start);
         all.jacobian << own.jacobian, to_start * Eigen::MatrixXd::Identity(n, n);
         for (Eigen::Index i = 0; i < n_targets; ++i) {
-            const double weight = std::sqrt(calibration.targets[targets.targets()[static_cast<std::size_t>(i)]].weight);
-            all.values[i] *= weight;
-            all.jacobian.row(i) *= weight;
+            all.values[i] *= weights[i];
+            all.jacobian.row(i) *= weights[i];
         }
         return all;
     };
-    const auto result = minimise_squares(function, start, lower_bounds(calibration), upper_bounds(calibration),
-                                         {.n_judged = n_targets});
-    ElasticFit fit{.x = result.x, .evaluations = result.evaluations, .influences = {}, .is_determined = false};
-    const Eigen::MatrixXd jacobian = result.residuals.jacobian.topRows(n_targets);
+    const auto first = function(start);
+    if (!first) throw InputError("the elastic body of the scene has no equilibrium at the start of the parameters");
+    // What E and nu do not depend on stays where it is.
+    Eigen::VectorXd lower = start;
+    Eigen::VectorXd upper = start;
+    ElasticFit fit;
     std::vector<Eigen::Index> influencing;
     for (Eigen::Index i = 0; i < n; ++i) {
-        fit.influences.push_back(jacobian.col(i).norm() > least_influence ? 1 : 0);
-        if (fit.influences.back()) influencing.push_back(i);
+        fit.influences.push_back(first->jacobian.col(i).head(n_targets).norm() > least_influence ? 1 : 0);
+        if (!fit.influences.back()) continue;
+        influencing.push_back(i);
+        lower[i] = lower_bounds(calibration)[i];
+        upper[i] = upper_bounds(calibration)[i];
     }
+    const auto result =
+        minimise_squares(function, start, lower, upper, {.residual = elastic_residual, .n_judged = n_targets});
+    fit.x = result.x;
+    fit.evaluations = 1 + result.evaluations;
     if (influencing.empty() || static_cast<Eigen::Index>(influencing.size()) > n_targets) return fit;
+    const Eigen::MatrixXd jacobian = result.residuals.jacobian.topRows(n_targets);
     const Eigen::JacobiSVD<Eigen::MatrixXd> svd(Eigen::MatrixXd(jacobian(Eigen::all, influencing)));
     fit.is_determined = svd.singularValues().minCoeff() > least_singular * svd.singularValues().maxCoeff();
     return fit;

@@ -18,7 +18,7 @@ namespace {
 using Ipopt::Index;
 using Ipopt::Number;
 
-constexpr double barrier_start = 1e-8; ///< of the sum of squares, which is about one far from the minimum
+constexpr double barrier_start = 1e-13; ///< next to sums of squares of about one far from the minimum
 constexpr double bound_push = 1e-9;
 constexpr double optimality = 1e-13;
 

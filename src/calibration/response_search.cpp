@@ -5,15 +5,19 @@
 #include <limits>
 #include <utility>
 
-#include <Eigen/QR>
+#include <Eigen/Cholesky>
 #include <Eigen/SVD>
 
 namespace kluft {
 
 namespace {
 
-constexpr double reach = 2.0;          // of the radius: evaluations that a local model is made of
-constexpr double ridge = 1e-2;         // pull towards the expected slopes, per unit of the scaled step
+constexpr double reach = 2.0;       // of the radius: evaluations that a local model is made of
+constexpr double known_slope = 1.0; // scatter of slopes about what theory expects, in units
+constexpr double unknown_slope = 2.0;
+constexpr double likely_curvature = 0.5;
+constexpr double left_out = 0.25;      // by the model, times the square of the distance, in units
+constexpr double least_error = 0.1;    // of an evaluation, in tolerances
 constexpr double spread_wanted = 0.25; // of the evaluations in each direction, in radii
 constexpr double good_ratio = 0.7;     // of actual to promised gain
 constexpr double poor_ratio = 0.25;
@@ -31,6 +35,42 @@ std::vector<Evaluation> near(const std::vector<Evaluation>& all, const Eigen::Ve
     for (const Evaluation& each : all)
         if (each.is_usable && (each.x - centre).lpNorm<Eigen::Infinity>() <= reach * radius) chosen.push_back(each);
     return chosen;
+}
+
+/// What is known of a row before it is fitted.
+struct RowPrior {
+    Eigen::Index row = 0;
+    double unit = 1.0;
+    double slope = 1.0; ///< scatter about the expected one, in units
+};
+
+/// Value, differences from the expected slopes, curvatures.
+struct RowFit {
+    Eigen::VectorXd terms;
+};
+
+/// Weighted least squares of one row over all usable evaluations, with slopes and curvatures drawn to what is expected.
+RowFit fit_row(const std::vector<Evaluation>& all, const RowPrior& prior, const LocalModel& model,
+               const std::vector<Eigen::Index>& moving) {
+    const auto n = static_cast<Eigen::Index>(moving.size());
+    Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(1 + 2 * n, 1 + 2 * n);
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(1 + 2 * n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+        normal(1 + i, 1 + i) = 1.0 / std::pow(prior.slope * prior.unit, 2);
+        normal(1 + n + i, 1 + n + i) = 1.0 / std::pow(likely_curvature * prior.unit, 2);
+    }
+    for (const Evaluation& each : all) {
+        if (!each.is_usable) continue;
+        const Eigen::VectorXd whole = each.x - model.centre;
+        const Eigen::VectorXd d = whole(moving);
+        const double variance = each.variance_of_mean()[prior.row] + least_error * least_error +
+                                std::pow(left_out * prior.unit * whole.squaredNorm(), 2);
+        Eigen::VectorXd terms(1 + 2 * n);
+        terms << 1.0, d, d.cwiseProduct(d);
+        normal += terms * terms.transpose() / variance;
+        right += terms * (each.mean()[prior.row] - model.slope.row(prior.row).dot(whole)) / variance;
+    }
+    return {normal.ldlt().solve(right)};
 }
 
 /// One call of search_responses.
@@ -131,7 +171,7 @@ private:
     }
 
     [[nodiscard]] LocalModel local_model() const {
-        return fit_local_model(result_.all, best_x(), radius_, problem_.expected(best_x()), moving_);
+        return fit_local_model(result_.all, best_x(), problem_.expected(best_x()), problem_.groups, moving_);
     }
 
     /// The rows of the local model and the exact ones, each by the root of its weight.
@@ -213,6 +253,14 @@ Eigen::VectorXd Evaluation::mean() const {
     return sum / static_cast<double>(copies.size());
 }
 
+Eigen::VectorXd Evaluation::variance_of_mean() const {
+    const Eigen::VectorXd middle = mean();
+    Eigen::VectorXd squares = Eigen::VectorXd::Zero(middle.size());
+    for (const Eigen::VectorXd& each : copies) squares += (each - middle).cwiseAbs2();
+    const auto n = static_cast<double>(copies.size());
+    return copies.size() < 2 ? squares : Eigen::VectorXd(squares / (n * (n - 1.0)));
+}
+
 double worst_group(const std::vector<RowGroup>& groups, const Eigen::VectorXd& rows) {
     double worst = 0.0;
     for (const RowGroup& group : groups) worst = std::max(worst, rows.segment(group.first, group.n).norm());
@@ -224,41 +272,30 @@ SearchResult search_responses(const SearchProblem& problem, const SearchOptions&
 }
 
 Residuals LocalModel::at(const Eigen::VectorXd& x) const {
-    const Eigen::VectorXd d = (x - centre) / radius;
+    const Eigen::VectorXd d = x - centre;
     Residuals result;
     result.values = value + slope * d + curvature * d.cwiseProduct(d);
-    result.jacobian = (slope + 2.0 * curvature * d.asDiagonal()) / radius;
+    result.jacobian = slope + 2.0 * curvature * d.asDiagonal();
     return result;
 }
 
-LocalModel fit_local_model(const std::vector<Evaluation>& all, const Eigen::VectorXd& centre, double radius,
-                           const Eigen::MatrixXd& expected, const std::vector<Eigen::Index>& moving) {
-    const auto chosen = near(all, centre, radius);
-    const auto n_places = static_cast<Eigen::Index>(chosen.size());
+LocalModel fit_local_model(const std::vector<Evaluation>& all, const Eigen::VectorXd& centre,
+                           const Eigen::MatrixXd& expected, const std::vector<RowGroup>& groups,
+                           const std::vector<Eigen::Index>& moving) {
     const auto n = static_cast<Eigen::Index>(moving.size());
-    const Eigen::Index n_rows = expected.rows();
-    const bool curved = n_places >= 2 * n + 2;
-    const Eigen::Index n_terms = 1 + n + (curved ? n : 0);
-    LocalModel model{centre, radius, {}, radius * expected, Eigen::MatrixXd::Zero(n_rows, centre.size())};
-    // Differences from what is expected, as a least-squares problem with a small pull of slopes and curvatures to zero.
-    Eigen::MatrixXd terms = Eigen::MatrixXd::Zero(n_places + n_terms - 1, n_terms);
-    Eigen::MatrixXd values = Eigen::MatrixXd::Zero(n_places + n_terms - 1, n_rows);
-    for (Eigen::Index i = 0; i < n_places; ++i) {
-        const Evaluation& each = chosen[static_cast<std::size_t>(i)];
-        const Eigen::VectorXd whole = (each.x - centre) / radius;
-        const Eigen::VectorXd d = whole(moving);
-        terms(i, 0) = 1.0;
-        terms.row(i).segment(1, n) = d;
-        if (curved) terms.row(i).tail(n) = d.cwiseProduct(d);
-        if (n_rows > 0) values.row(i) = each.mean() - model.slope * whole;
-    }
-    for (Eigen::Index i = 1; i < n_terms; ++i) terms(n_places + i - 1, i) = ridge;
-    const Eigen::MatrixXd found = terms.colPivHouseholderQr().solve(values);
-    model.value = found.row(0);
-    for (Eigen::Index i = 0; i < n; ++i) {
-        const Eigen::Index column = moving[static_cast<std::size_t>(i)];
-        model.slope.col(column) += found.row(1 + i);
-        if (curved) model.curvature.col(column) = found.row(1 + n + i);
+    LocalModel model{centre, Eigen::VectorXd(expected.rows()), expected,
+                     Eigen::MatrixXd::Zero(expected.rows(), centre.size())};
+    for (const RowGroup& group : groups) {
+        for (Eigen::Index row = group.first; row < std::min(group.first + group.n, expected.rows()); ++row) {
+            const bool is_known = !expected.row(row)(moving).isZero(0.0);
+            const RowFit fit = fit_row(
+                all, {.row = row, .unit = group.unit, .slope = is_known ? known_slope : unknown_slope}, model, moving);
+            model.value[row] = fit.terms[0];
+            for (Eigen::Index i = 0; i < n; ++i) {
+                model.slope(row, moving[static_cast<std::size_t>(i)]) += fit.terms[1 + i];
+                model.curvature(row, moving[static_cast<std::size_t>(i)]) = fit.terms[1 + n + i];
+            }
+        }
     }
     return model;
 }

@@ -225,7 +225,8 @@ RunTargets run_targets(const Calibration& calibration) {
         if (is_elastic(target.quantity)) continue;
         const Eigen::Index n = target.quantity == TargetQuantity::curve ? n_compared_points : 1;
         result.targets.push_back(i);
-        result.groups.push_back({result.n_rows, n, target.weight});
+        const double of_row = target.tolerance * std::sqrt(static_cast<double>(n));
+        result.groups.push_back({result.n_rows, n, target.weight, 1.0 / of_row});
         result.n_rows += n;
     }
     return result;

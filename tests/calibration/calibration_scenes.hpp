@@ -18,7 +18,7 @@ inline std::string specimen(const std::string& tessellation, const std::string& 
            "  rock: {density: 2500, youngs_modulus: 15 GPa, poissons_ratio: 0.25, cohesion: 8 MPa, friction_angle: 40, "
            "tensile_strength: 2.5 MPa}\n"
            "interfaces:\n"
-           "  joint: {kind: fracture, normal_stiffness: 400 GPa/m, shear_stiffness: 150 GPa/m, friction_angle: 30}\n"
+           "  joint: {kind: fracture, normal_stiffness: 400 GPa/m, shear_stiffness: 150 GPa/m, friction_angle: 20}\n"
            "  bond: {kind: potential_crack, normal_stiffness: 3 TPa/m, shear_stiffness: 1.5 TPa/m, fails_to: joint}\n"
            "geometry:\n"
            "  domain: {rectangle: {width: 0.2, height: 0.4}}\n" +
@@ -26,7 +26,7 @@ inline std::string specimen(const std::string& tessellation, const std::string& 
            ", interface: bond}\n"
            "stages:\n"
            "  - {name: pressure, pressure: {left: 0, right: 0}, steps: 1}\n"
-           "  - {name: platen, strain: {boundary: top, value: 0.5 %}, steps: 10}\n"
+           "  - {name: platen, strain: {boundary: top, value: 0.8 %}, steps: 20}\n"
            "output: {pictures: false, fields: false}\n";
 }
 

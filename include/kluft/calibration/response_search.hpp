@@ -22,6 +22,8 @@ struct Evaluation {
 
     /// Of the copies.
     [[nodiscard]] Eigen::VectorXd mean() const;
+    /// Squared standard error of the mean, per row; zero of a single copy.
+    [[nodiscard]] Eigen::VectorXd variance_of_mean() const;
 };
 
 /// The rows of one target: met where the norm of its rows is at most 1.
@@ -29,6 +31,7 @@ struct RowGroup {
     Eigen::Index first = 0;
     Eigen::Index n = 1;
     double weight = 1.0; ///< of the squares of its rows
+    double unit = 1.0;   ///< change of a row that is as large as the target's value: 1/tolerance
 };
 
 /// Rows are the noisy ones first, then the exact ones. x: logarithms of the parameters.
@@ -74,21 +77,21 @@ struct SearchResult {
 
 [[nodiscard]] SearchResult search_responses(const SearchProblem& problem, const SearchOptions& options);
 
-/// A local model of the noisy rows about a centre: a + G d + C (d o d) with d = (x - centre)/radius.
+/// A local model of the noisy rows about a centre: a + G d + C (d o d) with d = x - centre.
 struct LocalModel {
     Eigen::VectorXd centre;
-    double radius = 1.0;
     Eigen::VectorXd value;     ///< a
     Eigen::MatrixXd slope;     ///< G
-    Eigen::MatrixXd curvature; ///< C; zero with few evaluations
+    Eigen::MatrixXd curvature; ///< C
 
     [[nodiscard]] Residuals at(const Eigen::VectorXd& x) const;
 };
 
-/// Least squares over the evaluations within two radii of the centre, drawn to the `expected` derivatives (by x) where they
-/// say little; with curvatures from 2 n + 2 evaluations on, n the number of parameters that move.
+/// The most likely model (Bayes with normal errors): slopes scatter about the `expected` ones by 1 unit per unit of x, by 2
+/// where theory knows none; curvatures about zero by 1/2 unit; an evaluation at the distance |d| about the model by the
+/// standard error of its mean, a tenth of a tolerance and |d|^2/4 units, which is what the model leaves out.
 [[nodiscard]] LocalModel fit_local_model(const std::vector<Evaluation>& all, const Eigen::VectorXd& centre,
-                                         double radius, const Eigen::MatrixXd& expected,
+                                         const Eigen::MatrixXd& expected, const std::vector<RowGroup>& groups,
                                          const std::vector<Eigen::Index>& moving);
 
 } // namespace kluft
