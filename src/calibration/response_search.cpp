@@ -47,11 +47,18 @@ struct RowPrior {
 /// Value, differences from the expected slopes, curvatures.
 struct RowFit {
     Eigen::VectorXd terms;
+    double misfit = 0.0; ///< mean square of the differences over their variances
 };
 
-/// Weighted least squares of one row over all usable evaluations, with slopes and curvatures drawn to what is expected.
+/// Of one evaluation, about the model: of its mean, and what the model leaves out at its distance.
+double variance_of(const Evaluation& each, const RowPrior& prior, double distance_squared, double scatter) {
+    return each.variance_of_mean()[prior.row] + scatter + std::pow(left_out * prior.unit * distance_squared, 2);
+}
+
+/// Weighted least squares of one row over all usable evaluations, with slopes and curvatures drawn to what is expected;
+/// `scatter`: variance that all evaluations have in common.
 RowFit fit_row(const std::vector<Evaluation>& all, const RowPrior& prior, const LocalModel& model,
-               const std::vector<Eigen::Index>& moving) {
+               const std::vector<Eigen::Index>& moving, double scatter) {
     const auto n = static_cast<Eigen::Index>(moving.size());
     Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(1 + 2 * n, 1 + 2 * n);
     Eigen::VectorXd right = Eigen::VectorXd::Zero(1 + 2 * n);
@@ -59,18 +66,49 @@ RowFit fit_row(const std::vector<Evaluation>& all, const RowPrior& prior, const 
         normal(1 + i, 1 + i) = 1.0 / std::pow(prior.slope * prior.unit, 2);
         normal(1 + n + i, 1 + n + i) = 1.0 / std::pow(likely_curvature * prior.unit, 2);
     }
+    const auto terms_of = [&](const Eigen::VectorXd& whole) {
+        Eigen::VectorXd terms(1 + 2 * n);
+        const Eigen::VectorXd d = whole(moving);
+        terms << 1.0, d, d.cwiseProduct(d);
+        return terms;
+    };
+    const auto value_of = [&](const Evaluation& each, const Eigen::VectorXd& whole) {
+        return each.mean()[prior.row] - model.slope.row(prior.row).dot(whole);
+    };
     for (const Evaluation& each : all) {
         if (!each.is_usable) continue;
         const Eigen::VectorXd whole = each.x - model.centre;
-        const Eigen::VectorXd d = whole(moving);
-        const double variance = each.variance_of_mean()[prior.row] + least_error * least_error +
-                                std::pow(left_out * prior.unit * whole.squaredNorm(), 2);
-        Eigen::VectorXd terms(1 + 2 * n);
-        terms << 1.0, d, d.cwiseProduct(d);
+        const double variance = variance_of(each, prior, whole.squaredNorm(), scatter);
+        const Eigen::VectorXd terms = terms_of(whole);
         normal += terms * terms.transpose() / variance;
-        right += terms * (each.mean()[prior.row] - model.slope.row(prior.row).dot(whole)) / variance;
+        right += terms * value_of(each, whole) / variance;
     }
-    return {normal.ldlt().solve(right)};
+    RowFit fit{normal.ldlt().solve(right), 0.0};
+    double weights = 0.0;
+    for (const Evaluation& each : all) {
+        if (!each.is_usable) continue;
+        const Eigen::VectorXd whole = each.x - model.centre;
+        const double variance = variance_of(each, prior, whole.squaredNorm(), scatter);
+        const double error = value_of(each, whole) - fit.terms.dot(terms_of(whole));
+        fit.misfit += error * error / (variance * variance);
+        weights += 1.0 / variance;
+    }
+    fit.misfit /= weights;
+    return fit;
+}
+
+/// The same with the scatter that the evaluations themselves show: those of one copy, or of bodies that jump, lie about any
+/// smooth model by more than a tenth of a tolerance.
+RowFit fit_row_with_scatter(const std::vector<Evaluation>& all, const RowPrior& prior, const LocalModel& model,
+                            const std::vector<Eigen::Index>& moving) {
+    constexpr int n_passes = 8;
+    double scatter = least_error * least_error;
+    RowFit fit = fit_row(all, prior, model, moving, scatter);
+    for (int pass = 0; pass < n_passes && fit.misfit > 1.0; ++pass) {
+        scatter *= std::min(fit.misfit, 100.0);
+        fit = fit_row(all, prior, model, moving, scatter);
+    }
+    return fit;
 }
 
 /// One call of search_responses.
@@ -159,10 +197,16 @@ private:
             if (svd.singularValues()[i] >= spread_wanted) continue;
             const Eigen::VectorXd there = inside(svd.matrixV().col(i));
             const Eigen::VectorXd back = inside(-svd.matrixV().col(i));
-            places.push_back((there - best_x()).norm() >= (back - best_x()).norm() ? there : back);
+            const bool is_there_longer = (there - best_x()).norm() >= (back - best_x()).norm();
+            places.push_back(is_there_longer ? there : back);
+            if (is_at_start() && n_left() > static_cast<int>(places.size()))
+                places.push_back(is_there_longer ? back : there);
         }
         return places;
     }
+
+    /// There both sides are looked at: slopes over a wide range are those of the means of jumps.
+    [[nodiscard]] bool is_at_start() const { return result_.all.size() == problem_.starts.size(); }
 
     [[nodiscard]] Eigen::VectorXd inside(const Eigen::VectorXd& direction) const {
         Eigen::VectorXd x = best_x();
@@ -288,7 +332,7 @@ LocalModel fit_local_model(const std::vector<Evaluation>& all, const Eigen::Vect
     for (const RowGroup& group : groups) {
         for (Eigen::Index row = group.first; row < std::min(group.first + group.n, expected.rows()); ++row) {
             const bool is_known = !expected.row(row)(moving).isZero(0.0);
-            const RowFit fit = fit_row(
+            const RowFit fit = fit_row_with_scatter(
                 all, {.row = row, .unit = group.unit, .slope = is_known ? known_slope : unknown_slope}, model, moving);
             model.value[row] = fit.terms[0];
             for (Eigen::Index i = 0; i < n; ++i) {

@@ -49,8 +49,8 @@ struct SearchProblem {
 
 struct SearchOptions {
     int most_evaluations = 40;
-    double radius = 0.3;        ///< of the first trust region, in logarithms
-    double least_radius = 0.01; ///< ends below it
+    double radius = 0.5;        ///< of the first trust region, in logarithms
+    double least_radius = 0.02; ///< ends below it
     double largest_radius = 1.2;
     std::function<void(const Evaluation&, double worst)>
         show; ///< after each evaluation, with the largest norm of a group
@@ -89,7 +89,8 @@ struct LocalModel {
 
 /// The most likely model (Bayes with normal errors): slopes scatter about the `expected` ones by 1 unit per unit of x, by 2
 /// where theory knows none; curvatures about zero by 1/2 unit; an evaluation at the distance |d| about the model by the
-/// standard error of its mean, a tenth of a tolerance and |d|^2/4 units, which is what the model leaves out.
+/// standard error of its mean, a tenth of a tolerance and |d|^2/4 units, which is what the model leaves out; by more where they show a
+/// larger scatter.
 [[nodiscard]] LocalModel fit_local_model(const std::vector<Evaluation>& all, const Eigen::VectorXd& centre,
                                          const Eigen::MatrixXd& expected, const std::vector<RowGroup>& groups,
                                          const std::vector<Eigen::Index>& moving);
