@@ -58,6 +58,7 @@ void print_stiffness(const Scene& scene, const Model& model) {
     }
     for (std::size_t t = 0; t < model.laws.size(); ++t) {
         const InterfaceLaw& law = model.laws[t];
+        if (t >= scene.interface_types.size() && model.net.kind == NetKind::triangles) break; // of other spacings
         if (law.normal_stiffness == model.given_stiffness[t].normal) continue;
         fmt::print("             {}{}: k_n {:.4g} Pa/m, k_s {:.4g} Pa/m with the compliance of the rigid blocks\n",
                    scene.interface_types[model.law_types[t]].name,
@@ -67,10 +68,10 @@ void print_stiffness(const Scene& scene, const Model& model) {
     if (!scene.geometry.tessellation) return;
     const InterfaceLaw& net = model.laws[scene.geometry.tessellation->interface_type];
     for (std::size_t m = 0; m < model.moduli.size(); ++m) {
-        const auto lattice =
-            model.kinematics == Kinematics::rigid
-                ? rigid_lattice_moduli({net.normal_stiffness, net.shear_stiffness}, d, model.plane)
-                : lattice_moduli(model.moduli[m], {net.normal_stiffness, net.shear_stiffness}, d, model.plane);
+        const InterfaceStiffness stiffness{.normal = net.normal_stiffness, .shear = net.shear_stiffness};
+        const auto lattice = model.kinematics == Kinematics::rigid
+                                 ? rigid_lattice_moduli(stiffness, model.net, model.plane)
+                                 : lattice_moduli(model.moduli[m], stiffness, model.net, model.plane);
         fmt::print("lattice      {}: E {:.4g} Pa, nu {:.4g}\n", scene.materials[m].name, lattice.youngs_modulus,
                    lattice.poissons_ratio);
     }
@@ -85,7 +86,7 @@ double estimated_memory(const Scene& scene, const Model& model, double factor) {
     constexpr double pictures_per_block = 2.6e3;
     const BlockSystem& system = model.system;
     const auto n_fractures = std::ranges::count_if(
-        system.interfaces, [&](const Interface& interface) { return model.bonds[interface.interface_type] == 0; });
+        system.interfaces, [&](const Interface& interface) { return model.bonds[law_of(interface)] == 0; });
     const double run =
         program + per_block * system.n_blocks() + per_fracture * static_cast<double>(n_fractures) + factor;
     return scene.output.pictures ? std::max(run, pictures + pictures_per_block * system.n_blocks()) : run;

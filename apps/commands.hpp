@@ -61,7 +61,8 @@ struct CompareArguments {
 [[nodiscard]] ExitCode compare(const CompareArguments& arguments);
 
 struct EnvelopeArguments {
-    std::vector<std::string> directories;
+    std::vector<std::string> sources; ///< directories of results and tables (.csv)
+    std::vector<std::string> tension; ///< tensile strengths found elsewhere
     std::string picture = "envelope.png";
     std::string title = "Strength envelope";
     std::vector<std::string> others;

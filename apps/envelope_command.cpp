@@ -1,8 +1,9 @@
-// kluft envelope DIR...
+// kluft envelope DIR|TABLE.csv...
 #include <filesystem>
-#include <memory>
 #include <numbers>
 #include <string>
+#include <system_error>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -11,9 +12,8 @@
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/output/atomic_file.hpp"
 #include "kluft/output/envelope.hpp"
-#include "kluft/output/history_table.hpp"
 #include "kluft/scene/quantity.hpp"
-#include "kluft/studies/finished_run.hpp"
+#include "kluft/studies/strength_tests.hpp"
 
 namespace kluft {
 
@@ -37,24 +37,53 @@ NamedEnvelope named_envelope(const std::string& text) {
                     text));
 }
 
+/// A strength found elsewhere by pulling or splitting: sigma_1 = 0, sigma_3 = -sigma_t.
+PeakPoint tension_test(const std::string& text) {
+    const auto strength = read_quantity(text, Measure::stress).value;
+    if (!strength || !(*strength > 0.0))
+        throw InputError(
+            fmt::format("--tension: expected a tensile strength above zero as in '0.12 MPa', found '{}'", text));
+    return {.run = "tension " + text, .sigma_3 = -*strength};
+}
+
+/// The table beside the picture must not take the place of one that it is made from.
+void keep_tables(const fs::path& table, const std::vector<std::string>& sources) {
+    std::error_code ignored;
+    for (const auto& source : sources)
+        if (fs::equivalent(table, source, ignored))
+            throw InputError(fmt::format("-o: {} is one of the tests and would be overwritten; expected another name",
+                                         table.string()));
+}
+
+/// The peaks of a directory of results or of a table.
+void add_peaks(const fs::path& source, std::vector<PeakPoint>& peaks) {
+    const bool is_table = source.extension() == ".csv" && !fs::is_directory(source);
+    if (!is_table && fs::is_regular_file(source))
+        throw InputError(source.string() +
+                         ": expected a directory of results or a table of tests (.csv), found another file");
+    if (!is_table) {
+        peaks.push_back(read_peak(source, run_name(source)));
+        return;
+    }
+    if (!fs::exists(source)) throw InputError(source.string() + ": expected a table of tests, found no such file");
+    for (PeakPoint& peak : read_strength_table(source)) peaks.push_back(std::move(peak));
+}
+
 } // namespace
 
 ExitCode envelope(const EnvelopeArguments& arguments) {
     std::vector<NamedEnvelope> others;
     for (const auto& text : arguments.others) others.push_back(named_envelope(text));
     std::vector<PeakPoint> peaks;
-    for (const auto& name : arguments.directories) {
-        const fs::path directory = name;
-        require_results(directory);
-        const fs::path table =
-            fs::exists(directory / "equilibria.csv") ? directory / "equilibria.csv" : directory / "history.csv";
-        peaks.push_back(peak_point(run_name(directory), read_history(table)));
-    }
-    const Envelope fit = fit_envelope(peaks);
+    for (const auto& source : arguments.sources) add_peaks(source, peaks);
+    for (const auto& text : arguments.tension) peaks.push_back(tension_test(text));
+    const StrengthFit fit = fit_strength(peaks);
     const fs::path picture = arguments.picture;
+    fs::path beside = picture;
+    keep_tables(beside.replace_extension(".csv"), arguments.sources);
     write_envelope(picture, arguments.title, peaks, fit, others);
-    fs::path table = picture;
-    write_file(table.replace_extension(".csv"), envelope_csv(peaks, fit));
+    write_file(beside, envelope_csv(peaks, fit));
+    write_file(beside.replace_extension(".json"), envelope_json(peaks, fit));
     fmt::print("{}{}\n", envelope_text(peaks, fit), picture.string());
     return ExitCode::done;
 }

@@ -182,15 +182,32 @@ void add_compare_command(CLI::App& app, Command& command) {
 void add_envelope_command(CLI::App& app, Command& command) {
     auto arguments = std::make_shared<kluft::EnvelopeArguments>();
     CLI::App* sub = app.add_subcommand(
-        "envelope", "Fit cohesion and friction angle to the peaks of several runs, draw Mohr's circles");
-    sub->add_option("directories", arguments->directories, "Directories of results")->required();
-    sub->add_option("-o,--output", arguments->picture, "Picture, .png or .svg; a table of the same name goes beside it")
+        "envelope",
+        "Fit cohesion and friction angle, tensile strength and Hoek-Brown's curve to the peaks of several tests, "
+        "draw Mohr's circles");
+    sub->add_option("sources", arguments->sources,
+                    "Directories of results, and tables (.csv) with columns sigma_3, sigma_1 in Pa, or with the unit "
+                    "as in 'sigma_1 (MPa)'")
+        ->required();
+    sub->add_option("-o,--output", arguments->picture,
+                    "Picture, .png or .svg; a table and a .json of the same name go beside it")
         ->capture_default_str();
+    sub->add_option("--tension", arguments->tension,
+                    "Tensile strength of a test made elsewhere, e.g. '0.12 MPa'; once for each test")
+        ->take_all()
+        ->allow_extra_args(false);
     sub->add_option("--compare", arguments->others, "Another envelope in the picture: LABEL=COHESION,ANGLE")
         ->take_all()
         ->allow_extra_args(false);
     sub->add_option("--title", arguments->title, "Title of the picture")->capture_default_str();
-    sub->footer("Example: kluft envelope results/case-5-all results/case-3-all results/case-4-all results/case-6-all");
+    sub->footer(
+        "Runs that were still rising, ended unbalanced or whose net locked are bounds: they are drawn and listed, but "
+        "not fitted.\nRuns that pull, and rows of tables with sigma_3 below zero, give the tensile strength.\n"
+        "Other columns of tables: run, peak_reached, balanced, net_locked (0 or 1).\n"
+        "Examples:\n"
+        "  kluft envelope results/case-5-all results/case-3-all results/case-4-all results/case-6-all\n"
+        "  kluft envelope field-tests.csv results/case-3-all --tension '0.1 MPa' --tension '0.12 MPa'\n"
+        "  kluft envelope results/low results/high -o both.png --compare 'field tests=0.16 MPa, 36.2 deg'");
     sub->callback([arguments, &command] { command = [arguments] { return kluft::envelope(*arguments); }; });
 }
 

@@ -190,12 +190,12 @@ TEST(Layering, KeepsHeavyHeadersOutOfPublicOnes) {
 }
 
 // CGAL takes 15 s and 1 GB to compile, and CMakeLists.txt gives its flags to this file only.
-TEST(Layering, IncludesCgalInOneFile) {
+TEST(Layering, IncludesCgalWhereItIsHidden) {
     std::vector<std::string> files;
     for (const fs::path& file : all_sources())
         for (const Include& include : includes_of(file))
             if (include.name.starts_with("CGAL/")) files.push_back(file.lexically_relative(source_folder).string());
-    EXPECT_THAT(files, testing::Each("src/blocks/arrangement.cpp"));
+    EXPECT_THAT(files, testing::Each(testing::AnyOf("src/blocks/arrangement.cpp", "src/blocks/triangle_net.cpp")));
 }
 
 TEST(Layering, ReadsNamesInBothKindsOfBrackets) {

@@ -19,7 +19,7 @@ _kluft() {
     fi
 
     case "$previous" in
-    --set | --threads | --mark | --limit | --title | --compare | --tolerance | --jobs) return ;;
+    --set | --threads | --mark | --limit | --title | --compare | --tension | --tolerance | --jobs) return ;;
     --emit)
         mapfile -t COMPREPLY < <(compgen -W "slurm make" -- "$word")
         return
@@ -36,7 +36,7 @@ _kluft() {
     check) options+=" --set" ;;
     draw) options+=" -o --output --curve --blocks --mark --limit --title --set" ;;
     compare) options+=" -o --output --tolerance" ;;
-    envelope) options+=" -o --output --compare --title" ;;
+    envelope) options+=" -o --output --tension --compare --title" ;;
     study) options+=" -o --output --jobs --set --emit --collect --quantity --quiet" ;;
     calibrate) options+=" -o --output --jobs --quiet" ;;
     validate) options+=" -o --output --jobs --list" ;;
@@ -52,7 +52,13 @@ _kluft() {
         _kluft_scenes "$word"
         mapfile -t -O "${#COMPREPLY[@]}" COMPREPLY < <(compgen -W "step-size trade" -- "$word")
         ;;
-    compare | envelope) mapfile -t COMPREPLY < <(compgen -d -- "$word") ;;
+    envelope)
+        mapfile -t COMPREPLY < <(
+            compgen -d -- "$word"
+            compgen -f -X "!*.csv" -- "$word"
+        )
+        ;;
+    compare) mapfile -t COMPREPLY < <(compgen -d -- "$word") ;;
     esac
 }
 

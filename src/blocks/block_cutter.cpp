@@ -14,9 +14,11 @@
 #include "kluft/blocks/arrangement.hpp"
 #include "kluft/blocks/block_search.hpp"
 #include "kluft/blocks/fracture_trace.hpp"
+#include "kluft/blocks/free_pieces.hpp"
 #include "kluft/blocks/given_blocks.hpp"
 #include "kluft/blocks/hexagon_lattice.hpp"
 #include "kluft/blocks/map_mender.hpp"
+#include "kluft/blocks/triangle_net.hpp"
 #include "kluft/blocks/voronoi_cells.hpp"
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/core/memory.hpp"
@@ -175,19 +177,26 @@ void check_outline(const GeometrySpec& spec, const std::vector<SourceSegment>& s
     }
 }
 
+bool has_triangles(const GeometrySpec& spec) { return spec.tessellation && spec.tessellation->triangles; }
+
 /// The smallest length that the cut resolves (m); see block_cutter.hpp.
 double resolution(const GeometrySpec& spec, const LocalFrame& frame) {
     constexpr double of_spacing = 0.02;
+    constexpr double of_side = 0.05; // of triangles, whose quality near a short line costs many small ones
     constexpr double of_diagonal = 1e-9;
     constexpr double of_position = 16.0 * std::numeric_limits<double>::epsilon();
     const double farthest = frame.origin.cwiseAbs().maxCoeff() + frame.box.upper.maxCoeff();
-    return std::max({of_spacing * lattice_spacing(spec), of_diagonal * frame.box.upper.norm(), of_position * farthest});
+    return std::max({has_triangles(spec) ? of_side * smallest_side(*spec.tessellation->triangles)
+                                         : of_spacing * lattice_spacing(spec),
+                     of_diagonal * frame.box.upper.norm(), of_position * farthest});
 }
 
 std::vector<SourceTrace> local_traces(const GeometrySpec& spec, const LocalFrame& frame, const SourceNumbers& numbers) {
     std::vector<SourceTrace> traces;
     for (const FractureTrace& fracture : spec.fractures) {
-        traces.push_back({frame.to_local(fracture.points), numbers.first_fracture + static_cast<int>(traces.size())});
+        const std::vector<Vec2> points = frame.to_local(fracture.points);
+        traces.push_back({has_triangles(spec) ? simplified(points, resolution(spec, frame)) : points,
+                          numbers.first_fracture + static_cast<int>(traces.size())});
     }
     return traces;
 }
@@ -215,6 +224,21 @@ std::vector<std::pair<Vec2, Vec2>> net_edges(const GeometrySpec& spec, const Loc
     return net.voronoi ? voronoi_edges(*net.voronoi, frame.box, keeps) : hexagon_edges(net.hexagons, frame.box, keeps);
 }
 
+/// What a net of triangles follows beside the outline and the fractures: construction lines and its region's sides.
+std::vector<SourceSegment> lines_of_net(const GeometrySpec& spec, const LocalFrame& frame,
+                                        const SourceNumbers& numbers) {
+    std::vector<SourceTrace> lines;
+    for (const auto& line : spec.construction_lines) lines.push_back({frame.to_local(line), numbers.tessellation});
+    if (spec.tessellation->region) {
+        Polygon closed = frame.to_local(*spec.tessellation->region);
+        closed.push_back(closed.front());
+        lines.push_back({closed, numbers.tessellation});
+    }
+    std::vector<SourceSegment> segments;
+    add_traces(segments, lines);
+    return segments;
+}
+
 struct Cuts {
     std::vector<SourceSegment> segments;
     int joined_ends = 0;
@@ -232,7 +256,10 @@ Cuts cuts_of(const GeometrySpec& spec, const LocalFrame& frame, const SourceNumb
     const std::vector<SourceSegment> bridges = bridge_ends(traces, cuts.segments, resolution(spec, frame));
     cuts.segments.insert(cuts.segments.end(), bridges.begin(), bridges.end());
     cuts.joined_ends = static_cast<int>(bridges.size());
-    if (spec.tessellation) {
+    if (has_triangles(spec)) {
+        const std::vector<SourceSegment> lines = lines_of_net(spec, frame, numbers);
+        cuts.segments.insert(cuts.segments.end(), lines.begin(), lines.end());
+    } else if (spec.tessellation) {
         for (const auto& [a, b] : net_edges(spec, frame, SegmentGrid(sides)))
             cuts.segments.push_back({a, b, numbers.tessellation});
     }
@@ -299,10 +326,9 @@ int count_free_pieces(const PlanarMap& map, const SourceNumbers& numbers, double
 
 MendLimits mend_limits(const GeometrySpec& spec, const LocalFrame& frame, const SourceNumbers& numbers) {
     constexpr double rounding_area = 1e-12; // of the domain, where no spacing is given
-    const double d = lattice_spacing(spec);
     const double domain_area = std::abs(signed_area(spec.domain));
     MendLimits limits;
-    limits.area = std::max(rounding_area * domain_area, spec.minimum_area * hexagon_area(d));
+    limits.area = std::max(rounding_area * domain_area, spec.minimum_area * mean_cell_area(spec));
     limits.edge = resolution(spec, frame);
     limits.rounding = 4.0 * std::numeric_limits<double>::epsilon() * frame.box.upper.norm();
     limits.first_fracture = numbers.first_fracture;
@@ -497,12 +523,62 @@ void measure(const BlockSystem& system, CutReport& report) {
 
 } // namespace
 
+NetKind kind_of(const Tessellation& tessellation) {
+    if (tessellation.triangles) return NetKind::triangles;
+    return tessellation.voronoi ? NetKind::voronoi : NetKind::hexagons;
+}
+
 double lattice_spacing(const GeometrySpec& spec) {
     if (!spec.tessellation) return spec.reference_spacing;
-    return spec.tessellation->voronoi ? spec.tessellation->voronoi->spacing : spec.tessellation->hexagons.spacing;
+    const Tessellation& net = *spec.tessellation;
+    if (net.triangles) return net.triangles->spacing;
+    return net.voronoi ? net.voronoi->spacing : net.hexagons.spacing;
+}
+
+double mean_cell_area(const GeometrySpec& spec) {
+    if (has_triangles(spec)) return triangle_area(smallest_side(*spec.tessellation->triangles));
+    return hexagon_area(lattice_spacing(spec));
 }
 
 namespace {
+
+TriangleSize side_of_triangles(const GeometrySpec& spec, const LocalFrame& frame, const SourceNumbers& numbers) {
+    std::vector<SegmentGrid::Segment> fractures;
+    for (const SourceTrace& trace : local_traces(spec, frame, numbers)) {
+        for (std::size_t i = 0; i + 1 < trace.points.size(); ++i)
+            fractures.emplace_back(trace.points[i], trace.points[i + 1]);
+    }
+    std::vector<SegmentGrid::Segment> openings;
+    for (const Polygon& hole : spec.holes) {
+        const Polygon local = frame.to_local(hole);
+        for (std::size_t i = 0; i < local.size(); ++i) openings.emplace_back(local[i], local[(i + 1) % local.size()]);
+    }
+    const TriangleNet& net = *spec.tessellation->triangles;
+    return {net, std::move(fractures), std::move(openings), frame.to_local(net.grading.region)};
+}
+
+/// Gives the edges of a graded net the spacing that it has there.
+void grade(BlockSystem& system, const TriangleSize& size) {
+    if (!size.is_graded()) return;
+    for (Interface& interface : system.interfaces) {
+        if (interface.origin != EdgeOrigin::tessellation) continue;
+        const Edge& edge = system.blocks[interface.block_a].edges[interface.edge_a];
+        interface.spacing = size.level_at(0.5 * (edge_start(system, edge) + edge_end(system, edge)));
+    }
+}
+
+PlanarMap filled_with_triangles(const GeometrySpec& spec, const LocalFrame& frame, const SourceNumbers& numbers,
+                                PlanarMap map, const std::vector<SourceSegment>& free) {
+    TriangleFrame lines;
+    lines.free_pieces = joined_pieces(map, free, resolution(spec, frame));
+    lines.map = &map;
+    if (spec.tessellation->region) lines.region = frame.to_local(*spec.tessellation->region);
+    lines.tessellation = numbers.tessellation;
+    PlanarMap filled =
+        arrange(triangle_edges(*spec.tessellation->triangles, side_of_triangles(spec, frame, numbers), lines));
+    take_outside_away(filled, numbers);
+    return filled;
+}
 
 CutBody cut(const GeometrySpec& spec) {
     check_spec(spec);
@@ -514,15 +590,22 @@ CutBody cut(const GeometrySpec& spec) {
     body.report.joined_ends = cuts.joined_ends;
     PlanarMap map = arrange(cuts.segments);
     take_outside_away(map, numbers);
+    const std::vector<SourceSegment> free = has_triangles(spec) ? free_pieces(map) : std::vector<SourceSegment>{};
     body.report.pruned_ends = count_free_pieces(map, numbers, 2.0 * resolution(spec, frame));
     map.remove_edges_inside_faces();
 
     MendReport mended = mend(map, mend_limits(spec, frame, numbers));
     check_faces(map, frame);
+    if (has_triangles(spec)) {
+        map = filled_with_triangles(spec, frame, numbers, std::move(map), free);
+        body.report.pruned_ends = count_free_pieces(map, numbers, 2.0 * resolution(spec, frame));
+        map.remove_edges_inside_faces();
+    }
     body.report.collapsed_edges = mended.collapsed_edges;
     for (const auto& piece : mended.merged) body.report.merged.push_back({frame.origin + piece.at, piece.area});
 
     body.system = SystemBuilder(spec, frame, numbers, map).build();
+    if (has_triangles(spec)) grade(body.system, side_of_triangles(spec, frame, numbers));
     form_sets(spec, body.system);
     return body;
 }

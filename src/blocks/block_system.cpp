@@ -47,4 +47,18 @@ void compute_block_moments(const std::vector<Vec2>& vertices, Block& block) {
     block.second_moment = second - block.area * (centre * centre.transpose());
 }
 
+double edges_per_triangle_area(const BlockSystem& system) {
+    double area = 0.0;
+    for (const Block& block : system.blocks)
+        if (block.edges.size() == 3) area += block.area / (system.spacing * system.spacing);
+    double edges = 0.0;
+    for (const Interface& interface : system.interfaces) {
+        if (interface.origin != EdgeOrigin::tessellation) continue;
+        const Edge& edge = system.blocks[interface.block_a].edges[interface.edge_a];
+        const double d = interface.spacing > 0.0 ? interface.spacing : system.spacing;
+        edges += (edge_end(system, edge) - edge_start(system, edge)).norm() * d / (system.spacing * system.spacing);
+    }
+    return area > 0.0 ? edges / area : 0.0;
+}
+
 } // namespace kluft

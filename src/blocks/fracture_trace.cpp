@@ -4,6 +4,11 @@
 #include <limits>
 #include <optional>
 
+#include <boost/geometry/algorithms/simplify.hpp>
+#include <boost/geometry/geometries/linestring.hpp>
+#include <boost/geometry/geometries/point_xy.hpp>
+#include <boost/geometry/strategies/strategies.hpp>
+
 #include "kluft/geometry/predicates.hpp"
 #include "kluft/geometry/segment_grid.hpp"
 
@@ -93,6 +98,17 @@ std::vector<SourceSegment> bridge_ends(const std::vector<SourceTrace>& traces,
         }
     }
     return bridges;
+}
+
+std::vector<Vec2> simplified(const std::vector<Vec2>& points, double tolerance) {
+    using Point = boost::geometry::model::d2::point_xy<double>;
+    boost::geometry::model::linestring<Point> line;
+    boost::geometry::model::linestring<Point> simple;
+    for (const Vec2& p : points) line.emplace_back(p.x(), p.y());
+    boost::geometry::simplify(line, simple, tolerance);
+    std::vector<Vec2> result;
+    for (const Point& p : simple) result.emplace_back(p.x(), p.y());
+    return result;
 }
 
 } // namespace kluft

@@ -135,6 +135,33 @@ int PlanarMap::dissolve_vertex(int v) {
     return arriving;
 }
 
+int PlanarMap::split_edge(int h, const Vec2& at) {
+    const int t = twin(h);
+    const int b = start(t);
+    const int v = static_cast<int>(positions.size());
+    const int onward = 2 * n_edges(); // v -> b
+    const int back = onward + 1;      // b -> v
+    positions.push_back(at);
+    outgoing.push_back(onward);
+    sources.push_back(source(h));
+    alive.push_back(1);
+    half_edges.push_back({.start = v, .face = face(h)});
+    half_edges.push_back({.start = b, .face = face(t)});
+    if (next(h) == t) {
+        link(onward, back);
+    } else {
+        link(onward, next(h));
+        link(previous(t), back);
+    }
+    link(h, onward);
+    link(back, t);
+    half_edges[t].start = v;
+    if (outgoing[b] == t) outgoing[b] = back;
+    for (const int added : {onward, back})
+        if (face(added) != outside) faces[face(added)].push_back(added);
+    return v;
+}
+
 int PlanarMap::contract_edge(int h) {
     const int t = twin(h);
     const int kept = start(h);

@@ -27,7 +27,7 @@ public:
     RememberedRows(ElasticTargets& targets, const std::vector<char>& influences)
         : targets_(targets), influences_(influences) {}
 
-    std::optional<Residuals> operator()(const Eigen::VectorXd& x) {
+    std::optional<ResidualRows> operator()(const Eigen::VectorXd& x) {
         Eigen::VectorXd essence = x;
         for (Eigen::Index i = 0; i < x.size(); ++i)
             if (!influences_[static_cast<std::size_t>(i)]) essence[i] = 0.0;
@@ -42,7 +42,7 @@ private:
     ElasticTargets& targets_;
     const std::vector<char>& influences_;
     Eigen::VectorXd essence_;
-    std::optional<Residuals> rows_;
+    std::optional<ResidualRows> rows_;
 };
 
 /// One call of calibrate.

@@ -256,7 +256,7 @@ void add_envelope(const Calibration& calibration, const CalibrationTarget& targe
                   ReportPage& page) {
     const auto peaks = peaks_at(calibration, target, page.directory, result.x);
     try {
-        const Envelope envelope = fit_envelope(peaks);
+        const StrengthFit envelope = fit_strength(peaks);
         const std::string title = "Envelope of the calibrated scene";
         const std::string svg = draw_envelope(title, peaks, envelope, {}, PictureFormat::svg);
         write_file(page.directory / "envelope.svg", svg);

@@ -140,10 +140,10 @@ std::optional<Eigen::VectorXd> expected_start(const Calibration& calibration, co
     }
     const Eigen::Index n = start.size();
     const auto n_rows = static_cast<Eigen::Index>(targets.size());
-    const ResidualFunction function = [&](const Eigen::VectorXd& x) -> std::optional<Residuals> {
+    const ResidualFunction function = [&](const Eigen::VectorXd& x) -> std::optional<ResidualRows> {
         const ExpectedRows rows = expected_rows(calibration, targets, x);
         if (rows.known != first.known) return std::nullopt;
-        Residuals all{Eigen::VectorXd(n_rows + n), Eigen::MatrixXd(n_rows + n, n)};
+        ResidualRows all{Eigen::VectorXd(n_rows + n), Eigen::MatrixXd(n_rows + n, n)};
         all.values << rows.values, pull_to_start * (x - start);
         all.jacobian << rows.jacobian, pull_to_start * Eigen::MatrixXd::Identity(n, n);
         return all;

@@ -32,9 +32,9 @@ bool same_settings(const std::vector<StudySetting>& a, const std::vector<StudySe
 }
 
 /// log(E/E*), nu/nu* - 1: nearly linear in the logarithms of stiffnesses, and relative.
-Residuals relative_residuals(const Calibration& calibration, const std::vector<std::size_t>& targets,
-                             const Residuals& values) {
-    Residuals result = values;
+ResidualRows relative_residuals(const Calibration& calibration, const std::vector<std::size_t>& targets,
+                                const ResidualRows& values) {
+    ResidualRows result = values;
     for (Eigen::Index i = 0; i < values.values.size(); ++i) {
         const CalibrationTarget& target = calibration.targets[targets[static_cast<std::size_t>(i)]];
         const double value = values.values[i];
@@ -132,7 +132,7 @@ ElasticTargets::ElasticTargets(const Calibration& calibration, const Eigen::Vect
     }
 }
 
-std::optional<Residuals> ElasticTargets::values_at(const Eigen::VectorXd& x) {
+std::optional<ResidualRows> ElasticTargets::values_at(const Eigen::VectorXd& x) {
     std::vector<ElasticPoint> points;
     for (ElasticScene& scene : scenes_) {
         auto point = scene.at(x);
@@ -140,7 +140,7 @@ std::optional<Residuals> ElasticTargets::values_at(const Eigen::VectorXd& x) {
         points.push_back(std::move(*point));
     }
     const auto n = static_cast<Eigen::Index>(targets_.size());
-    Residuals result{Eigen::VectorXd(n), Eigen::MatrixXd(n, x.size())};
+    ResidualRows result{Eigen::VectorXd(n), Eigen::MatrixXd(n, x.size())};
     for (Eigen::Index i = 0; i < n; ++i) {
         const auto at = static_cast<std::size_t>(i);
         const ElasticPoint& point = points[scene_of_[at]];
@@ -151,7 +151,7 @@ std::optional<Residuals> ElasticTargets::values_at(const Eigen::VectorXd& x) {
     return result;
 }
 
-std::optional<Residuals> ElasticTargets::residuals_at(const Eigen::VectorXd& x) {
+std::optional<ResidualRows> ElasticTargets::residuals_at(const Eigen::VectorXd& x) {
     auto result = values_at(x);
     for (Eigen::Index i = 0; result && i < result->values.size(); ++i) {
         const CalibrationTarget& target = calibration_.targets[targets_[static_cast<std::size_t>(i)]];
@@ -166,11 +166,11 @@ ElasticFit fit_elastic(const Calibration& calibration, ElasticTargets& targets, 
     const Eigen::Index n = start.size();
     const auto n_targets = static_cast<Eigen::Index>(targets.targets().size());
     const Eigen::VectorXd weights = weights_of(calibration, targets.targets());
-    const ResidualFunction function = [&](const Eigen::VectorXd& x) -> std::optional<Residuals> {
+    const ResidualFunction function = [&](const Eigen::VectorXd& x) -> std::optional<ResidualRows> {
         const auto values = targets.values_at(x);
         if (!values) return std::nullopt;
-        const Residuals own = relative_residuals(calibration, targets.targets(), *values);
-        Residuals all{Eigen::VectorXd(n_targets + n), Eigen::MatrixXd(n_targets + n, n)};
+        const ResidualRows own = relative_residuals(calibration, targets.targets(), *values);
+        ResidualRows all{Eigen::VectorXd(n_targets + n), Eigen::MatrixXd(n_targets + n, n)};
         all.values << own.values, to_start * (x - start);
         all.jacobian << own.jacobian, to_start * Eigen::MatrixXd::Identity(n, n);
         for (Eigen::Index i = 0; i < n_targets; ++i) {

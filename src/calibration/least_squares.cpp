@@ -126,7 +126,7 @@ private:
     const Eigen::VectorXd& upper_;
     const LeastSquaresOptions& options_;
     Eigen::VectorXd at_;
-    std::optional<Residuals> last_; ///< at at_
+    std::optional<ResidualRows> last_; ///< at at_
     bool is_evaluated_ = false;
     double least_ = std::numeric_limits<double>::infinity();
 };

@@ -164,7 +164,7 @@ private:
         }
         for (Evaluation& each : *found) {
             Eigen::VectorXd rows;
-            const auto exact = problem_.exact ? problem_.exact(each.x) : Residuals{};
+            const auto exact = problem_.exact ? problem_.exact(each.x) : ResidualRows{};
             each.is_usable = each.is_usable && exact.has_value();
             if (each.is_usable) {
                 rows.resize(problem_.n_noisy + exact->values.size());
@@ -219,18 +219,18 @@ private:
     }
 
     /// The rows of the local model and the exact ones, each by the root of its weight.
-    [[nodiscard]] std::optional<Residuals> modelled(const LocalModel& model, const Eigen::VectorXd& x) const {
-        const auto exact = problem_.exact ? problem_.exact(x) : Residuals{{}, Eigen::MatrixXd(0, x.size())};
+    [[nodiscard]] std::optional<ResidualRows> modelled(const LocalModel& model, const Eigen::VectorXd& x) const {
+        const auto exact = problem_.exact ? problem_.exact(x) : ResidualRows{{}, Eigen::MatrixXd(0, x.size())};
         if (!exact) return std::nullopt;
-        const Residuals noisy = model.at(x);
+        const ResidualRows noisy = model.at(x);
         const Eigen::Index n_rows = problem_.n_noisy + exact->values.size();
-        Residuals all{Eigen::VectorXd(n_rows), Eigen::MatrixXd(n_rows, x.size())};
+        ResidualRows all{Eigen::VectorXd(n_rows), Eigen::MatrixXd(n_rows, x.size())};
         all.values << noisy.values, exact->values;
         all.jacobian << noisy.jacobian, exact->jacobian;
         return all;
     }
 
-    [[nodiscard]] std::optional<Residuals> weighted(const LocalModel& model, const Eigen::VectorXd& x) const {
+    [[nodiscard]] std::optional<ResidualRows> weighted(const LocalModel& model, const Eigen::VectorXd& x) const {
         auto all = modelled(model, x);
         if (!all) return std::nullopt;
         for (const RowGroup& group : problem_.groups) {
@@ -315,9 +315,9 @@ SearchResult search_responses(const SearchProblem& problem, const SearchOptions&
     return ResponseSearch(problem, options).run();
 }
 
-Residuals LocalModel::at(const Eigen::VectorXd& x) const {
+ResidualRows LocalModel::at(const Eigen::VectorXd& x) const {
     const Eigen::VectorXd d = x - centre;
-    Residuals result;
+    ResidualRows result;
     result.values = value + slope * d + curvature * d.cwiseProduct(d);
     result.jacobian = slope + 2.0 * curvature * d.asDiagonal();
     return result;

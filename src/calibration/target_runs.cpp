@@ -13,6 +13,7 @@
 #include "kluft/output/summary.hpp"
 #include "kluft/scene/scene_reader.hpp"
 #include "kluft/studies/comparison.hpp"
+#include "kluft/studies/strength_tests.hpp"
 #include "kluft/studies/study_results.hpp"
 
 namespace kluft {
@@ -129,14 +130,11 @@ bool run_scene_of(const Calibration& calibration, const RunPlace& place, std::si
 
 // ---- what a run tells ------------------------------------------------------------------------------------------------
 
-std::vector<StepRecord> fine_rows(const fs::path& directory) {
-    const fs::path fine = directory / "equilibria.csv";
-    return read_history(fs::exists(fine) ? fine : directory / "history.csv");
-}
-
 /// The summary of a run whose peak is one; throws InputError for another one.
 RunSummary summary_with_peak(const fs::path& directory) {
     RunSummary summary = read_summary(directory / "summary.json");
+    if (read_peak(directory, directory.filename()).net_locked)
+        throw InputError("loose blocks of the net carried the load, as masonry does, and not the rock");
     if (summary.numbers.peak_reached || summary.status == RunStatus::collapsed) return summary;
     throw InputError(fmt::format("the stress was still rising where the run ended ({}{}{})",
                                  status_name(summary.status), summary.message.empty() ? "" : ": ",
@@ -157,12 +155,14 @@ double value_of_run(const CalibrationTarget& target, const fs::path& directory) 
     return *value;
 }
 
+PeakPoint peak_of_run(const fs::path& directory) {
+    (void)summary_with_peak(directory);
+    return read_peak(directory, directory.filename());
+}
+
 double value_of_envelope(const CalibrationTarget& target, const std::vector<fs::path>& directories) {
     std::vector<PeakPoint> peaks;
-    for (const fs::path& directory : directories) {
-        (void)summary_with_peak(directory);
-        peaks.push_back(peak_point(directory.filename(), fine_rows(directory)));
-    }
+    for (const fs::path& directory : directories) peaks.push_back(peak_of_run(directory));
     const Envelope envelope = fit_envelope(peaks);
     return target.quantity == TargetQuantity::cohesion ? envelope.cohesion : envelope.friction_angle;
 }
@@ -285,6 +285,7 @@ std::vector<StudySetting> settings_of_copy(const Calibration& calibration, const
     if (read.geometry.tessellation) {
         net.hexagons = read.geometry.tessellation->hexagons;
         net.voronoi = read.geometry.tessellation->voronoi.has_value();
+        net.triangles = read.geometry.tessellation->triangles.has_value();
     }
     return replica_settings(plan_for(calibration, read), replica, net);
 }
@@ -296,7 +297,7 @@ std::vector<PeakPoint> peaks_at(const Calibration& calibration, const Calibratio
         for (int replica = 0; replica < n_copies(calibration); ++replica) {
             const fs::path place = directory_of_run(calibration, directory, run, replica);
             try {
-                peaks.push_back(peak_point(place.filename(), fine_rows(place)));
+                peaks.push_back(peak_of_run(place));
             } catch (const InputError&) {
                 continue; // told of where it was evaluated
             }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <fmt/format.h>
 
@@ -20,11 +21,42 @@ void require_elastic(double youngs_modulus, double poissons_ratio) {
 
 double bulk_modulus(const ElasticModuli& moduli) { return moduli.lambda + moduli.mu; }
 
+/// What a net adds to 1/(2 K) and 1/(2 G) of its blocks (1/Pa).
+struct NetCompliance {
+    double bulk = 0.0;
+    double shear = 0.0;
+};
+
+/// (20) and (20a).
+NetCompliance compliance_of(const Net& net, const InterfaceStiffness& interfaces) {
+    const double bulk = net.edge_density / (2.0 * interfaces.normal);
+    if (net.kind == NetKind::triangles)
+        return {bulk, 0.25 * net.edge_density * (1.0 / interfaces.normal + 1.0 / interfaces.shear)};
+    return {bulk, net.edge_density / (interfaces.normal + interfaces.shear)};
+}
+
 ElasticModuli moduli_from(double bulk, double shear) { return {.lambda = bulk - shear, .mu = shear}; }
+
+/// Of an interface (m/Pa).
+struct InterfaceCompliance {
+    double normal = 0.0;
+    double shear = 0.0;
+};
 
 /// The next ratio above or below with four decimals: what the message names is itself admissible.
 double rounded_up(double ratio) { return (std::floor(ratio * 1e4) + 1.0) / 1e4; }
 double rounded_down(double ratio) { return (std::ceil(ratio * 1e4) - 1.0) / 1e4; }
+
+/// (20b): interfaces of rigid triangles that carry `own` compliance beside that of the blocks.
+InterfaceStiffness of_rigid_triangles(const InterfaceCompliance& own, const ElasticModuli& blocks, const Net& net) {
+    const double bulk = 1.0 / (net.edge_density * bulk_modulus(blocks));
+    const double shear = own.shear + 2.0 / (net.edge_density * blocks.mu) - bulk;
+    if (!(shear > 0.0))
+        throw InputError(
+            "poissons_ratio: too small for triangles of rigid blocks, whose interfaces would need a negative "
+            "shear stiffness; take kinematics: affine");
+    return {.normal = 1.0 / (own.normal + bulk), .shear = 1.0 / shear};
+}
 
 bool given_in_pascal_per_metre(const InterfaceType& type) { return type.normal_stiffness || type.shear_stiffness; }
 
@@ -90,31 +122,43 @@ LatticeModuli engineering_moduli(const ElasticModuli& moduli, Plane plane) {
             .shear_modulus = shear};
 }
 
-LatticeModuli lattice_moduli(const ElasticModuli& blocks, const InterfaceStiffness& interfaces, double spacing,
+Net hexagon_net(double spacing) {
+    return {.kind = NetKind::hexagons, .spacing = spacing, .edge_density = 2.0 / spacing};
+}
+
+Net equilateral_net(double side) { return triangle_net_of(side, 2.0 * std::numbers::sqrt3 / side); }
+
+Net triangle_net_of(double side, double edge_density) {
+    return {.kind = NetKind::triangles, .spacing = side, .edge_density = edge_density};
+}
+
+LatticeModuli lattice_moduli(const ElasticModuli& blocks, const InterfaceStiffness& interfaces, const Net& net,
                              Plane plane) {
-    const double bulk_compliance = 1.0 / (2.0 * bulk_modulus(blocks)) + 1.0 / (spacing * interfaces.normal);
-    const double shear_compliance = 1.0 / (2.0 * blocks.mu) + 2.0 / (spacing * (interfaces.normal + interfaces.shear));
+    const NetCompliance added = compliance_of(net, interfaces);
+    const double bulk_compliance = 1.0 / (2.0 * bulk_modulus(blocks)) + added.bulk;
+    const double shear_compliance = 1.0 / (2.0 * blocks.mu) + added.shear;
     return engineering_moduli(moduli_from(0.5 / bulk_compliance, 0.5 / shear_compliance), plane);
 }
 
-LatticeModuli rigid_lattice_moduli(const InterfaceStiffness& interfaces, double spacing, Plane plane) {
-    return engineering_moduli(
-        moduli_from(0.5 * spacing * interfaces.normal, 0.25 * spacing * (interfaces.normal + interfaces.shear)), plane);
+LatticeModuli rigid_lattice_moduli(const InterfaceStiffness& interfaces, const Net& net, Plane plane) {
+    const NetCompliance all = compliance_of(net, interfaces);
+    return engineering_moduli(moduli_from(0.5 / all.bulk, 0.5 / all.shear), plane);
 }
 
 InterfaceStiffness rigid_lattice_stiffness(double youngs_modulus_of_rock, double poissons_ratio_of_rock, Plane plane,
-                                           double spacing) {
+                                           const Net& net) {
     const ElasticModuli rock = plane_moduli(youngs_modulus_of_rock, poissons_ratio_of_rock, plane);
+    if (net.kind == NetKind::triangles) return of_rigid_triangles({}, rock, net);
     const double normal = 2.0 * bulk_modulus(rock);
     const double shear = 4.0 * rock.mu - normal;
     if (!(shear > 1e-12 * normal))
         throw InputError(fmt::format(
             "poissons_ratio: {:g} is too large for hexagons of rigid blocks, whose interfaces would need a negative "
             "shear stiffness; it must be less than {} in plane {}, or give the interfaces' stiffnesses, or take "
-            "kinematics: affine",
+            "kinematics: affine or a net of triangles",
             poissons_ratio_of_rock, plane == Plane::strain ? "1/4" : "1/3",
             plane == Plane::strain ? "strain" : "stress"));
-    return {.normal = normal / spacing, .shear = shear / spacing};
+    return {.normal = normal / net.spacing, .shear = shear / net.spacing};
 }
 
 double largest_poissons_ratio(const InterfaceStiffness& interfaces, double youngs_modulus, Plane plane,
@@ -126,7 +170,10 @@ double largest_poissons_ratio(const InterfaceStiffness& interfaces, double young
 }
 
 InterfaceStiffness with_compliance_of_blocks(const InterfaceStiffness& interfaces, const ElasticModuli& blocks,
-                                             Plane plane, double spacing) {
+                                             Plane plane, const Net& net) {
+    if (net.kind == NetKind::triangles)
+        return of_rigid_triangles({1.0 / interfaces.normal, 1.0 / interfaces.shear}, blocks, net);
+    const double spacing = net.spacing;
     const double normal = 1.0 / (1.0 / interfaces.normal + spacing / (2.0 * bulk_modulus(blocks)));
     const double sum = 1.0 / (1.0 / (interfaces.normal + interfaces.shear) + spacing / (4.0 * blocks.mu));
     const double shear = sum - normal;
@@ -142,25 +189,30 @@ InterfaceStiffness with_compliance_of_blocks(const InterfaceStiffness& interface
     return {.normal = normal, .shear = shear};
 }
 
-double smallest_stiffness_ratio(double poissons_ratio_of_rock, Plane plane, double shear_ratio) {
+double smallest_stiffness_ratio(double poissons_ratio_of_rock, Plane plane, double shear_ratio, const Net& net) {
     const ElasticModuli rock = plane_moduli(1.0, poissons_ratio_of_rock, plane);
-    return std::max(2.0 * bulk_modulus(rock), 4.0 * rock.mu / (1.0 + shear_ratio));
+    // The compliance of a net with k_n d = E = 1, which a ratio divides.
+    const double normal = 1.0 / net.spacing;
+    const NetCompliance at_one = compliance_of(net, {.normal = normal, .shear = shear_ratio * normal});
+    return std::max(2.0 * bulk_modulus(rock) * at_one.bulk, 2.0 * rock.mu * at_one.shear);
 }
 
 ElasticModuli block_moduli(double youngs_modulus_of_rock, double poissons_ratio_of_rock, Plane plane,
-                           double stiffness_ratio, double shear_ratio) {
-    if (!(shear_ratio >= 0.0))
-        throw InputError(fmt::format("shear_ratio: expected a value >= 0, got {:g}", shear_ratio));
+                           double stiffness_ratio, double shear_ratio, const Net& net) {
+    if (!(shear_ratio >= 0.0) || (shear_ratio == 0.0 && net.kind == NetKind::triangles))
+        throw InputError(fmt::format("shear_ratio: expected a value {} 0, got {:g}",
+                                     net.kind == NetKind::triangles ? ">" : ">=", shear_ratio));
     const ElasticModuli rock = plane_moduli(youngs_modulus_of_rock, poissons_ratio_of_rock, plane);
-    const double smallest = smallest_stiffness_ratio(poissons_ratio_of_rock, plane, shear_ratio);
+    const double smallest = smallest_stiffness_ratio(poissons_ratio_of_rock, plane, shear_ratio, net);
     if (!(stiffness_ratio > smallest))
         throw InputError(fmt::format(
             "stiffness_ratio: {:g} is too small: with poissons_ratio {:g} and shear_ratio {:g} no blocks are stiff "
             "enough to give the rock's youngs_modulus; the smallest admissible ratio is {:.4f}",
             stiffness_ratio, poissons_ratio_of_rock, shear_ratio, rounded_up(smallest)));
-    const double normal_times_spacing = stiffness_ratio * youngs_modulus_of_rock;
-    const double bulk_compliance = 1.0 / (2.0 * bulk_modulus(rock)) - 1.0 / normal_times_spacing;
-    const double shear_compliance = 1.0 / (2.0 * rock.mu) - 2.0 / (normal_times_spacing * (1.0 + shear_ratio));
+    const double normal = stiffness_ratio * youngs_modulus_of_rock / net.spacing;
+    const NetCompliance added = compliance_of(net, {.normal = normal, .shear = shear_ratio * normal});
+    const double bulk_compliance = 1.0 / (2.0 * bulk_modulus(rock)) - added.bulk;
+    const double shear_compliance = 1.0 / (2.0 * rock.mu) - added.shear;
     return moduli_from(0.5 / bulk_compliance, 0.5 / shear_compliance);
 }
 

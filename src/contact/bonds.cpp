@@ -16,7 +16,7 @@ Bond bond_at(const BlockSystem& system, int i, const Eigen::VectorXd& q, const d
                              current_position(system, q, interface.block_b, edge.start);
     Bond bond;
     bond.interface = i;
-    bond.law = interface.interface_type;
+    bond.law = law_of(interface);
     bond.block_a = interface.block_a;
     bond.block_b = interface.block_b;
     bond.tangent = (direction_a.normalized() + direction_b.normalized()).normalized();

@@ -118,7 +118,7 @@ void StiffnessReference::add_broken_bonds(const EquilibriumProblem& problem) {
     std::ranges::set_difference(bonded_, bonded, std::back_inserter(broken));
     for (const int i : broken) {
         const Interface& interface = problem.body.system->interfaces[i];
-        const InterfaceLaw& law = (*problem.body.laws)[interface.interface_type];
+        const InterfaceLaw& law = (*problem.body.laws)[law_of(interface)];
         const Edge& edge = problem.body.system->blocks[interface.block_a].edges[interface.edge_a];
         const double length = (edge_end(*problem.body.system, edge) - edge_start(*problem.body.system, edge)).norm();
         Patch patch;

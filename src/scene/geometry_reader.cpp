@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "kluft/blocks/hexagon_lattice.hpp"
+#include "kluft/blocks/triangle_net.hpp"
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/geometry/polygon.hpp"
 #include "kluft/scene/geojson.hpp"
@@ -66,6 +67,7 @@ public:
         if (geometry.has("domain")) read_domain(geometry.section("domain"));
         for (const auto& section : geometry.sections("fractures")) read_fracture(section);
         if (geometry.has("tessellation")) read_tessellation(geometry.section("tessellation"));
+        read_construction_lines(geometry);
         spec_.reference_spacing = geometry.number("reference_spacing");
         spec_.minimum_area = geometry.number("minimum_area");
         if (!materials_.empty() && geometry.node() != nullptr)
@@ -80,7 +82,7 @@ private:
     // ---- given blocks ----------------------------------------------------------------------------------------
 
     GeometrySpec read_given(const SceneSection& geometry) {
-        for (const auto* key : {"fractures", "tessellation", "regions"})
+        for (const auto* key : {"fractures", "tessellation", "construction_lines", "regions"})
             if (geometry.has(key))
                 context_.fail(
                     geometry, key,
@@ -344,9 +346,11 @@ private:
 
     void read_tessellation(const SceneSection& section) {
         if (!section.node()->is_mapping()) return;
-        if (!gives_one_of(section, {"hexagons", "voronoi"}, context_)) return;
+        if (!gives_one_of(section, {"triangles", "hexagons", "voronoi"}, context_)) return;
         Tessellation tessellation;
-        if (section.has("hexagons"))
+        if (section.has("triangles"))
+            tessellation.triangles = read_triangles(section.section("triangles"));
+        else if (section.has("hexagons"))
             tessellation.hexagons = read_hexagons(section.section("hexagons"));
         else
             tessellation.voronoi = read_voronoi(section.section("voronoi"));
@@ -362,7 +366,7 @@ private:
         hexagons.offset = section.point("offset");
         hexagons.jitter = section.number("jitter");
         hexagons.seed = static_cast<std::uint64_t>(section.integer("seed"));
-        check_cell_count(section, "hexagons");
+        check_cell_count(section, "hexagons", hexagon_area(1.0));
         return hexagons;
     }
 
@@ -372,14 +376,50 @@ private:
         cells.offset = section.point("offset");
         cells.relaxation = section.count("relaxation");
         cells.seed = static_cast<std::uint64_t>(section.integer("seed"));
-        check_cell_count(section, "cells");
+        check_cell_count(section, "cells", hexagon_area(1.0));
         return cells;
     }
 
-    void check_cell_count(const SceneSection& net, std::string_view cells) {
+    TriangleNet read_triangles(const SceneSection& section) {
+        TriangleNet net;
+        net.spacing = section.number("spacing");
+        net.relaxation = section.count("relaxation");
+        net.seed = static_cast<std::uint64_t>(section.integer("seed"));
+        if (section.has("grading")) net.grading = read_grading(section.section("grading"));
+        check_cell_count(section, "triangles", triangle_area(1.0));
+        return net;
+    }
+
+    TriangleGrading read_grading(const SceneSection& section) {
+        TriangleGrading grading;
+        grading.fractures = section.given_number("fractures").value_or(0.0);
+        grading.openings = section.given_number("openings").value_or(0.0);
+        grading.growth = section.number("growth");
+        if (section.has("region") != section.has("region_spacing"))
+            context_.fail(section, section.has("region") ? "region" : "region_spacing",
+                          "expected region and region_spacing together, found one of them");
+        if (section.has("region")) grading.region = read_polygon(section, "region");
+        grading.region_spacing = section.given_number("region_spacing").value_or(0.0);
+        return grading;
+    }
+
+    void read_construction_lines(const SceneSection& geometry) {
+        const auto sections = geometry.sections("construction_lines");
+        if (!sections.empty() && !(spec_.tessellation && spec_.tessellation->triangles))
+            context_.fail(geometry, "construction_lines",
+                          "expected geometry.tessellation.triangles, which follow them, found none");
+        for (const auto& section : sections) {
+            if (!section.node()->is_mapping()) continue;
+            const auto points = section.given_points("trace");
+            if (points && has_distinct_points(section, "trace", *points)) spec_.construction_lines.push_back(*points);
+        }
+    }
+
+    /// `unit_area`: of a cell with a spacing of one metre.
+    void check_cell_count(const SceneSection& net, std::string_view cells, double unit_area) {
         const auto spacing = net.given_number("spacing");
         if (!spacing) return;
-        const double n_cells = signed_area(spec_.domain) / hexagon_area(*spacing);
+        const double n_cells = signed_area(spec_.domain) / (unit_area * *spacing * *spacing);
         if (n_cells > most_cells)
             context_.fail(net, "spacing",
                           fmt::format("expected a spacing in m that fits the domain, found {}, which makes {:.1e} {}",

@@ -35,7 +35,7 @@ void add_body(const Model& model, Digest& digest) {
         if (model.system.blocks[b].fixed) digest.add(b);
     if (model.system.outline_type >= 0) digest.add(model.system.outline_type);
     for (const Interface& i : model.system.interfaces)
-        digest.add(i.block_a, i.edge_a, i.block_b, i.edge_b, i.interface_type);
+        digest.add(i.block_a, i.edge_a, i.block_b, i.edge_b, i.interface_type, law_of(i));
 }
 
 void add_mechanics(const Model& model, Digest& digest) {

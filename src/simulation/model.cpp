@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-
+#include <map>
 #include <set>
 
 #include <fmt/format.h>
@@ -103,71 +103,129 @@ const Material& rock_of_rigid_net(const BlockSystem& system, const ModelInput& i
     return rock;
 }
 
+/// A net of triangles has the edges that came out; Voronoi cells are taken for hexagons.
+Net net_of_body(const BlockSystem& system, const ModelInput& input) {
+    if (input.tessellation_type < 0) return {};
+    if (input.net_kind != NetKind::triangles) return hexagon_net(system.spacing);
+    return triangle_net_of(system.spacing, edges_per_triangle_area(system) / system.spacing);
+}
+
+/// The net where it has another spacing.
+Net net_at(const Net& net, double spacing) {
+    return {.kind = net.kind, .spacing = spacing, .edge_density = net.edge_density * net.spacing / spacing};
+}
+
 /// E and nu of a material are the rock's where the net's stiffness follows from them, and else the blocks'.
-ElasticModuli moduli_of_blocks(const Material& material, const ModelInput& input) {
+ElasticModuli moduli_of_blocks(const Material& material, const ModelInput& input, const Net& body_net) {
     if (input.tessellation_type >= 0) {
         const InterfaceType& net = input.interface_types[input.tessellation_type];
         if (stiffness_from_ratio(net))
             return block_moduli(material.youngs_modulus, material.poissons_ratio, input.plane,
                                 net.stiffness_ratio.value_or(default_stiffness_ratio),
-                                net.shear_ratio.value_or(default_shear_ratio));
+                                net.shear_ratio.value_or(default_shear_ratio), body_net);
     }
     return plane_moduli(material.youngs_modulus, material.poissons_ratio, input.plane);
-}
-
-/// The stiffness of the net's interfaces with the compliance of the blocks in them.
-InterfaceStiffness net_of_rigid_blocks(const InterfaceStiffness& given, const BlockSystem& system,
-                                       const ModelInput& input) {
-    const Material& rock = rock_of_rigid_net(system, input);
-    try {
-        if (stiffness_from_ratio(input.interface_types[input.tessellation_type]))
-            return rigid_lattice_stiffness(rock.youngs_modulus, rock.poissons_ratio, input.plane, system.spacing);
-        return with_compliance_of_blocks(given, plane_moduli(rock.youngs_modulus, rock.poissons_ratio, input.plane),
-                                         input.plane, system.spacing);
-    } catch (const InputError& error) {
-        throw InputError("materials." + rock.name + "." + error.what());
-    }
 }
 
 bool has_rigid_net(const ModelInput& input) {
     return input.kinematics == Kinematics::rigid && input.tessellation_type >= 0;
 }
 
-void add_law(const InterfaceType& type, int type_index, const InterfaceStiffness& given,
-             const InterfaceStiffness& stiffness, double boundary_stress, Model& model) {
-    model.laws.push_back(resolve_law(type, stiffness, boundary_stress));
-    model.law_types.push_back(type_index);
-    model.given_stiffness.push_back(given);
-}
-
-/// The laws of all interface types, each with the stiffness that the scene gives or, for a rigid net, that of its body.
-void add_laws(const BlockSystem& system, const ModelInput& input, double boundary_stress, Model& model) {
-    double stiffest_rock = 0.0;
-    for (const Material& material : input.materials) stiffest_rock = std::max(stiffest_rock, material.youngs_modulus);
-    for (int t = 0; t < static_cast<int>(input.interface_types.size()); ++t) {
-        const InterfaceType& type = input.interface_types[t];
-        const InterfaceStiffness given = resolve_stiffness(type, system.spacing, stiffest_rock);
-        const bool rigid_net = has_rigid_net(input) && t == input.tessellation_type;
-        add_law(type, t, given, rigid_net ? net_of_rigid_blocks(given, system, input) : given, boundary_stress, model);
-        model.bonds.push_back(type.kind == InterfaceKind::potential_crack ? 1 : 0);
-        model.fracture_law.push_back(type.fails_to >= 0 ? type.fails_to : t);
+/// The stiffness of the net's interfaces with the compliance of the blocks in them.
+InterfaceStiffness net_of_rigid_blocks(const InterfaceStiffness& given, const BlockSystem& system,
+                                       const ModelInput& input, const Net& net) {
+    const Material& rock = rock_of_rigid_net(system, input);
+    try {
+        if (stiffness_from_ratio(input.interface_types[input.tessellation_type]))
+            return rigid_lattice_stiffness(rock.youngs_modulus, rock.poissons_ratio, input.plane, net);
+        return with_compliance_of_blocks(given, plane_moduli(rock.youngs_modulus, rock.poissons_ratio, input.plane),
+                                         input.plane, net);
+    } catch (const InputError& error) {
+        throw InputError("materials." + rock.name + "." + error.what());
     }
 }
 
-/// What a broken edge of a net of rigid blocks follows. Mapped fractures of the same type keep the type's stiffness: they
-/// cut hexagons whose edges carry all compliance already.
-void add_law_of_broken_net(const BlockSystem& system, const ModelInput& input, double boundary_stress, Model& model) {
+/// The stiffness of an interface type in the body, which is the one that the scene gives but in a net of rigid blocks.
+/// There the net's edges carry the compliance of the blocks, and of triangles, whose faces lie on the fractures, all do;
+/// fractures cut hexagons, whose edges carry all compliance already.
+InterfaceStiffness stiffness_in_body(int type, const InterfaceStiffness& given, const BlockSystem& system,
+                                     const ModelInput& input, const Net& net) {
+    if (!has_rigid_net(input)) return given;
+    if (type == input.tessellation_type) return net_of_rigid_blocks(given, system, input, net);
+    if (net.kind != NetKind::triangles) return given;
+    return with_compliance_of_blocks(given, moduli_of_blocks(rock_of_rigid_net(system, input), input, net), input.plane,
+                                     net);
+}
+
+/// What all laws of a model have in common.
+struct LawBench {
+    const BlockSystem& system;
+    const ModelInput& input;
+    double boundary_stress = 0.0;
+    double stiffest_rock = 0.0; ///< E (Pa)
+};
+
+/// Adds a law of an interface type, with its own index as that after failure; returns the index.
+int add_law(int type, const InterfaceStiffness& given, const InterfaceStiffness& stiffness, const LawBench& bench,
+            Model& model) {
+    const InterfaceType& of = bench.input.interface_types[type];
+    const int law = static_cast<int>(model.laws.size());
+    model.laws.push_back(resolve_law(of, stiffness, bench.boundary_stress));
+    model.law_types.push_back(type);
+    model.given_stiffness.push_back(given);
+    model.bonds.push_back(of.kind == InterfaceKind::potential_crack ? 1 : 0);
+    model.fracture_law.push_back(law);
+    return law;
+}
+
+/// A law with the stiffness that the type has on a net, which decides what is given times the spacing or as a ratio.
+int add_law_on_net(int type, const Net& net, const LawBench& bench, Model& model) {
+    const InterfaceStiffness given =
+        resolve_stiffness(bench.input.interface_types[type], net.spacing, bench.stiffest_rock);
+    return add_law(type, given, stiffness_in_body(type, given, bench.system, bench.input, net), bench, model);
+}
+
+/// The laws of all interface types.
+void add_laws(const LawBench& bench, Model& model) {
+    const int n_types = static_cast<int>(bench.input.interface_types.size());
+    Net net = model.net;
+    net.spacing = bench.system.spacing; // also of a body without a net
+    for (int t = 0; t < n_types; ++t) add_law_on_net(t, net, bench, model);
+    for (int t = 0; t < n_types; ++t) {
+        const int broken = bench.input.interface_types[t].fails_to;
+        if (broken >= 0) model.fracture_law[t] = broken;
+    }
+}
+
+/// What a broken edge of a net of rigid hexagons follows; mapped fractures of the same type keep the type's stiffness.
+void add_law_of_broken_net(const LawBench& bench, Model& model) {
+    const ModelInput& input = bench.input;
     const int broken = model.fracture_law[input.tessellation_type];
-    if (broken == input.tessellation_type) return;
-    const InterfaceType& type = input.interface_types[broken];
+    if (model.net.kind == NetKind::triangles || broken == input.tessellation_type) return;
     const InterfaceStiffness given = model.given_stiffness[broken];
-    const ElasticModuli blocks = moduli_of_blocks(rock_of_rigid_net(system, input), input);
+    const ElasticModuli blocks = moduli_of_blocks(rock_of_rigid_net(bench.system, input), input, model.net);
     try {
-        const auto stiffness = with_compliance_of_blocks(given, blocks, input.plane, system.spacing);
-        model.fracture_law[input.tessellation_type] = static_cast<int>(model.laws.size());
-        add_law(type, broken, given, stiffness, boundary_stress, model);
+        const auto stiffness = with_compliance_of_blocks(given, blocks, input.plane, model.net);
+        model.fracture_law[input.tessellation_type] = add_law(broken, given, stiffness, bench, model);
     } catch (const InputError& error) {
-        throw InputError("interfaces." + type.name + ", broken edges of the tessellation: " + error.what());
+        throw InputError("interfaces." + input.interface_types[broken].name +
+                         ", broken edges of the tessellation: " + error.what());
+    }
+}
+
+/// Laws of the edges of a graded net, and of what they fail to, for each spacing in it: their stiffness is that of a net of
+/// this spacing, so that the body's moduli are the same everywhere.
+void add_laws_of_graded_net(BlockSystem& system, const LawBench& bench, Model& model) {
+    std::map<double, int> law_at;
+    for (Interface& interface : system.interfaces) {
+        if (interface.spacing <= 0.0 || interface.spacing == system.spacing) continue;
+        const auto [found, is_new] = law_at.emplace(interface.spacing, static_cast<int>(model.laws.size()));
+        interface.law = found->second;
+        if (!is_new) continue;
+        const Net net = net_at(model.net, interface.spacing);
+        const int law = add_law_on_net(interface.interface_type, net, bench, model);
+        const int broken = bench.input.interface_types[interface.interface_type].fails_to;
+        if (broken >= 0) model.fracture_law[law] = add_law_on_net(broken, net, bench, model);
     }
 }
 
@@ -186,12 +244,12 @@ Strength strength_of(const Interface& interface, const BlockSystem& system, cons
     return weaker(*a.strength, *b.strength);
 }
 
-LatticeModuli moduli_of_body(const ElasticModuli& blocks, const ModelInput& input, const Model& model, double spacing) {
+LatticeModuli moduli_of_body(const ElasticModuli& blocks, const ModelInput& input, const Model& model) {
     if (input.tessellation_type < 0) return engineering_moduli(blocks, input.plane);
     const InterfaceLaw& law = model.laws[input.tessellation_type];
     const InterfaceStiffness net{.normal = law.normal_stiffness, .shear = law.shear_stiffness};
-    if (input.kinematics == Kinematics::rigid) return rigid_lattice_moduli(net, spacing, input.plane);
-    return lattice_moduli(blocks, net, spacing, input.plane);
+    if (input.kinematics == Kinematics::rigid) return rigid_lattice_moduli(net, model.net, input.plane);
+    return lattice_moduli(blocks, net, model.net, input.plane);
 }
 
 /// Platens are laid on what they press as it lies, which a gap to some of it may not mean.
@@ -226,28 +284,33 @@ Model build_model(BlockSystem system, const ModelInput& input) {
     model.histories = place_histories(system, input.histories);
     refuse_moved_fixed_blocks(system, input.loads);
     const double boundary_stress = largest_boundary_stress(system, input, model.force_points);
-    add_laws(system, input, boundary_stress, model);
-    if (has_rigid_net(input)) add_law_of_broken_net(system, input, boundary_stress, model);
+    model.net = net_of_body(system, input);
+    LawBench bench{.system = system, .input = input, .boundary_stress = boundary_stress};
+    for (const Material& material : input.materials)
+        bench.stiffest_rock = std::max(bench.stiffest_rock, material.youngs_modulus);
+    add_laws(bench, model);
+    if (has_rigid_net(input)) add_law_of_broken_net(bench, model);
+    add_laws_of_graded_net(system, bench, model);
 
     for (const Material& material : input.materials) {
         model.densities.push_back(material.density);
         const auto moduli = input.kinematics == Kinematics::affine
-                                ? moduli_of_blocks(material, input)
+                                ? moduli_of_blocks(material, input, model.net)
                                 : plane_moduli(material.youngs_modulus, material.poissons_ratio, input.plane);
-        const auto effective = moduli_of_body(moduli, input, model, system.spacing);
+        const auto effective = moduli_of_body(moduli, input, model);
         model.effective_modulus = std::max(model.effective_modulus, effective.youngs_modulus);
         model.moduli.push_back(moduli);
     }
     // One soft joint across a stiff body makes it as soft as k_n H.
     const double height = (system.upper - system.lower).maxCoeff();
     for (const Interface& interface : system.interfaces) {
-        const double of_joint = model.laws[interface.interface_type].normal_stiffness * height;
+        const double of_joint = model.laws[law_of(interface)].normal_stiffness * height;
         model.effective_modulus = std::min(model.effective_modulus, of_joint);
     }
 
     model.strengths.resize(system.interfaces.size());
     for (int i = 0; i < system.n_interfaces(); ++i) {
-        if (!model.bonds[system.interfaces[i].interface_type]) continue;
+        if (!model.bonds[law_of(system.interfaces[i])]) continue;
         const auto [strength, was_capped] = capped(strength_of(system.interfaces[i], system, input));
         model.strengths[i] = scaled(strength, strength_factor(input.strength_noise, i));
         if (was_capped && model.warnings.empty()) {
@@ -258,7 +321,7 @@ Model build_model(BlockSystem system, const ModelInput& input) {
     }
     std::vector<const InterfaceLaw*> fracture_laws;
     for (const Interface& interface : system.interfaces)
-        fracture_laws.push_back(&model.laws[model.fracture_law[interface.interface_type]]);
+        fracture_laws.push_back(&model.laws[model.fracture_law[law_of(interface)]]);
     model.overlap_points = overlap_points(system, fracture_laws);
     model.system = std::move(system);
     warn_of_uneven_platens(model);

@@ -29,7 +29,7 @@ DetectedContacts detected_contacts(const Model& model, const BodyState& body) {
     ContactSurfaces surfaces;
     surfaces.bonded = bonded_interfaces(body);
     for (const Interface& interface : model.system.interfaces) {
-        surfaces.law.push_back(model.fracture_law[interface.interface_type]);
+        surfaces.law.push_back(model.fracture_law[law_of(interface)]);
     }
     surfaces.n_points = model.overlap_points;
     for (const InterfaceLaw& law : model.laws) surfaces.friction.push_back(law.tan_friction);

@@ -205,10 +205,11 @@ std::vector<StudySetting> replica_settings(const ReplicaPlan& plan, int replica,
         settings.push_back({"cracks.strength_noise", rounded(plan.strength_noise), plan.at});
         settings.push_back({"cracks.strength_seed", std::to_string(bits(plan, replica, 0) % largest_seed), plan.at});
     }
-    if (net.voronoi && plan.offset)
-        settings.push_back(
-            {"geometry.tessellation.voronoi.seed", std::to_string(bits(plan, replica, 4) % largest_seed), plan.at});
-    if (net.voronoi || !net.hexagons) return settings;
+    const bool random = net.voronoi || net.triangles;
+    if (random && plan.offset)
+        settings.push_back({fmt::format("geometry.tessellation.{}.seed", net.voronoi ? "voronoi" : "triangles"),
+                            std::to_string(bits(plan, replica, 4) % largest_seed), plan.at});
+    if (random || !net.hexagons) return settings;
     const HexagonLattice* const hexagons = &*net.hexagons;
     const double turned = plan.rotation * (2.0 * uniform(plan, replica, 1) - 1.0) * degree;
     const double angle = hexagons->rotation + turned;

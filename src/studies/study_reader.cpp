@@ -623,7 +623,7 @@ private:
             return true; // judged when it is read as a whole
         }
         const ReplicaPlan& plan = study_.replicas;
-        if ((plan.offset || plan.rotation > 0.0) && !net.hexagons && !net.voronoi) {
+        if ((plan.offset || plan.rotation > 0.0) && !net.hexagons && !net.voronoi && !net.triangles) {
             if (said_.insert("no net").second)
                 errors_.add(plan.at, "replicas",
                             "expected a scene with a tessellation for offset and rotation, found "
@@ -643,6 +643,7 @@ private:
         const SceneNode* const geometry = tree.find("geometry");
         const SceneNode* const tessellation = geometry == nullptr ? nullptr : geometry->find("tessellation");
         net.voronoi = tessellation != nullptr && tessellation->find("voronoi") != nullptr;
+        net.triangles = tessellation != nullptr && tessellation->find("triangles") != nullptr;
         return net;
     }
 

@@ -242,6 +242,15 @@ private:
         else if (can_be_rigid(scene_))
             add("rigid blocks", {{"analysis.kinematics", {"rigid"}}});
         if (!scene_.geometry.tessellation) return;
+        if (const auto& triangles = scene_.geometry.tessellation->triangles) {
+            const std::string net = "geometry.tessellation.triangles";
+            add("triangle size",
+                {{net + ".spacing", {number_text(0.8 * triangles->spacing), number_text(1.25 * triangles->spacing)}}});
+            add("other triangles", {{net + ".seed",
+                                     {number_text(static_cast<double>(triangles->seed) + 1.0),
+                                      number_text(static_cast<double>(triangles->seed) + 2.0)}}});
+            return;
+        }
         const HexagonLattice& hexagons = scene_.geometry.tessellation->hexagons;
         if (hexagons.spacing <= 0.0) return; // cells of another kind
         const std::string net = "geometry.tessellation.hexagons";

@@ -818,22 +818,52 @@ TEST_F(CommandLine, CompareRefusesWhatIsNoRun) {
 TEST_F(CommandLine, EnvelopeFitsThePeaksOfRuns) {
     write("tiny.yaml", tiny_scene);
     ASSERT_EQ(kluft({"run", "tiny.yaml", "-o", "low", "--quiet"}).code, 0);
-    ASSERT_EQ(kluft({"run", "tiny.yaml", "-o", "high", "--quiet", "--set",
-                     "stages.0.pressure={left: 0.3 MPa, right: 0.3 MPa, top: 0.3 MPa}"})
-                  .code,
-              0);
+    ASSERT_EQ(
+        kluft({"run", "tiny.yaml", "-o", "high", "--quiet", "--set",
+               "stages.0.pressure={left: 0.2 MPa, right: 0.2 MPa, top: 0.2 MPa}", "--set", "stages.1.strain.value=2 %"})
+            .code,
+        0);
     const Result result = kluft({"envelope", "low", "high"});
     EXPECT_EQ(result.code, 0) << result.err;
     EXPECT_THAT(result.out, AllOf(HasSubstr("MPa"), HasSubstr("deg"), HasSubstr("envelope.png")));
     EXPECT_THAT(content_of(path("envelope.png")), StartsWith("\x89PNG"));
     EXPECT_GT(lines_of(content_of(path("envelope.csv"))).size(), 2U);
+    EXPECT_TRUE(nlohmann::json::parse(content_of(path("envelope.json")))["cohesion_error"].is_null());
+
+    // A run, a table in MPa, the table that was written before, and strengths of tension tests.
+    write("field.csv", "run,sigma_3 (MPa),sigma_1 (MPa),peak_reached\nf1,0.5,2.5,1\nf2,0.2,9,0\n");
+    const Result mixed = kluft({"envelope", "low", "field.csv", "envelope.csv", "--tension", "40 kPa", "--tension",
+                                "0.06 MPa", "-o", "mixed.svg"});
+    EXPECT_EQ(mixed.code, 0) << mixed.err;
+    EXPECT_THAT(mixed.out, AllOf(HasSubstr("4 points"), HasSubstr("tensile strength 0.0500 +- 0.0100 MPa"),
+                                 HasSubstr("1 bound, left out of the fit: f2 (still rising)"),
+                                 HasSubstr("the fit is contradicted: it lies below what was carried by f2")));
+    const auto json = nlohmann::json::parse(content_of(path("mixed.json")));
+    EXPECT_EQ(json["n_points"], 4);
+    EXPECT_EQ(json["n_bounds"], 1);
+    EXPECT_GT(json["cohesion_error"], 0.0);
+}
+
+TEST_F(CommandLine, EnvelopeRefusesBadTables) {
+    write("good.csv", "sigma_3,sigma_1\n0,1e6\n1e6,5e6\n");
+    write("bad.csv", "sigma_3,sigma_1\n0,1e6\n1e6,high\n");
+    write("rising.csv", "sigma_3,sigma_1,peak_reached\n0,1e6,1\n1e6,5e6,0\n");
+    expect_refused({"envelope", "good.csv", "bad.csv"},
+                   HasSubstr("bad.csv:3:5: sigma_1: expected a number, found 'high'"));
+    expect_refused({"envelope", "absent.csv"}, HasSubstr("absent.csv: expected a table of tests, found no such file"));
+    expect_refused({"envelope", "rising.csv"}, HasSubstr("rising 2: still rising"));
+    expect_refused({"envelope", "good.csv", "--tension", "low"}, HasSubstr("--tension: expected a tensile strength"));
+    expect_refused({"envelope", "good.csv", "--tension", "-1 MPa"}, HasSubstr("above zero"));
+    expect_refused({"envelope", "good.csv", "-o", "good.png"}, HasSubstr("good.csv is one of the tests"));
+    EXPECT_FALSE(fs::exists(path("envelope.png")));
+    EXPECT_FALSE(fs::exists(path("good.png")));
 }
 
 TEST_F(CommandLine, EnvelopeRefusesWhatIsNoRun) {
     write("file", "");
     fs::create_directory(path("empty"));
     expect_refused({"envelope", "absent"}, HasSubstr("absent: expected a directory of results, found nothing"));
-    expect_refused({"envelope", "file"}, HasSubstr("file: expected a directory of results, found a file"));
+    expect_refused({"envelope", "file"}, HasSubstr("file: expected a directory of results or a table of tests (.csv)"));
     expect_refused({"envelope", "empty"}, HasSubstr("found no history.csv"));
     expect_refused({"envelope", "empty", "--compare", "x"}, HasSubstr("--compare"));
     EXPECT_FALSE(fs::exists(path("envelope.png")));

@@ -33,6 +33,7 @@ inline std::string specimen(const std::string& tessellation, const std::string& 
 inline const std::string hexagons = "hexagons: {spacing: 0.02}";
 inline const std::string jittered_hexagons = "hexagons: {spacing: 0.02, jitter: 0.15, seed: 3}";
 inline const std::string voronoi = "voronoi: {spacing: 0.02, seed: 5}";
+inline const std::string triangles = "triangles: {spacing: 0.03, seed: 2}";
 inline const std::string two_fractures = "[{name: a, trace: [[-0.01, 0.1], [0.15, 0.26]], interface: joint}, "
                                          "{name: b, trace: [[0.05, 0.35], [0.21, 0.2]], interface: joint}]";
 

@@ -53,7 +53,7 @@ TEST(ElasticBody, HexagonsHaveTheModuliOfTheLattice) {
     for (const std::string plane : {"strain", "stress"}) {
         const Model model = model_of(specimen("hexagons: {spacing: 0.01}", "", plane));
         const auto lattice =
-            lattice_moduli(model.moduli[0], {.normal = 3e12, .shear = 1.5e12}, model.system.spacing, model.plane);
+            lattice_moduli(model.moduli[0], {.normal = 3e12, .shear = 1.5e12}, hexagon_net(0.01), model.plane);
         const ElasticResponse found = response_of(model);
         EXPECT_NEAR(found.youngs_modulus / lattice.youngs_modulus, 1.0, 2e-3) << plane;
         EXPECT_NEAR(found.poissons_ratio, lattice.poissons_ratio, 2e-3) << plane;
@@ -61,7 +61,7 @@ TEST(ElasticBody, HexagonsHaveTheModuliOfTheLattice) {
 }
 
 TEST(ElasticBody, AgreesWithARunOfTheSameBodyAtSmallStrain) {
-    for (const std::string& net : {hexagons, jittered_hexagons, voronoi}) {
+    for (const std::string& net : {hexagons, jittered_hexagons, voronoi, triangles}) {
         const std::string scene = specimen(net, two_fractures);
         // Little strain, and so much friction that nothing slides.
         const SceneRun run =
@@ -79,6 +79,7 @@ TEST(ElasticBody, AgreesWithARunOfTheSameBodyAtSmallStrain) {
 TEST(ElasticBody, DerivativesAreThoseOfDifferences) {
     EXPECT_LT(largest_gradient_error(model_of(specimen(hexagons))), 1e-8);
     EXPECT_LT(largest_gradient_error(model_of(specimen(voronoi))), 1e-8);
+    EXPECT_LT(largest_gradient_error(model_of(specimen(triangles, two_fractures))), 1e-8);
     EXPECT_LT(largest_gradient_error(model_of(specimen(jittered_hexagons, two_fractures))), 1e-8);
     EXPECT_LT(largest_gradient_error(model_of(specimen(hexagons, two_fractures, "stress"))), 1e-8);
     EXPECT_LT(largest_gradient_error(model_of(specimen(hexagons, two_fractures),

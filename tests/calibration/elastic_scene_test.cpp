@@ -65,8 +65,9 @@ TEST_F(ElasticStage, RecoversTheModuliOfHexagonsFromAFactorOfTenOff) {
 }
 
 TEST_F(ElasticStage, RecoversTheModuliOfAnyNetAndOfFracturedBodies) {
-    for (const std::string& scene : {specimen(jittered_hexagons), specimen(voronoi), specimen(voronoi, two_fractures),
-                                     specimen(hexagons, two_fractures, "stress")}) {
+    for (const std::string& scene :
+         {specimen(jittered_hexagons), specimen(voronoi), specimen(voronoi, two_fractures), specimen(triangles),
+          specimen(triangles, two_fractures), specimen(hexagons, two_fractures, "stress")}) {
         for (const double start : {200e9, 20e12}) {
             const Calibration wanted = calibration(scene, stiffnesses(start, 0.1 * start));
             const ElasticFit found = fit(wanted);

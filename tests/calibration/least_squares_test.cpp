@@ -10,8 +10,8 @@ namespace kluft {
 namespace {
 
 /// Rosenbrock's function as residuals 10 (y - x^2), 1 - x: zero at (1, 1) only.
-std::optional<Residuals> rosenbrock(const Eigen::VectorXd& x) {
-    Residuals result{Eigen::VectorXd(2), Eigen::MatrixXd(2, 2)};
+std::optional<ResidualRows> rosenbrock(const Eigen::VectorXd& x) {
+    ResidualRows result{Eigen::VectorXd(2), Eigen::MatrixXd(2, 2)};
     result.values << 10.0 * (x[1] - x[0] * x[0]), 1.0 - x[0];
     result.jacobian << -20.0 * x[0], 10.0, -1.0, 0.0;
     return result;
@@ -44,9 +44,9 @@ TEST(LeastSquares, WhatHasEqualBoundsDoesNotMove) {
 
 // log is not there for x <= 0: the first step from 5 goes to 5 - 5 log 5 < 0 and is made shorter.
 TEST(LeastSquares, GoesShorterStepsWhereThereAreNoResiduals) {
-    const auto logarithm = [](const Eigen::VectorXd& x) -> std::optional<Residuals> {
+    const auto logarithm = [](const Eigen::VectorXd& x) -> std::optional<ResidualRows> {
         if (x[0] <= 0.0) return std::nullopt;
-        return Residuals{Eigen::VectorXd::Constant(1, std::log(x[0])), Eigen::MatrixXd::Constant(1, 1, 1.0 / x[0])};
+        return ResidualRows{Eigen::VectorXd::Constant(1, std::log(x[0])), Eigen::MatrixXd::Constant(1, 1, 1.0 / x[0])};
     };
     const auto one = [](double value) { return Eigen::VectorXd(Eigen::VectorXd::Constant(1, value)); };
     EXPECT_NEAR(minimise_squares(logarithm, one(5.0), one(-100.0), one(100.0)).x[0], 1.0, 1e-8);

@@ -121,7 +121,7 @@ TEST(LocalModel, HasTheSlopesOfALinearResponse) {
     }
     const auto model =
         fit_local_model(all, Eigen::Vector2d::Zero(), Eigen::MatrixXd::Zero(1, 2), {{0, 1, 1.0, 50.0}}, {0, 1});
-    const Residuals at = model.at(Eigen::Vector2d(0.1, 0.1));
+    const ResidualRows at = model.at(Eigen::Vector2d(0.1, 0.1));
     EXPECT_NEAR(at.values[0], 2.7, 1e-3);
     EXPECT_NEAR(at.jacobian(0, 0), 2.0, 1e-2);
     EXPECT_NEAR(at.jacobian(0, 1), -5.0, 1e-2);

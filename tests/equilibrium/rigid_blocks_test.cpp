@@ -138,7 +138,7 @@ struct RigidPatch {
     static constexpr double e = 10e9, nu = 0.15, d = 0.03;
 
     RigidPatch(Plane plane, const Mat2& strain) {
-        const InterfaceStiffness stiffness = rigid_lattice_stiffness(e, nu, plane, d);
+        const InterfaceStiffness stiffness = rigid_lattice_stiffness(e, nu, plane, hexagon_net(d));
         laws = {{.normal_stiffness = stiffness.normal, .shear_stiffness = stiffness.shear}};
         moduli = {plane_moduli(e, nu, plane)};
         system = cut_blocks(hexagon_spec(10.3 * d, 9.7 * d, d)).system;
@@ -209,13 +209,14 @@ TEST(RigidBlocks, LatticeOfRigidHexagonsHasTheModuliOfTheRock) {
 
 // k_n d = 2K and k_s d = 4G - 2K: for nu = 1/4 in plane strain and 1/3 in plane stress k_s would be zero.
 TEST(RigidBlocks, InterfacesOfRigidHexagonsExistForSmallPoissonsRatiosOnly) {
-    const auto back = rigid_lattice_moduli(rigid_lattice_stiffness(5e9, 0.2, Plane::strain, 0.1), 0.1, Plane::strain);
+    const auto back = rigid_lattice_moduli(rigid_lattice_stiffness(5e9, 0.2, Plane::strain, hexagon_net(0.1)),
+                                           hexagon_net(0.1), Plane::strain);
     EXPECT_NEAR(back.youngs_modulus, 5e9, 1e-3);
     EXPECT_NEAR(back.poissons_ratio, 0.2, 1e-12);
-    EXPECT_NO_THROW((void)rigid_lattice_stiffness(5e9, 0.249, Plane::strain, 0.1));
-    EXPECT_THROW((void)rigid_lattice_stiffness(5e9, 0.25, Plane::strain, 0.1), InputError);
-    EXPECT_NO_THROW((void)rigid_lattice_stiffness(5e9, 0.33, Plane::stress, 0.1));
-    EXPECT_THROW((void)rigid_lattice_stiffness(5e9, 0.34, Plane::stress, 0.1), InputError);
+    EXPECT_NO_THROW((void)rigid_lattice_stiffness(5e9, 0.249, Plane::strain, hexagon_net(0.1)));
+    EXPECT_THROW((void)rigid_lattice_stiffness(5e9, 0.25, Plane::strain, hexagon_net(0.1)), InputError);
+    EXPECT_NO_THROW((void)rigid_lattice_stiffness(5e9, 0.33, Plane::stress, hexagon_net(0.1)));
+    EXPECT_THROW((void)rigid_lattice_stiffness(5e9, 0.34, Plane::stress, hexagon_net(0.1)), InputError);
 }
 
 } // namespace

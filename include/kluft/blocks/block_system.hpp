@@ -46,7 +46,14 @@ struct Interface {
     EdgeOrigin origin = EdgeOrigin::tessellation;
     int fracture = -1;      ///< index of the mapped fracture it lies on; -1 for any other edge
     int interface_type = 0; ///< index into the scene's interface types
+    double spacing = 0.0;   ///< d of a graded net at this edge (m); 0: that of the body
+    int law = -1;           ///< index into a model's laws; -1: that of its interface type
 };
+
+/// What the interface follows while it is bonded, or as the fracture that it is: index into a model's laws.
+[[nodiscard]] inline int law_of(const Interface& interface) {
+    return interface.law >= 0 ? interface.law : interface.interface_type;
+}
 
 struct BoundaryEdge {
     int block = 0;
@@ -96,6 +103,10 @@ struct BlockSystem {
 /// The spacing that motions of a block are measured by: the net's, of blocks much smaller than its cells four times their
 /// own (m).
 [[nodiscard]] double motion_scale(const BlockSystem& system, const Block& block);
+
+/// Length of the net's edges between triangles per area of triangles, in units of 1/d with the d of each edge: 2 sqrt(3) of
+/// equilateral ones without end.
+[[nodiscard]] double edges_per_triangle_area(const BlockSystem& system);
 
 /// Area, centroid, size and second moment of a block from its edges (Green's theorem over the loops).
 void compute_block_moments(const std::vector<Vec2>& vertices, Block& block);

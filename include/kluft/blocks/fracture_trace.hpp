@@ -22,4 +22,7 @@ struct SourceTrace {
 [[nodiscard]] std::vector<SourceSegment> bridge_ends(const std::vector<SourceTrace>& traces,
                                                      const std::vector<SourceSegment>& segments, double reach);
 
+/// A polyline without the points that it passes within `tolerance` (m) anyway (Douglas and Peucker 1973).
+[[nodiscard]] std::vector<Vec2> simplified(const std::vector<Vec2>& points, double tolerance);
+
 } // namespace kluft

@@ -39,13 +39,38 @@ struct VoronoiCells {
     std::uint64_t seed = 1;     ///< of the points
 };
 
-/// Hexagons, or the Voronoi cells where they are given, inside `region` (everywhere without one); their edges get
-/// `interface_type`.
+/// Where a net of triangles is finer: the side of triangles there (m; 0 = as elsewhere), which grows by `growth` per
+/// metre away from it until it is the net's spacing.
+struct TriangleGrading {
+    double fractures = 0.0;      ///< at mapped fractures
+    double openings = 0.0;       ///< at holes of the domain
+    Polygon region;              ///< scene coordinates; empty: none
+    double region_spacing = 0.0; ///< inside the region
+    double growth = 0.3;
+};
+
+/// Triangles that follow the outline, the fractures and the construction lines. `spacing` is the side of the equilateral
+/// triangle of mean area (m).
+struct TriangleNet {
+    double spacing = 0.0;
+    int relaxation = 0;     ///< Lloyd's passes: each moves every free point to the centroid of its Voronoi cell
+    std::uint64_t seed = 1; ///< of the points
+    TriangleGrading grading;
+};
+
+/// The smallest side that the net is asked for (m).
+[[nodiscard]] double smallest_side(const TriangleNet& net);
+
+enum class NetKind { hexagons, voronoi, triangles };
+
+/// Hexagons, or the Voronoi cells or triangles where they are given, inside `region` (everywhere without one); their
+/// edges get `interface_type`.
 struct Tessellation {
     HexagonLattice hexagons;
     int interface_type = 0;
     std::optional<Polygon> region;
     std::optional<VoronoiCells> voronoi{};
+    std::optional<TriangleNet> triangles{};
 };
 
 /// A part of the domain made of another material: blocks with their centroid inside get `material`.
@@ -85,15 +110,20 @@ struct GeometrySpec {
     std::vector<BoundarySides> boundaries; ///< sides in none of them are free and have no name
     std::vector<FractureTrace> fractures;
     std::optional<Tessellation> tessellation;
+    std::vector<std::vector<Vec2>> construction_lines; ///< polylines that a net of triangles follows; no fractures
     int material = 0;
     std::vector<MaterialRegion> regions;
-    double minimum_area =
-        0.05; ///< smallest block as a fraction of a hexagon of lattice_spacing, which is also a mean Voronoi cell
+    double minimum_area = 0.05;     ///< smallest block as a fraction of mean_cell_area
     double reference_spacing = 0.0; ///< d where there is no tessellation (m); 0 = none given
     std::vector<GivenBlock> blocks; ///< instead of domain, holes, fractures, tessellation and regions
     int blocks_interface = 0;       ///< index into the scene's interface types: of the interfaces between them
     std::vector<BlockSetSpec> sets;
 };
+
+[[nodiscard]] NetKind kind_of(const Tessellation& tessellation);
+
+/// Mean area of a cell of the net, or of a hexagon of lattice_spacing where there is none (m2).
+[[nodiscard]] double mean_cell_area(const GeometrySpec& spec);
 
 /// d of the scene: the tessellation's spacing, else the reference spacing (m), else 0.
 [[nodiscard]] double lattice_spacing(const GeometrySpec& spec);

@@ -66,6 +66,9 @@ public:
     /// least three edges. Returns the half-edge that remains and ended at v.
     int dissolve_vertex(int v);
 
+    /// Puts a vertex into the edge of h, which is then the part up to it. Returns the vertex.
+    int split_edge(int h, const Vec2& at);
+
     /// Moves the end of h to its start and removes h's edge. Both loops must keep at least three edges, and no other
     /// edge may join the two vertices. Returns the vertex that remains: the start of h.
     int contract_edge(int h);

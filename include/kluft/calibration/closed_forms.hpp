@@ -17,7 +17,7 @@ namespace kluft {
 /// cracks or where a platen pulls instead of pressing.
 [[nodiscard]] std::optional<double> expected_value(const CalibrationTarget& target, const Scene& scene);
 
-/// Residuals by theory and their derivatives by x, one row per target of `targets` (indices into those of the calibration);
+/// ResidualRows by theory and their derivatives by x, one row per target of `targets` (indices into those of the calibration);
 /// zero rows of what theory knows nothing of.
 struct ExpectedRows {
     Eigen::VectorXd values;   ///< differences from the targets over the tolerances

@@ -1,5 +1,5 @@
 // Young's modulus and Poisson's ratio of a whole body as an elastic specimen, with their exact derivatives
-// (docs/theory.md, section 11).
+// (docs/theory.md, section 12).
 #pragma once
 
 #include <memory>

@@ -62,9 +62,9 @@ public:
     /// Indices into Calibration::targets.
     [[nodiscard]] const std::vector<std::size_t>& targets() const { return targets_; }
     /// The values of the targets and their derivatives by x, one row per target.
-    [[nodiscard]] std::optional<Residuals> values_at(const Eigen::VectorXd& x);
+    [[nodiscard]] std::optional<ResidualRows> values_at(const Eigen::VectorXd& x);
     /// The differences from the targets over the tolerances, one per target.
-    [[nodiscard]] std::optional<Residuals> residuals_at(const Eigen::VectorXd& x);
+    [[nodiscard]] std::optional<ResidualRows> residuals_at(const Eigen::VectorXd& x);
 
 private:
     const Calibration& calibration_;

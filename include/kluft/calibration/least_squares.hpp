@@ -8,14 +8,14 @@
 
 namespace kluft {
 
-/// Residuals and their derivatives.
-struct Residuals {
+/// ResidualRows and their derivatives.
+struct ResidualRows {
     Eigen::VectorXd values;   ///< size m
     Eigen::MatrixXd jacobian; ///< m x n
 };
 
 /// The residuals at x (size n); nothing where there are none, which makes the step shorter.
-using ResidualFunction = std::function<std::optional<Residuals>(const Eigen::VectorXd& x)>;
+using ResidualFunction = std::function<std::optional<ResidualRows>(const Eigen::VectorXd& x)>;
 
 struct LeastSquaresOptions {
     double residual = 1e-8;     ///< ends where none of the judged residuals is larger in magnitude
@@ -25,7 +25,7 @@ struct LeastSquaresOptions {
 
 struct LeastSquaresResult {
     Eigen::VectorXd x;      ///< the best that was evaluated
-    Residuals residuals;    ///< there
+    ResidualRows residuals; ///< there
     int evaluations = 0;    ///< of the function, each place once
     bool converged = false; ///< to the residual or to a minimum
 };

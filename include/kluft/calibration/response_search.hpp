@@ -84,7 +84,7 @@ struct LocalModel {
     Eigen::MatrixXd slope;     ///< G
     Eigen::MatrixXd curvature; ///< C
 
-    [[nodiscard]] Residuals at(const Eigen::VectorXd& x) const;
+    [[nodiscard]] ResidualRows at(const Eigen::VectorXd& x) const;
 };
 
 /// The most likely model (Bayes with normal errors): slopes scatter about the `expected` ones by 1 unit per unit of x, by 2

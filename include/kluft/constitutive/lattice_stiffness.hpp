@@ -1,6 +1,7 @@
-// Elastic moduli in the plane, stiffness of interfaces, and what both give for a body cut into regular hexagons.
+// Elastic moduli in the plane, stiffness of interfaces, and what both give for a body cut by a net.
 #pragma once
 
+#include "kluft/blocks/geometry_spec.hpp"
 #include "kluft/constitutive/material.hpp"
 
 namespace kluft {
@@ -36,29 +37,49 @@ inline constexpr double default_shear_ratio = 0.5;      ///< k_s/k_n
 /// E, nu, K and G of a material from its plane-reduced Lame constants; the inverse of plane_moduli.
 [[nodiscard]] LatticeModuli engineering_moduli(const ElasticModuli& moduli, Plane plane);
 
-/// Moduli of a body of regular hexagons with elastic blocks and elastic interfaces; exact for the infinite lattice:
-///   1/(2 K_eff) = 1/(2 K) + 1/(d k_n),   1/(2 G_eff) = 1/(2 G) + 2/(d (k_n + k_s))   (docs/theory.md, lattice).
-/// `spacing` d is the distance of centres = across flats (m).
+/// What decides the compliance that a net's interfaces add to that of its blocks.
+struct Net {
+    NetKind kind = NetKind::hexagons;
+    double spacing = 0.0;      ///< d: distance of centres of hexagons, side of triangles (m)
+    double edge_density = 0.0; ///< Lambda: length of the net's edges inside the body per area (1/m)
+};
+
+/// Hexagons of spacing d: Lambda = 2/d. Voronoi cells are taken for hexagons of the same mean area.
+[[nodiscard]] Net hexagon_net(double spacing);
+/// Equilateral triangles of side a: Lambda = 2 sqrt(3)/a.
+[[nodiscard]] Net equilateral_net(double side);
+/// Triangles of mean side a with the edge density that they have.
+[[nodiscard]] Net triangle_net_of(double side, double edge_density);
+
+/// Moduli of a body cut by the net with elastic blocks and elastic interfaces (docs/theory.md, (20) and (20a)):
+///   1/(2 K_eff) = 1/(2 K) + Lambda/(2 k_n),
+///   1/(2 G_eff) = 1/(2 G) + Lambda/(k_n + k_s)               of hexagons,
+///   1/(2 G_eff) = 1/(2 G) + Lambda/4 (1/k_n + 1/k_s)         of triangles.
+/// Exact for regular hexagons and equilateral triangles without end; of other triangles a lower bound of the stiffness.
 [[nodiscard]] LatticeModuli lattice_moduli(const ElasticModuli& blocks, const InterfaceStiffness& interfaces,
-                                           double spacing, Plane plane);
+                                           const Net& net, Plane plane);
 
 /// The same of rigid blocks: all compliance is that of the interfaces.
-[[nodiscard]] LatticeModuli rigid_lattice_moduli(const InterfaceStiffness& interfaces, double spacing, Plane plane);
+[[nodiscard]] LatticeModuli rigid_lattice_moduli(const InterfaceStiffness& interfaces, const Net& net, Plane plane);
 
-/// Interfaces between rigid hexagons that give the body the rock's E and nu: k_n d = 2 K, k_s d = 4 G - 2 K.
-/// Throws InputError where k_s would not be positive: nu >= 1/4 in plane strain, nu >= 1/3 in plane stress.
+/// Interfaces between rigid blocks that give the body the rock's E and nu: of hexagons k_n d = 2 K, k_s d = 4 G - 2 K, of
+/// triangles k_n = Lambda K, 1/k_s = (4/Lambda)/(2 G) - (2/Lambda)/(2 K).
+/// Throws InputError where k_s would not be positive: of hexagons nu >= 1/4 in plane strain, nu >= 1/3 in plane stress, of
+/// triangles nu <= -1/2 and -1/3.
 [[nodiscard]] InterfaceStiffness rigid_lattice_stiffness(double youngs_modulus_of_rock, double poissons_ratio_of_rock,
-                                                         Plane plane, double spacing);
+                                                         Plane plane, const Net& net);
 
-/// Interfaces between rigid hexagons that also carry the compliance of the blocks, so that the body is as stiff as one of
-/// those blocks on `interfaces`: k_n' d = 2 K_eff, (k_n' + k_s') d = 4 G_eff of lattice_moduli, or
-///   1/k_n' = 1/k_n + d/(2 K),   1/(k_n' + k_s') = 1/(k_n + k_s) + d/(4 G).
-/// Throws InputError where k_s' would not be positive, with the largest admissible nu of the blocks.
+/// Interfaces between rigid blocks that also carry the compliance of the blocks, so that the body is as stiff as one of
+/// those blocks on `interfaces`. Of hexagons k_n' d = 2 K_eff, (k_n' + k_s') d = 4 G_eff of lattice_moduli, or
+///   1/k_n' = 1/k_n + d/(2 K),   1/(k_n' + k_s') = 1/(k_n + k_s) + d/(4 G);
+/// of triangles
+///   1/k_n' = 1/k_n + (2/Lambda)/(2 K),   1/k_s' = 1/k_s + (4/Lambda)/(2 G) - (2/Lambda)/(2 K).
+/// Throws InputError where k_s' would not be positive, of hexagons with the largest admissible nu of the blocks.
 [[nodiscard]] InterfaceStiffness with_compliance_of_blocks(const InterfaceStiffness& interfaces,
-                                                           const ElasticModuli& blocks, Plane plane, double spacing);
+                                                           const ElasticModuli& blocks, Plane plane, const Net& net);
 
-/// The Poisson's ratio of blocks with this E from which on k_s' of with_compliance_of_blocks is not positive; 1/2 or more:
-/// all are admissible.
+/// The Poisson's ratio of rigid hexagons with this E from which on k_s' of with_compliance_of_blocks is not positive;
+/// 1/2 or more: all are admissible.
 [[nodiscard]] double largest_poissons_ratio(const InterfaceStiffness& interfaces, double youngs_modulus, Plane plane,
                                             double spacing);
 
@@ -66,10 +87,11 @@ inline constexpr double default_shear_ratio = 0.5;      ///< k_s/k_n
 /// blocks, with k_n d = stiffness_ratio E and k_s = shear_ratio k_n.
 /// Throws InputError that names the smallest admissible stiffness_ratio where no positive moduli result.
 [[nodiscard]] ElasticModuli block_moduli(double youngs_modulus_of_rock, double poissons_ratio_of_rock, Plane plane,
-                                         double stiffness_ratio, double shear_ratio);
+                                         double stiffness_ratio, double shear_ratio, const Net& net);
 
 /// The ratio k_n d/E at which the blocks of block_moduli would have to be rigid; admissible ratios are larger.
-[[nodiscard]] double smallest_stiffness_ratio(double poissons_ratio_of_rock, Plane plane, double shear_ratio);
+[[nodiscard]] double smallest_stiffness_ratio(double poissons_ratio_of_rock, Plane plane, double shear_ratio,
+                                              const Net& net);
 
 /// True where the stiffness is given by stiffness_ratio (or not at all), so that a material's E and nu are the rock's.
 [[nodiscard]] bool stiffness_from_ratio(const InterfaceType& type);

@@ -1,4 +1,4 @@
-// The strength envelope of several triaxial runs: cohesion and friction angle, Mohr's circles.
+// The strength envelope of several tests as table, document and picture with Mohr's circles.
 #pragma once
 
 #include <filesystem>
@@ -6,38 +6,29 @@
 #include <string>
 #include <vector>
 
+#include "kluft/constitutive/strength_fit.hpp"
 #include "kluft/output/canvas.hpp"
 #include "kluft/simulation/step_record.hpp"
 
 namespace kluft {
 
-/// A run's peak. Pa, positive in compression.
-struct PeakPoint {
-    std::string run;
-    double sigma_3 = 0.0;     ///< lateral stress at the peak
-    double sigma_1 = 0.0;     ///< axial stress at the peak
-    bool peak_reached = true; ///< false: the stress was still rising, sigma_1 is a lower bound
-};
+/// The peak of a run from the rows of equilibria.csv (or history.csv): axial and lateral stress at the peak in the sense
+/// of the platen, the larger one as sigma_1. `platen_stage`: the first stage that moves a platen, which presses where it is
+/// not known. Throws InputError when no row is balanced.
+[[nodiscard]] PeakPoint peak_point(const std::string& run, const std::vector<StepRecord>& equilibria,
+                                   std::optional<int> platen_stage = std::nullopt);
 
-/// Mohr-Coulomb's line sigma_1 = 2 c cos(phi)/(1 - sin(phi)) + sigma_3 (1 + sin(phi))/(1 - sin(phi)).
-struct Envelope {
-    double cohesion = 0.0;       ///< Pa
-    double friction_angle = 0.0; ///< radians
-
-    [[nodiscard]] double sigma_1(double sigma_3) const;
-};
-
-/// The peak of a run from the rows of equilibria.csv (or history.csv). Throws InputError when no row is balanced.
-[[nodiscard]] PeakPoint peak_point(const std::string& run, const std::vector<StepRecord>& equilibria);
-
-/// Least squares of sigma_1 on sigma_3. Throws InputError with fewer than two different sigma_3 or when no
-/// Mohr-Coulomb line fits (slope not above zero).
-[[nodiscard]] Envelope fit_envelope(const std::vector<PeakPoint>& points);
-
-/// Columns `run,sigma_3,sigma_1,fitted_sigma_1,peak_reached` (Pa), one row per run.
-[[nodiscard]] std::string envelope_csv(const std::vector<PeakPoint>& points, const Envelope& fit);
-/// The same as an aligned table in MPa, with cohesion and friction angle below.
-[[nodiscard]] std::string envelope_text(const std::vector<PeakPoint>& points, const Envelope& fit);
+/// Columns `run,sigma_3,sigma_1,fitted_sigma_1,peak_reached,balanced,net_locked,use` (Pa), one row per test; `use` is
+/// strength, tension or bound. Names with commas or quotes are quoted (RFC 4180).
+[[nodiscard]] std::string envelope_csv(const std::vector<PeakPoint>& points, const StrengthFit& fit);
+/// The same as an aligned table in MPa, below it every parameter with its standard error, what is a bound and what
+/// contradicts the line.
+[[nodiscard]] std::string envelope_text(const std::vector<PeakPoint>& points, const StrengthFit& fit);
+/// All numbers (Pa, angles in degrees), null for what is not known: cohesion, friction_angle, tensile_strength, each also with
+/// _error, r_squared, rms_residual, n_points (strengths), n_tension, n_bounds, cohesion_over_tensile_strength,
+/// hoek_brown {sigma_ci, sigma_ci_error, m_i, m_i_error, s, a, r_squared, rms_residual, problem}, contradicted_by (names),
+/// points (the rows of the table), units, version.
+[[nodiscard]] std::string envelope_json(const std::vector<PeakPoint>& points, const StrengthFit& fit);
 
 /// Another envelope to compare with.
 struct NamedEnvelope {
@@ -45,12 +36,14 @@ struct NamedEnvelope {
     Envelope envelope;
 };
 
-/// Mohr's circles of the peaks, the fitted line and further ones dashed, at one scale on both axes (MPa).
+/// Mohr's circles of the tests (of bounds the dashed half that is certain, with an arrow), the fitted line with the
+/// 95 % confidence band of its shear strength, the tension cut-off, the envelope of Hoek-Brown's curve and further lines
+/// dashed, at one scale on both axes (MPa). Of more than twelve tests the legend tells the kinds only.
 [[nodiscard]] std::string draw_envelope(const std::string& title, const std::vector<PeakPoint>& points,
-                                        const Envelope& fit, const std::vector<NamedEnvelope>& others,
+                                        const StrengthFit& fit, const std::vector<NamedEnvelope>& others,
                                         PictureFormat format);
 /// The same, written in the format that the extension names. Throws InputError, ResourceError.
 void write_envelope(const std::filesystem::path& path, const std::string& title, const std::vector<PeakPoint>& points,
-                    const Envelope& fit, const std::vector<NamedEnvelope>& others = {});
+                    const StrengthFit& fit, const std::vector<NamedEnvelope>& others = {});
 
 } // namespace kluft

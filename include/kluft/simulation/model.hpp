@@ -22,15 +22,16 @@ struct Model {
     Vec2 gravity = Vec2::Zero();       ///< at the end of the first stage, unless that has its own (m/s2)
     std::vector<ElasticModuli> moduli; ///< of the blocks, per material
     std::vector<double> densities;     ///< per material (kg/m3)
-    /// Per interface type; then, of a net of rigid blocks that breaks, the law of what it fails to with the stiffness of
-    /// the net's own kind: also a broken edge carries the compliance of the blocks.
+    /// One per interface type; then those of edges whose stiffness differs from the type's: of a broken net of rigid
+    /// hexagons, which carries the compliance of the blocks, and of a graded net for each of its spacings.
     std::vector<InterfaceLaw> laws;
     std::vector<int> law_types;                      ///< per law: the interface type that it belongs to
     std::vector<InterfaceStiffness> given_stiffness; ///< per law: as the scene has it, without compliance of blocks
-    std::vector<char> bonds;                         ///< per interface type: 1 for a potential crack
-    std::vector<int> fracture_law;   ///< per interface type: the law after failure, its own for a fracture
-    std::vector<int> overlap_points; ///< per interface: points of an overlap of two blocks along it
-    std::vector<Strength> strengths; ///< per interface; of use for potential cracks only
+    std::vector<char> bonds;                         ///< per law: 1 for a potential crack
+    std::vector<int> fracture_law;                   ///< per law: that after failure, its own for a fracture
+    Net net;                                         ///< of the tessellation, if there is one
+    std::vector<int> overlap_points;                 ///< per interface: points of an overlap of two blocks along it
+    std::vector<Strength> strengths;                 ///< per interface; of use for potential cracks only
     LoadProgram loads;
     std::vector<MaterialPoint> force_points; ///< where LoadProgram::forces act
     double effective_modulus = 0.0; ///< E of the body or of its softest joint, k_n H, for the mass-like term (Pa)
@@ -47,6 +48,7 @@ struct ModelInput {
     std::vector<Material> materials;
     std::vector<InterfaceType> interface_types;
     int tessellation_type = -1; ///< interface type of the net; -1 without one
+    NetKind net_kind = NetKind::hexagons;
     StrengthNoise strength_noise;
     LoadProgram loads;
     std::vector<HistoryRequest> histories;

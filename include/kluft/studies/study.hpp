@@ -119,6 +119,7 @@ inline constexpr std::size_t most_cases = 10000;
 struct ReplicaNet {
     std::optional<HexagonLattice> hexagons;
     bool voronoi = false;
+    bool triangles = false;
 };
 
 /// The settings that perturb copy `replica`: strength noise and its seed; of hexagons the rotation (degrees), uniform

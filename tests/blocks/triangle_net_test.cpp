@@ -1,0 +1,224 @@
+#include "kluft/blocks/triangle_net.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "blocks/cut_scenes.hpp"
+#include "kluft/blocks/free_pieces.hpp"
+#include "kluft/core/diagnostics.hpp"
+#include "kluft/geometry/predicates.hpp"
+
+namespace kluft {
+namespace {
+
+using namespace cut_scenes;
+
+GeometrySpec triangulated(double width, double height, const TriangleNet& net) {
+    GeometrySpec spec = rectangle(width, height);
+    spec.tessellation = Tessellation{};
+    spec.tessellation->triangles = net;
+    return spec;
+}
+
+std::string described(const TriangleNet& net) {
+    return "a " + std::to_string(net.spacing) + ", seed " + std::to_string(net.seed) + ", passes " +
+           std::to_string(net.relaxation);
+}
+
+TEST(TriangleNet, FillsABodyWithTrianglesOfTheMeanAreaAskedForWithoutSmallAngles) {
+    for (const double side : {1.0, 0.5, 0.23}) {
+        for (const int passes : {0, 1, 5}) {
+            for (const std::uint64_t seed : {1U, 2U}) {
+                const TriangleNet net{.spacing = side, .relaxation = passes, .seed = seed, .grading = {}};
+                const GeometrySpec spec = triangulated(5.0, 10.0, net);
+                const CutBody body = cut_blocks(spec);
+                SCOPED_TRACE(described(net));
+                EXPECT_EQ(faults(spec, body), "");
+                for (const Block& block : body.system.blocks) EXPECT_EQ(block.edges.size(), 3U);
+                EXPECT_GE(body.report.smallest_angle, smallest_triangle_angle);
+                EXPECT_NEAR(body.system.n_blocks(), 50.0 / triangle_area(side),
+                            2.0 + 0.01 * 50.0 / triangle_area(side));
+            }
+        }
+    }
+}
+
+TEST(TriangleNet, IsAFunctionOfItsSeed) {
+    const auto vertices = [](std::uint64_t seed) {
+        return cut_blocks(triangulated(3.0, 3.0, {.spacing = 0.4, .relaxation = 1, .seed = seed, .grading = {}}))
+            .system.vertices;
+    };
+    EXPECT_EQ(vertices(7), vertices(7));
+    EXPECT_NE(vertices(7), vertices(8));
+}
+
+TEST(TriangleNet, PrefersNoDirection) {
+    // The mean of cos 4 theta and cos 6 theta over the edges' directions, weighted by length, vanishes for an isotropic
+    // net; n independent edges scatter by 1/sqrt(2 n).
+    const CutBody body =
+        cut_blocks(triangulated(20.0, 20.0, {.spacing = 0.4, .relaxation = 0, .seed = 3, .grading = {}}));
+    double total = 0.0;
+    Vec2 four = Vec2::Zero();
+    Vec2 six = Vec2::Zero();
+    for (const Interface& interface : body.system.interfaces) {
+        const Edge& edge = body.system.blocks[interface.block_a].edges[interface.edge_a];
+        const Vec2 along = edge_end(body.system, edge) - edge_start(body.system, edge);
+        const double angle = std::atan2(along.y(), along.x());
+        total += along.norm();
+        four += along.norm() * Vec2(std::cos(4 * angle), std::sin(4 * angle));
+        six += along.norm() * Vec2(std::cos(6 * angle), std::sin(6 * angle));
+    }
+    const double scatter = 1.0 / std::sqrt(2.0 * body.system.n_interfaces());
+    EXPECT_LT(four.norm() / total, 4.0 * scatter);
+    EXPECT_LT(six.norm() / total, 4.0 * scatter);
+}
+
+TEST(TriangleNet, FollowsFracturesToTheirEnds) {
+    GeometrySpec spec = triangulated(5.0, 10.0, {.spacing = 0.7, .relaxation = 0, .seed = 1, .grading = {}});
+    add_trace(spec, {{-1.0, 7.0}, {3.0, 9.0}});            // from outside into the body
+    add_trace(spec, {{1.0, 2.0}, {2.0, 5.0}, {4.0, 6.0}}); // isolated, with a bend
+    add_trace(spec, {{2.0, 5.0}, {3.0, 2.0}});             // abuts on its bend
+    add_trace(spec, {{0.5, 6.0}, {4.5, 5.5}});             // crosses it
+    const CutBody body = cut_blocks(spec);
+    EXPECT_EQ(faults(spec, body), "");
+    EXPECT_EQ(body.report.pruned_ends, 0);
+    EXPECT_GE(body.report.smallest_angle, smallest_triangle_angle);
+    EXPECT_NEAR(cut_scenes::interface_length(body.system, EdgeOrigin::fracture, 0), std::hypot(3.0, 1.5), 1e-12);
+    EXPECT_NEAR(cut_scenes::interface_length(body.system, EdgeOrigin::fracture, 1),
+                std::hypot(1.0, 3.0) + std::hypot(2.0, 1.0), 1e-12);
+    EXPECT_NEAR(cut_scenes::interface_length(body.system, EdgeOrigin::fracture, 2), std::hypot(1.0, 3.0), 1e-12);
+    EXPECT_NEAR(cut_scenes::interface_length(body.system, EdgeOrigin::fracture, 3), std::hypot(4.0, 0.5), 1e-12);
+}
+
+TEST(TriangleNet, FollowsConstructionLinesWithEdgesOfTheNet) {
+    GeometrySpec spec = triangulated(5.0, 5.0, {.spacing = 0.6, .relaxation = 2, .seed = 1, .grading = {}});
+    spec.construction_lines = {{{1.0, 1.0}, {4.0, 1.0}, {4.0, 3.0}}};
+    const CutBody body = cut_blocks(spec);
+    double length = 0.0;
+    for (const Interface& interface : body.system.interfaces) {
+        EXPECT_EQ(interface.origin, EdgeOrigin::tessellation);
+        const Edge& edge = body.system.blocks[interface.block_a].edges[interface.edge_a];
+        const Vec2& a = edge_start(body.system, edge);
+        const Vec2& b = edge_end(body.system, edge);
+        const auto on = [&](const Vec2& p) {
+            return std::min(distance_to_segment(p, {1, 1}, {4, 1}), distance_to_segment(p, {4, 1}, {4, 3})) < 1e-9;
+        };
+        if (on(a) && on(b) && on(0.5 * (a + b))) length += (b - a).norm();
+    }
+    EXPECT_NEAR(length, 5.0, 1e-12);
+}
+
+TEST(TriangleNet, IsFinerWhereTheGradingSaysSo) {
+    TriangleNet net{.spacing = 1.0, .relaxation = 0, .seed = 1, .grading = {}};
+    net.grading.region = {{4, 4}, {6, 4}, {6, 6}, {4, 6}};
+    net.grading.region_spacing = 0.2;
+    net.grading.openings = 0.25;
+    GeometrySpec spec = triangulated(10.0, 10.0, net);
+    spec.holes = {{{1, 1}, {2, 1}, {2, 2}, {1, 2}}};
+    const CutBody body = cut_blocks(spec);
+    EXPECT_EQ(faults(spec, body), "");
+    EXPECT_GE(body.report.smallest_angle, smallest_triangle_angle);
+    double inside = 0.0;
+    int n_inside = 0;
+    for (const Block& block : body.system.blocks) {
+        if ((block.centroid - Vec2(5, 5)).cwiseAbs().maxCoeff() > 1.0) continue;
+        inside += block.area;
+        ++n_inside;
+    }
+    EXPECT_NEAR(inside / n_inside, triangle_area(0.2), 0.1 * triangle_area(0.2));
+    for (const Interface& interface : body.system.interfaces) {
+        const Edge& edge = body.system.blocks[interface.block_a].edges[interface.edge_a];
+        const Vec2 middle = 0.5 * (edge_start(body.system, edge) + edge_end(body.system, edge));
+        if ((middle - Vec2(5, 5)).cwiseAbs().maxCoeff() < 1.0) { // 0.2 lies between two levels
+            EXPECT_NEAR(interface.spacing, 0.2, 0.02);
+        }
+    }
+}
+
+TEST(TriangleNet, StaysInItsRegion) {
+    GeometrySpec spec = triangulated(5.0, 5.0, {.spacing = 0.5, .relaxation = 0, .seed = 1, .grading = {}});
+    spec.tessellation->region = {{1, 1}, {4, 1}, {4, 4}, {1, 4}};
+    const CutBody body = cut_blocks(spec);
+    EXPECT_EQ(faults(spec, body), "");
+    int others = 0;
+    for (const Block& block : body.system.blocks) others += block.edges.size() != 3 ? 1 : 0;
+    EXPECT_EQ(others, 1);
+    EXPECT_NEAR(body.system.n_blocks() - 1, 9.0 / triangle_area(0.5), 3.0);
+}
+
+/// Bodies cut by random fractures, near parallels and nearly common points among them: whatever the lines enclose, the
+/// body is a subdivision of the domain without loose ends.
+TEST(TriangleNet, StandsRandomFractures) {
+    for (std::uint64_t seed = 1; seed <= 25; ++seed) {
+        Uniform uniform(seed);
+        GeometrySpec spec = triangulated(
+            4.0, 6.0, {.spacing = 0.6, .relaxation = static_cast<int>(seed % 3), .seed = seed, .grading = {}});
+        add_random_traces(spec, 6, 4.0, 6.0, uniform);
+        const Vec2 a(uniform(0.5, 3.5), uniform(0.5, 5.5));
+        for (int i = 0; i < 4; ++i)
+            add_trace(spec, {a + 1e-3 * Vec2(uniform(), uniform()), a + Vec2(uniform(-1.0, 1.0), uniform(-1.0, 1.0))});
+        const CutBody body = cut_blocks(spec);
+        EXPECT_EQ(faults(spec, body), "") << "seed " << seed;
+    }
+}
+
+TEST(TriangleNet, RefusesWhatIsNoNet) {
+    const auto refused = [](const TriangleNet& net, const std::string& key) {
+        try {
+            (void)cut_blocks(triangulated(1.0, 1.0, net));
+        } catch (const InputError& error) {
+            return std::string(error.what()).find("geometry.tessellation.triangles." + key + ":") == 0;
+        }
+        return false;
+    };
+    EXPECT_TRUE(refused({.spacing = 0.0, .grading = {}}, "spacing"));
+    EXPECT_TRUE(refused({.spacing = std::nan(""), .grading = {}}, "spacing"));
+    EXPECT_TRUE(refused({.spacing = 0.1, .relaxation = 21, .grading = {}}, "relaxation"));
+    EXPECT_TRUE(refused({.spacing = 0.1, .grading = {.fractures = -1.0}}, "grading.fractures"));
+    EXPECT_TRUE(refused({.spacing = 0.1, .grading = {.growth = 0.0}}, "grading.growth"));
+}
+
+// What the fractures of a map leave: pieces that separate nothing.
+
+TEST(FreePieces, AreJoinedWithTheLinesThatTheyAbutOn) {
+    // A square whose right part is cut off by a line, with a piece from this line to the left.
+    std::vector<SourceSegment> segments{{{0, 0}, {4, 0}, 0}, {{4, 0}, {4, 4}, 0}, {{4, 4}, {0, 4}, 0},
+                                        {{0, 4}, {0, 0}, 0}, {{3, 0}, {3, 4}, 1}, {{3, 2}, {1, 2}, 2}};
+    PlanarMap map = arrange(segments);
+    for (auto& half_edge : map.half_edges) half_edge.face = half_edge.face == 0 ? PlanarMap::outside : half_edge.face;
+    const auto pieces = free_pieces(map);
+    ASSERT_EQ(pieces.size(), 1U);
+    EXPECT_EQ(pieces[0].source, 2);
+    map.remove_edges_inside_faces();
+    const int n_vertices = static_cast<int>(map.positions.size());
+    const SourceSegment near_parallel{{3.0, 2.0}, {3.2, 3.5}, 2};
+    const SourceSegment on_an_edge{{2.0, 1.0}, {2.98, 1.0}, 3}; // which has no vertex there
+    const SourceSegment nearly_there{{2.0, 3.0}, {2.99, 3.97}, 4};
+    const SourceSegment short_one{{1.0, 2.0}, {1.0, 2.01}, 2};
+    const auto joined = joined_pieces(map, {pieces[0], near_parallel, on_an_edge, nearly_there, short_one}, 0.05);
+    ASSERT_EQ(joined.size(), 3U); // no triangle fits between the second and the line, nor beside the last
+    EXPECT_EQ(joined[0].source, 2);
+    EXPECT_EQ(joined[1].source, 4);
+    EXPECT_EQ(joined[1].b, Vec2(3, 4));
+    EXPECT_EQ(joined[2].source, 3);
+    ASSERT_EQ(static_cast<int>(map.positions.size()), n_vertices + 1);
+    EXPECT_EQ(map.positions.back(), Vec2(3, 1));
+    EXPECT_EQ(map.degree(n_vertices, 4), 2);
+    for (const int f : {1, 2}) { // the split edge belongs to both faces still
+        double length = 0.0;
+        for (const auto& loop : map.loops(f))
+            for (const int h : loop) length += map.length(h);
+        EXPECT_NEAR(length, map.area(f) == 12.0 ? 14.0 : 10.0, 1e-12);
+    }
+}
+
+} // namespace
+} // namespace kluft
