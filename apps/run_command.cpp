@@ -105,15 +105,21 @@ ExitCode exit_code(RunStatus status) {
     return ExitCode::done;
 }
 
+std::string peak_in_words(const CurveNumbers& numbers) {
+    if (numbers.net_locked)
+        return " before the net locked (its loose cells carry more without a bond: no strength of the rock)";
+    return numbers.peak_reached ? "" : fmt::format(" ({})", peak_remark(numbers));
+}
+
 std::string closing_line(const RunReport& report, const RunSummary& summary, const fs::path& directory) {
     std::string text = status_name(report.status);
     if (summary.numbers.peak_stress) {
         text += fmt::format(": peak axial stress {:.4g} MPa at {:.4g} %{}", 1e-6 * *summary.numbers.peak_stress,
-                            100.0 * summary.numbers.peak_strain.value_or(0.0),
-                            summary.numbers.peak_reached ? "" : " (still rising)");
+                            100.0 * summary.numbers.peak_strain.value_or(0.0), peak_in_words(summary.numbers));
         if (const int n = summary.numbers.jumps_to_peak; n > 0)
             text += fmt::format(" after {} {}", n, n == 1 ? "jump" : "jumps");
     }
+    if (!report.remark.empty()) text += ", " + report.remark;
     if (report.results.factor_of_safety)
         text += fmt::format(", factor of safety {:.6g}", *report.results.factor_of_safety);
     if (summary.results.estimated_error)

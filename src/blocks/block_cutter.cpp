@@ -523,11 +523,6 @@ void measure(const BlockSystem& system, CutReport& report) {
 
 } // namespace
 
-NetKind kind_of(const Tessellation& tessellation) {
-    if (tessellation.triangles) return NetKind::triangles;
-    return tessellation.voronoi ? NetKind::voronoi : NetKind::hexagons;
-}
-
 double lattice_spacing(const GeometrySpec& spec) {
     if (!spec.tessellation) return spec.reference_spacing;
     const Tessellation& net = *spec.tessellation;

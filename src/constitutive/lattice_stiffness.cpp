@@ -88,12 +88,13 @@ double required_spacing(const InterfaceType& type, double spacing) {
     return spacing;
 }
 
-double normal_stiffness(const InterfaceType& type, double spacing, double youngs_modulus_of_rock) {
+double normal_stiffness(const InterfaceType& type, const Net& net, double youngs_modulus_of_rock) {
     if (type.normal_stiffness) return *type.normal_stiffness;
+    const double spacing = net.spacing;
     if (type.normal_stiffness_times_spacing)
         return *type.normal_stiffness_times_spacing / required_spacing(type, spacing);
     if (!(youngs_modulus_of_rock > 0.0)) reject(type, "stiffness_ratio needs youngs_modulus of the rock in Pa > 0");
-    return type.stiffness_ratio.value_or(default_stiffness_ratio) * youngs_modulus_of_rock /
+    return type.stiffness_ratio.value_or(default_stiffness_ratio(net.kind)) * youngs_modulus_of_rock /
            required_spacing(type, spacing);
 }
 
@@ -220,10 +221,10 @@ bool stiffness_from_ratio(const InterfaceType& type) {
     return !given_in_pascal_per_metre(type) && !given_times_spacing(type);
 }
 
-InterfaceStiffness resolve_stiffness(const InterfaceType& type, double spacing, double youngs_modulus_of_rock) {
+InterfaceStiffness resolve_stiffness(const InterfaceType& type, const Net& net, double youngs_modulus_of_rock) {
     require_one_way(type);
-    const double normal = normal_stiffness(type, spacing, youngs_modulus_of_rock);
-    const double shear = shear_stiffness(type, spacing, normal);
+    const double normal = normal_stiffness(type, net, youngs_modulus_of_rock);
+    const double shear = shear_stiffness(type, net.spacing, normal);
     if (!(normal > 0.0) || !std::isfinite(normal))
         reject(type, fmt::format("expected a normal stiffness in Pa/m > 0, got {:g}", normal));
     if (!(shear >= 0.0) || !std::isfinite(shear))

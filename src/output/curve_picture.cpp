@@ -449,13 +449,14 @@ Vec2 plotted(const StepRecord& record) { return {percent * record.axial_strain, 
 void add_peak(const RunCurve& run, const StepRecord& peak, bool alone, PlottedCurve& curve) {
     const auto& rows = run.equilibria.empty() ? run.history : run.equilibria;
     curve.peak = plotted(peak);
-    curve.peak_reached = curve_numbers(rows, {}, run.platen_stage, Plane::strain).peak_reached;
+    const CurveNumbers numbers = curve_numbers(rows, {}, run.platen_stage, Plane::strain);
+    curve.peak_reached = numbers.peak_reached;
     const std::string values = fmt::format("differential {:#.3g} MPa at {:#.3g} %", curve.peak->y(), curve.peak->x());
     if (alone) {
         curve.peak_text = {values, fmt::format("axial {:#.3g} MPa", peak.axial_stress / mega)};
-        if (!curve.peak_reached) curve.peak_text.emplace_back("still rising");
+        if (!curve.peak_reached) curve.peak_text.push_back(peak_remark(numbers));
     } else {
-        curve.label += curve.peak_reached ? ": " + values : ": still rising";
+        curve.label += ": " + (curve.peak_reached ? values : peak_remark(numbers));
     }
 }
 

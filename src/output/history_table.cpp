@@ -38,6 +38,7 @@ void visit_columns(Record& record, Visit&& visit) {
     visit("unbalanced_ratio", record.unbalanced_ratio);
     visit("balance_error", record.balance_error);
     visit("jumps", record.jumps);
+    visit("net_broken", record.net_broken);
     visit("balanced", record.balanced);
     visit("elapsed_s", record.elapsed_s);
 }

@@ -28,12 +28,27 @@ constexpr double elastic_share = 0.3;    // of the peak differential stress, whe
 constexpr double ratio_slack = 1e-3;     // of Poisson's ratio, for round-off
 constexpr double fall_after_peak = 0.01; // of the peak
 constexpr double residual_share = 0.1;   // of the strain
+constexpr double locking_share = 0.95;   // of the net's bonds in the middle half of the body that have failed
+constexpr double locking_rise = 0.05;    // of the largest stress until then
 
 Rows balanced_rows(const Rows& rows) {
     Rows balanced;
     for (const StepRecord& row : rows)
         if (row.balanced && std::isfinite(row.axial_stress) && std::isfinite(row.axial_strain)) balanced.push_back(row);
     return balanced;
+}
+
+/// Balanced rows up to the first one in which the net hardly has a bond left.
+Rows rows_with_bonds(const Rows& balanced) {
+    const auto loose =
+        std::ranges::find_if(balanced, [](const StepRecord& row) { return row.net_broken >= locking_share; });
+    return {balanced.begin(), loose == balanced.end() ? loose : loose + 1};
+}
+
+std::optional<StepRecord> largest_row(const Rows& rows, double sense) {
+    const auto largest =
+        std::ranges::max_element(rows, {}, [&](const StepRecord& row) { return sense * row.axial_stress; });
+    return largest == rows.end() ? std::nullopt : std::optional(*largest);
 }
 
 bool falls_after_peak(const Rows& balanced, double peak, double sense) {
@@ -176,6 +191,7 @@ void read_numbers(const Json& json, CurveNumbers& numbers) {
     numbers.peak_stress = optional_number(json, "peak_stress");
     numbers.peak_strain = optional_number(json, "peak_strain");
     numbers.peak_reached = json.at("peak_reached").get<bool>();
+    numbers.net_locked = json.value("net_locked", false); // an earlier version does not say
     numbers.residual_stress = optional_number(json, "residual_stress");
     numbers.youngs_modulus = optional_number(json, "youngs_modulus");
     numbers.poissons_ratio = optional_number(json, "poissons_ratio");
@@ -246,12 +262,19 @@ double platen_sense(const std::vector<StepRecord>& rows, std::optional<int> plat
     return last != rows.rend() && last->axial_strain < 0.0 ? -1.0 : 1.0;
 }
 
-std::optional<StepRecord> peak_row(const std::vector<StepRecord>& rows, std::optional<int> platen_stage) {
+bool is_net_locked(const std::vector<StepRecord>& rows, std::optional<int> platen_stage) {
     const Rows balanced = balanced_rows(rows);
     const double sense = platen_sense(rows, platen_stage);
-    const auto peak =
-        std::ranges::max_element(balanced, {}, [&](const StepRecord& row) { return sense * row.axial_stress; });
-    return peak == balanced.end() ? std::nullopt : std::optional(*peak);
+    const auto before = largest_row(rows_with_bonds(balanced), sense);
+    const auto largest = largest_row(balanced, sense);
+    return before &&
+           sense * (largest->axial_stress - before->axial_stress) > locking_rise * std::abs(before->axial_stress);
+}
+
+std::optional<StepRecord> peak_row(const std::vector<StepRecord>& rows, std::optional<int> platen_stage) {
+    const Rows balanced = balanced_rows(rows);
+    return largest_row(is_net_locked(rows, platen_stage) ? rows_with_bonds(balanced) : balanced,
+                       platen_sense(rows, platen_stage));
 }
 
 CurveNumbers curve_numbers(const std::vector<StepRecord>& equilibria, const std::vector<StepRecord>& history,
@@ -262,13 +285,19 @@ CurveNumbers curve_numbers(const std::vector<StepRecord>& equilibria, const std:
         numbers.peak_stress = peak->axial_stress;
         numbers.peak_strain = peak->axial_strain;
         numbers.jumps_to_peak = peak->jumps;
-        numbers.peak_reached =
-            falls_after_peak(balanced_rows(all), peak->axial_stress, platen_sense(all, platen_stage));
+        numbers.net_locked = is_net_locked(all, platen_stage);
+        numbers.peak_reached = !numbers.net_locked && falls_after_peak(balanced_rows(all), peak->axial_stress,
+                                                                       platen_sense(all, platen_stage));
     }
     if (numbers.peak_reached) numbers.residual_stress = residual_stress(history, platen_stage);
     if (platen_stage) add_elastic_constants(all, history, *platen_stage, plane, numbers);
     add_counts(history, numbers);
     return numbers;
+}
+
+std::string peak_remark(const CurveNumbers& numbers) {
+    if (numbers.net_locked) return "net locked";
+    return numbers.peak_reached ? "" : "still rising";
 }
 
 std::string status_name(RunStatus status) {
@@ -285,6 +314,7 @@ std::string summary_json(const RunSummary& summary) {
     json["peak_stress"] = json_number(numbers.peak_stress);
     json["peak_strain"] = json_number(numbers.peak_strain);
     json["peak_reached"] = numbers.peak_reached;
+    json["net_locked"] = numbers.net_locked;
     json["residual_stress"] = json_number(numbers.residual_stress);
     json["youngs_modulus"] = json_number(numbers.youngs_modulus);
     json["poissons_ratio"] = json_number(numbers.poissons_ratio);

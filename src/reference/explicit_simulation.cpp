@@ -23,6 +23,7 @@
 #include "kluft/simulation/stage_loads.hpp"
 #include "kluft/simulation/state_check.hpp"
 #include "kluft/simulation/step.hpp"
+#include "kluft/simulation/stress_drop.hpp"
 #include "kluft/simulation/weakening.hpp"
 
 namespace kluft {
@@ -70,7 +71,7 @@ public:
                 const bool last = state_.at.stage + 1 == static_cast<int>(model_.loads.stages.size());
                 const bool unbalanced = !has_platen_velocity() && state_.unbalanced_in_succession > 0;
                 end.causes = causes_of(end);
-                if (end.failure || last || unbalanced) return journal_.ended(state_, end);
+                if (end.ends_run() || last || unbalanced) return journal_.ended(state_, end);
                 leave_stage(model_, loads, motion_.loads(), motion_.evaluate().forces, state_);
                 state_.costs = journal_.costs();
             }
@@ -141,7 +142,7 @@ private:
 
     StageEnd run_stage() {
         StageEnd end;
-        while (!end.failure && state_.at.step_in_stage < stage().steps) {
+        while (!end.ends_run() && state_.at.step_in_stage < stage().steps) {
             const bool last = state_.at.step_in_stage + 1 == stage().steps;
             take_step(static_cast<double>(state_.at.step_in_stage + 1) / stage().steps);
             if (failed()) {
@@ -149,8 +150,10 @@ private:
                 return commit_balanced_part(std::move(step_), state_, journal_);
             }
             const StepRecord row = step_.row;
-            if (last && has_platen_velocity()) warn_of_motion();
-            commit(std::move(step_), {.last_of_stage = last}, state_, journal_);
+            end.has_dropped = row.balanced && has_dropped(stage(), step_.end.stresses);
+            const bool ends = last || end.has_dropped;
+            if (ends && has_platen_velocity()) warn_of_motion();
+            commit(std::move(step_), {.last_of_stage = ends}, state_, journal_);
             end.failure = failure_after(row);
             end.step = state_.at.step;
         }
@@ -166,7 +169,8 @@ private:
         step_ = Step{};
         step_.end = state_;
         step_.row = journal_.last_row();
-        step_.balanced_part = Step::BalancedPart{.body = state_.body, .load_factor = state_.at.load_factor};
+        step_.balanced_part =
+            Step::BalancedPart{.body = state_.body, .load_factor = state_.at.load_factor, .stresses = state_.stresses};
     }
 
     void take_step(double to) {
@@ -185,10 +189,15 @@ private:
         step_.row = measure(verdict);
         if (!step_.row.balanced) step_.moving = moving_blocks(verdict);
         step_.row.load_factor = to;
-        step_.equilibria.push_back(step_.row);
+        keep_equilibrium(step_.row);
         step_.balanced = step_.row.balanced;
         step_.worst_share = step_.row.unbalanced_ratio;
         step_.in_place = in_place();
+    }
+
+    void keep_equilibrium(const StepRecord& row) {
+        note_axial_stress(stage(), row, work().stresses);
+        step_.equilibria.push_back(row);
     }
 
     /// A copy of what the fields of the state follow from.
@@ -403,13 +412,14 @@ private:
         if (failed()) return;
         const StepRecord before = measure(judge_blocks(blocks_now(), nullptr, block_goal()));
         if (failed()) return;
-        if (before.balanced) step_.equilibria.push_back(before);
+        if (before.balanced) keep_equilibrium(before);
         double energy = energy_of_interfaces(broken);
         weaken_together(model_, broken, before.axial_strain, step_);
         if (before.balanced)
             step_.balanced_part = Step::BalancedPart{.body = work().body,
                                                      .load_factor = work().at.load_factor,
                                                      .in_place = in_place(),
+                                                     .stresses = work().stresses,
                                                      .n_equilibria = step_.equilibria.size(),
                                                      .n_cracks = step_.cracks.size()};
         const double lost = detect();

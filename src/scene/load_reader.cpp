@@ -45,6 +45,7 @@ public:
         has_gravity_ = has_gravity_ || stage.gravity.has_value();
         for (const auto& force : section.sections("forces")) read_force(force, stage);
         read_platen(section, stage);
+        read_stop(section, stage);
         const bool has_platen =
             std::any_of(platen_keys.begin(), platen_keys.end(), [&](auto key) { return section.has(key); });
         if (section.has("platens") && !has_platen)
@@ -128,6 +129,23 @@ private:
                     platen, "value",
                     "the platen leaves the body, which it holds in tension only if it is glued (glued: true)");
         }
+    }
+
+    /// Only where a platen of given travel acts on the boundary that the axial stress is measured on.
+    void read_stop(const SceneSection& section, Stage& stage) {
+        stage.stop_after_drop = section.given_number("stop_after_drop");
+        if (!section.has("stop_after_drop")) return;
+        if (!section.has("displacement") && !section.has("strain"))
+            return context_.fail(section, "stop_after_drop",
+                                 "expected a displacement or a strain of a platen in the same stage, found none");
+        const auto first = std::ranges::find_if(loads_.stages, [](const Stage& s) { return s.motion.has_value(); });
+        if (first == loads_.stages.end() || !stage.motion || first->motion->boundary == stage.motion->boundary) return;
+        context_.fail(
+            section, "stop_after_drop",
+            fmt::format("expected a platen on '{}', on which the axial stress is measured because it is moved "
+                        "first, found one on '{}'",
+                        boundaries_[static_cast<std::size_t>(first->motion->boundary)],
+                        boundaries_[static_cast<std::size_t>(stage.motion->boundary)]));
     }
 
     /// In an earlier stage: a platen may go back from where it has pressed.

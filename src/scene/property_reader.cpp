@@ -19,9 +19,6 @@ namespace kluft {
 
 namespace {
 
-constexpr double lowest_good_ratio = 5.0;   ///< of stiffness_ratio: below, the joints carry most of the deformation
-constexpr double highest_good_ratio = 20.0; ///< above, bending locks
-
 using KeyPair = std::array<std::string_view, 2>;
 constexpr std::array<KeyPair, 3> stiffness_keys{{{"normal_stiffness", "shear_stiffness"},
                                                  {"normal_stiffness_times_spacing", "shear_stiffness_times_spacing"},
@@ -74,9 +71,6 @@ void read_stiffness(const SceneSection& section, ReadingContext& context, Interf
     type.stiffness_ratio = section.given_number("stiffness_ratio");
     type.shear_ratio = section.given_number("shear_ratio");
     check_stiffness_keys(section, context);
-    const double ratio = type.stiffness_ratio.value_or(lowest_good_ratio);
-    if (ratio < lowest_good_ratio || ratio > highest_good_ratio)
-        context.warn(section, "stiffness_ratio", fmt::format("{:g} is outside the good range, 5 to 20", ratio));
 }
 
 void read_fracture(const SceneSection& section, ReadingContext& context, InterfaceType& type) {

@@ -12,7 +12,7 @@ ModelInput model_input(const Scene& scene) {
     input.materials = scene.materials;
     input.interface_types = scene.interface_types;
     input.tessellation_type = scene.geometry.tessellation ? scene.geometry.tessellation->interface_type : -1;
-    if (scene.geometry.tessellation) input.net_kind = kind_of(*scene.geometry.tessellation);
+    if (scene.geometry.tessellation) input.net_kind = net_kind(*scene.geometry.tessellation);
     input.strength_noise = scene.cracks.strength_noise;
     input.loads = scene.loads;
     input.histories = scene.output.histories;

@@ -10,6 +10,7 @@
 
 #include "kluft/scene/geometry_reader.hpp"
 #include "kluft/scene/load_reader.hpp"
+#include "kluft/scene/net_check.hpp"
 #include "kluft/scene/property_reader.hpp"
 #include "kluft/scene/quantity.hpp"
 #include "kluft/scene/reading_context.hpp"
@@ -221,12 +222,14 @@ Scene convert(const SceneSection& root, ReadingContext& context) {
     for (const auto& section : root.section("output").sections("histories"))
         scene.output.histories.push_back(read_history_request(section, scene.geometry, context));
     require_densities(root, scene, context);
+    const std::set<int> refused = require_stiffness_of_joints(root, scene, context);
     const auto interfaces = root.sections("interfaces");
     for (const int type : used_interface_types(scene)) {
         const auto index = static_cast<std::size_t>(type);
         require_strength(interfaces[index], scene.interface_types[index], scene, context);
-        require_spacing(interfaces[index], scene.interface_types[index], scene, context);
+        if (!refused.contains(type)) require_spacing(interfaces[index], scene.interface_types[index], scene, context);
     }
+    warn_of_net(root, scene, context);
     return scene;
 }
 

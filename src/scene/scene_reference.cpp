@@ -32,7 +32,7 @@ materials:
   sandstone: {density: 2300 kg/m3, youngs_modulus: 1.5 GPa, poissons_ratio: 0.25,
               cohesion: 0.15 MPa, friction_angle: 39.6 deg, tensile_strength: 0.05 MPa}
 interfaces:
-  joint: {kind: fracture, friction_angle: 30}
+  joint: {kind: fracture, friction_angle: 25, normal_stiffness: 40 GPa/m, shear_stiffness: 20 GPa/m}
   bond: {kind: potential_crack, fails_to: joint}
 geometry:
   domain: {rectangle: {width: 20 cm, height: 40 cm}}

@@ -162,9 +162,12 @@ std::vector<KeyRule> stiffness_rules() {
         {.path = "interfaces.*.stiffness_ratio",
          .type = KeyType::number,
          .range = positive,
-         .fallback_note = "10, where no other stiffness key is given",
+         .fallback_note = "10, of a net of triangles 30, where no other stiffness key is given; none on mapped fractures",
          .doc = "k_n d/E with E of the material. With it `youngs_modulus` and `poissons_ratio` are those of the rock: "
-                "the blocks' own moduli follow so that the tessellated body has them. 5 to 20 is the good range."},
+                "the blocks' own moduli follow so that the tessellated body has them. Of a net of triangles 10 to 60, "
+                "of hexagons or Voronoi cells 5 to 20 is the good range, however the stiffness is given: below, the "
+                "joints carry most of the deformation; above, affine hexagons are too stiff in bending, and a body "
+                "without strength noise fails everywhere at once."},
         {.path = "interfaces.*.shear_ratio",
          .type = KeyType::number,
          .range = positive,
@@ -179,7 +182,8 @@ std::vector<KeyRule> interface_rules() {
          .type = KeyType::named,
          .doc = "Kinds of interfaces between blocks, by name. Stiffness is given in one of three ways: "
                 "`normal_stiffness` and `shear_stiffness`; or the same two `..._times_spacing`; or `stiffness_ratio` "
-                "and `shear_ratio`."},
+                "and `shear_ratio`. That of mapped fractures, and of what they fail to, has to be given: it is the "
+                "joint's and does not follow from the net."},
         {.path = "interfaces.*", .type = KeyType::mapping, .doc = "One kind of interface."},
         {.path = "interfaces.*.kind",
          .type = KeyType::choice,
@@ -342,7 +346,9 @@ std::vector<KeyRule> cut_rules() {
         {.path = "geometry.tessellation.voronoi",
          .type = KeyType::mapping,
          .doc = "A net of Voronoi cells of random points, without the hexagons' few directions. Their faces interlock "
-                "less regularly and are of all lengths; the body has the rock's moduli only nearly (docs/theory.md)."},
+                "less regularly and are of all lengths, and lock all the same where all bonds have failed to joints of "
+                "high "
+                "friction; the body has the rock's moduli only nearly (docs/theory.md)."},
         {.path = "geometry.tessellation.voronoi.spacing",
          .type = KeyType::number,
          .measure = Measure::length,
@@ -706,6 +712,16 @@ std::vector<KeyRule> loading_rules() {
          .range = positive_integer,
          .fallback = "1",
          .doc = "Load steps of the stage."},
+        {.path = "stages.#.stop_after_drop",
+         .type = KeyType::number,
+         .range = between_zero_and_one,
+         .fallback_note = "all steps of the stage are taken",
+         .doc =
+             "For the strength without the collapse, which may take most of the time: the run ends, as `done`, after "
+             "the first balanced load step of the stage whose axial stress is by this part below the largest one of "
+             "the stage; steps and stages that are left are not run. From 1 % on the peak counts as reached. Only in "
+             "a stage with a `displacement` or a `strain` of the boundary that the first platen moves. A run that "
+             "has ended so goes on when it is resumed without it."},
     };
 }
 

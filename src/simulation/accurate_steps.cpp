@@ -137,7 +137,7 @@ Step take_accurate_step(const StepBench& bench, const State& before) {
 
 StageEnd run_accurate_steps(const StepBench& bench, State& state) {
     StageEnd end;
-    while (!end.failure && (state.at.load_factor < 1.0 || !state.is_settled)) {
+    while (!end.ends_run() && (state.at.load_factor < 1.0 || !state.is_settled)) {
         begin_load_step(bench);
         Step step = state.is_settled ? take_accurate_step(bench, state)
                                      : take_step(bench, state, goal_at(bench, state.at.load_factor, true));

@@ -7,7 +7,7 @@ namespace kluft {
 StageEnd run_fixed_steps(const StepBench& bench, State& state) {
     const int n_steps = bench.stage(state).steps;
     StageEnd end;
-    while (!end.failure && state.at.step_in_stage < n_steps) {
+    while (!end.ends_run() && state.at.step_in_stage < n_steps) {
         const bool last = state.at.step_in_stage + 1 == n_steps;
         const double target = static_cast<double>(state.at.step_in_stage + 1) / n_steps;
         begin_load_step(bench);

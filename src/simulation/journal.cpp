@@ -1,5 +1,6 @@
 #include "kluft/simulation/journal.hpp"
 
+#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -24,6 +25,14 @@ std::vector<FallingBlock> falling_blocks(const Model& model, const State& state,
                            state.at.load_factor, each.direction, each.turn});
     }
     return falling;
+}
+
+std::string remark_on_drop(const Stage& stage, const State& state) {
+    return fmt::format("stopped in stage {} at load step {}, after a drop of the axial stress by {:.4g} % "
+                       "(stop_after_drop: {:.4g} %)",
+                       state.at.stage, state.at.step,
+                       100.0 * (1.0 - std::abs(state.stresses.axial) / state.stresses.largest_in_stage),
+                       100.0 * *stage.stop_after_drop);
 }
 
 std::string listed(const std::vector<std::string>& causes) {
@@ -94,8 +103,12 @@ void Journal::progress(const State& state, const StepRecord& row, double load_fa
 }
 
 RunReport Journal::ended(const State& state, const StageEnd& end) const {
-    if (!end.failure && state.unbalanced_in_succession == 0) return cut_short(RunStatus::done, "");
     const Stage& stage = model_.loads.stages[state.at.stage];
+    if (!end.failure && state.unbalanced_in_succession == 0) {
+        RunReport report = cut_short(RunStatus::done, "");
+        if (end.has_dropped) report.remark = remark_on_drop(stage, state);
+        return report;
+    }
     if (!end.failure) {
         std::string why = fmt::format("stage {} ends out of balance", state.at.stage);
         if (!state.imbalance.moving.empty()) why += ": " + description(model_, state.imbalance.moving);

@@ -7,6 +7,7 @@
 #include "kluft/simulation/contact_following.hpp"
 #include "kluft/simulation/jump.hpp"
 #include "kluft/simulation/strength_reduction.hpp"
+#include "kluft/simulation/stress_drop.hpp"
 
 namespace kluft {
 
@@ -84,7 +85,8 @@ void begin_load_step(const StepBench& bench) {
 
 StageEnd commit_regular_step(const StepBench& bench, Step step, bool last_of_stage, State& state) {
     Eigen::VectorXd forces = std::move(step.forces);
-    commit(std::move(step), {.last_of_stage = last_of_stage}, state, bench.journal);
+    const bool ends = last_of_stage || (step.balanced && has_dropped(bench.stage(state), step.end.stresses));
+    commit(std::move(step), {.last_of_stage = ends}, state, bench.journal);
     StageEnd end = end_after(bench, state);
     end.forces = std::move(forces);
     return end;
@@ -92,6 +94,8 @@ StageEnd commit_regular_step(const StepBench& bench, Step step, bool last_of_sta
 
 StageEnd end_after(const StepBench& bench, const State& state) {
     StageEnd end{.step = state.at.step};
+    end.has_dropped =
+        state.is_settled && state.unbalanced_in_succession == 0 && has_dropped(bench.stage(state), state.stresses);
     if (state.unbalanced_in_succession < bench.solver.max_unbalanced_steps) return end;
     end.failure = Failure{.worst_block = state.imbalance.worst_block,
                           .residual_ratio = state.imbalance.share,

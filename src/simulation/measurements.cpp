@@ -34,6 +34,60 @@ void count(ContactState state, ContactCounts& counts) {
 
 PairOfEdges edges_of(const ContactKey& key) { return {key.block_a, key.edge_a, key.block_b, key.edge_b}; }
 
+/// A part of the body's extent along an axis (m).
+struct Layer {
+    Vec2 axis;
+    double low = 0.0;
+    double high = 0.0;
+
+    [[nodiscard]] bool contains(const Vec2& x) const { return axis.dot(x) >= low && axis.dot(x) <= high; }
+};
+
+/// Between the quarters.
+Layer middle_half(const BlockSystem& system, const Vec2& axis) {
+    std::vector<double> heights;
+    for (const Vec2& vertex : system.vertices) heights.push_back(axis.dot(vertex));
+    const auto [low, high] = std::ranges::minmax(heights);
+    const double quarter = 0.25 * (high - low);
+    return {axis, low + quarter, high - quarter};
+}
+
+/// Whether it is made of cells of the net. Larger blocks are rock around a region with a net: that carries load when all
+/// bonds of the net have failed.
+bool cells_fill(const BlockSystem& system, const Layer& layer) {
+    constexpr double largest_cell = 2.0; // in spacings of the net
+    constexpr double most_of_it = 0.95;
+    double of_cells = 0.0;
+    double all = 0.0;
+    for (const Block& block : system.blocks) {
+        if (!layer.contains(block.centroid)) continue;
+        all += block.area;
+        if (spacing_of(block) <= largest_cell * system.spacing) of_cells += block.area;
+    }
+    return of_cells >= most_of_it * all;
+}
+
+std::vector<int> bonds_in_the_middle(const Model& model, const Vec2& axis) {
+    const BlockSystem& system = model.system;
+    const Layer middle = middle_half(system, axis);
+    std::vector<int> bonds;
+    if (!cells_fill(system, middle)) return bonds;
+    for (int i = 0; i < system.n_interfaces(); ++i) {
+        const Interface& interface = system.interfaces[i];
+        if (interface.origin != EdgeOrigin::tessellation || !model.bonds[interface.interface_type]) continue;
+        const Edge& edge = system.blocks[interface.block_a].edges[interface.edge_a];
+        if (middle.contains(0.5 * (edge_start(system, edge) + edge_end(system, edge)))) bonds.push_back(i);
+    }
+    return bonds;
+}
+
+/// 0 where there are none.
+double broken_share(const std::vector<int>& bonds, const std::vector<InterfaceStatus>& interfaces) {
+    const auto broken =
+        std::ranges::count_if(bonds, [&](int i) { return interfaces[i] != InterfaceStatus::potential_crack; });
+    return bonds.empty() ? 0.0 : static_cast<double>(broken) / static_cast<double>(bonds.size());
+}
+
 } // namespace
 
 Gauges make_gauges(const Model& model) {
@@ -47,8 +101,9 @@ Gauges make_gauges(const Model& model) {
         break;
     }
     if (gauges.moved < 0) gauges.moved = uppermost_boundary(system);
+    if (gauges.moved >= 0) gauges.axial_normal = boundary_frame(system, gauges.moved).normal;
+    gauges.middle_bonds = bonds_in_the_middle(model, gauges.axial_normal);
     if (gauges.moved < 0) return gauges;
-    gauges.axial_normal = boundary_frame(system, gauges.moved).normal;
     gauges.lateral_normal = {gauges.axial_normal.y(), -gauges.axial_normal.x()};
     gauges.opposite = opposite_boundary(system, gauges.moved);
     gauges.length = distance_across(system, gauges.moved);
@@ -146,6 +201,7 @@ StepRecord measure_step(const Model& model, const Gauges& gauges, const State& s
     record.differential_stress = record.axial_stress - record.lateral_stress;
     record.cracks_tension = static_cast<int>(std::ranges::count(state.body.interfaces, InterfaceStatus::tension_crack));
     record.cracks_shear = static_cast<int>(std::ranges::count(state.body.interfaces, InterfaceStatus::shear_crack));
+    record.net_broken = broken_share(gauges.middle_bonds, state.body.interfaces);
     const auto counts = count_contacts(model, state, body, q);
     record.open = counts.open;
     record.sliding = counts.sliding;

@@ -115,14 +115,23 @@ Net net_at(const Net& net, double spacing) {
     return {.kind = net.kind, .spacing = spacing, .edge_density = net.edge_density * net.spacing / spacing};
 }
 
+/// E that a stiffness given as a ratio refers to (Pa).
+double youngs_modulus_of_ratio(const ModelInput& input) {
+    double stiffest = 0.0;
+    for (const Material& material : input.materials) stiffest = std::max(stiffest, material.youngs_modulus);
+    return stiffest;
+}
+
 /// E and nu of a material are the rock's where the net's stiffness follows from them, and else the blocks'.
 ElasticModuli moduli_of_blocks(const Material& material, const ModelInput& input, const Net& body_net) {
     if (input.tessellation_type >= 0) {
         const InterfaceType& net = input.interface_types[input.tessellation_type];
-        if (stiffness_from_ratio(net))
-            return block_moduli(material.youngs_modulus, material.poissons_ratio, input.plane,
-                                net.stiffness_ratio.value_or(default_stiffness_ratio),
+        if (stiffness_from_ratio(net)) {
+            const double ratio = net.stiffness_ratio.value_or(default_stiffness_ratio(body_net.kind));
+            const double own_ratio = ratio * youngs_modulus_of_ratio(input) / material.youngs_modulus;
+            return block_moduli(material.youngs_modulus, material.poissons_ratio, input.plane, own_ratio,
                                 net.shear_ratio.value_or(default_shear_ratio), body_net);
+        }
     }
     return plane_moduli(material.youngs_modulus, material.poissons_ratio, input.plane);
 }
@@ -162,7 +171,7 @@ struct LawBench {
     const BlockSystem& system;
     const ModelInput& input;
     double boundary_stress = 0.0;
-    double stiffest_rock = 0.0; ///< E (Pa)
+    double youngs_modulus = 0.0; ///< that ratios refer to (Pa)
 };
 
 /// Adds a law of an interface type, with its own index as that after failure; returns the index.
@@ -181,7 +190,7 @@ int add_law(int type, const InterfaceStiffness& given, const InterfaceStiffness&
 /// A law with the stiffness that the type has on a net, which decides what is given times the spacing or as a ratio.
 int add_law_on_net(int type, const Net& net, const LawBench& bench, Model& model) {
     const InterfaceStiffness given =
-        resolve_stiffness(bench.input.interface_types[type], net.spacing, bench.stiffest_rock);
+        resolve_stiffness(bench.input.interface_types[type], net, bench.youngs_modulus);
     return add_law(type, given, stiffness_in_body(type, given, bench.system, bench.input, net), bench, model);
 }
 
@@ -285,9 +294,10 @@ Model build_model(BlockSystem system, const ModelInput& input) {
     refuse_moved_fixed_blocks(system, input.loads);
     const double boundary_stress = largest_boundary_stress(system, input, model.force_points);
     model.net = net_of_body(system, input);
-    LawBench bench{.system = system, .input = input, .boundary_stress = boundary_stress};
-    for (const Material& material : input.materials)
-        bench.stiffest_rock = std::max(bench.stiffest_rock, material.youngs_modulus);
+    const LawBench bench{.system = system,
+                         .input = input,
+                         .boundary_stress = boundary_stress,
+                         .youngs_modulus = youngs_modulus_of_ratio(input)};
     add_laws(bench, model);
     if (has_rigid_net(input)) add_law_of_broken_net(bench, model);
     add_laws_of_graded_net(system, bench, model);

@@ -58,7 +58,7 @@ StageLoads begin_stage(const Model& model, const SolverOptions& solver, Equilibr
 
 StageEnd run_stage(const StepBench& bench, State& state) {
     if (bench.stage(state).strength_reduction) return find_strength_limit(bench, state);
-    if (StageEnd end = end_after(bench, state); end.failure) return end; // the run had ended here before it was resumed
+    if (StageEnd end = end_after(bench, state); end.ends_run()) return end; // as before it was resumed
     if (bench.solver.accuracy > 0.0) return run_accurate_steps(bench, state);
     return run_fixed_steps(bench, state);
 }
@@ -116,7 +116,7 @@ RunReport run_simulation(const Model& model, const CrackOptions& cracks, const S
             StageEnd end = run_stage(bench, state);
             const bool last = state.at.stage + 1 == static_cast<int>(model.loads.stages.size());
             end.causes = causes_of(bench, state, end);
-            if (end.failure || last || state.unbalanced_in_succession > 0) return journal.ended(state, end);
+            if (end.ends_run() || last || state.unbalanced_in_succession > 0) return journal.ended(state, end);
             end_stage(bench, std::move(end.forces), state);
         }
     });

@@ -335,6 +335,7 @@ void leave_stage(const Model& model, const StageLoads& stage_loads, const Loads&
     ++state.at.stage;
     state.at.step_in_stage = 0;
     state.at.load_factor = 0.0;
+    state.stresses.largest_in_stage = 0.0;
 }
 
 double boundary_stress(const Loads& loads, const Eigen::VectorXd& forces, int boundary, bool held,

@@ -12,6 +12,7 @@
 #include "kluft/simulation/state_check.hpp"
 #include "kluft/simulation/step_control.hpp"
 #include "kluft/simulation/strength_reduction.hpp"
+#include "kluft/simulation/stress_drop.hpp"
 
 namespace kluft {
 
@@ -62,13 +63,8 @@ bool has_surfaces_to_meet(const Model& model, const BodyState& body) {
 
 /// The largest stresses so far, which errors of the history are relative to.
 void note_stresses(StepInProgress& p, const LoadedBody& body) {
-    const StepRecord& row = p.step.row;
     StressHistory& stresses = p.step.end.stresses;
-    stresses.axial = row.axial_stress;
-    if (row.balanced && std::abs(row.axial_stress) > stresses.largest_axial) {
-        stresses.largest_axial = std::abs(row.axial_stress);
-        stresses.stage_of_largest = p.step.end.at.stage;
-    }
+    note_axial_stress(p.bench.stage(p.from), p.step.row, stresses);
     if (p.goal.accuracy > 0.0 && !prescribes_strain(p.bench.stage(p.from)))
         stresses.largest_mean = std::max(stresses.largest_mean, weighted_stresses(body, p.displacement()).norm());
 }

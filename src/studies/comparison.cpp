@@ -215,6 +215,8 @@ void add_costs(const FinishedRun& a, const FinishedRun& b, TableWriter& writer) 
 void note_peak(const FinishedRun& run, std::vector<std::string>& notes) {
     if (!run.numbers.peak_stress) {
         notes.push_back(run.name + " has no balanced equilibrium, so no peak");
+    } else if (run.numbers.net_locked) {
+        notes.push_back(run.name + " has no peak: its net locked, its largest stress before is compared");
     } else if (!run.numbers.peak_reached) {
         notes.push_back(run.name + " has no peak: its stress was still rising, its largest one is compared");
     }

@@ -207,7 +207,7 @@ TEST(ResolveStiffness, TakesPascalPerMetreAsTheyAre) {
     InterfaceType type{.name = "joint"};
     type.normal_stiffness = 4e9;
     type.shear_stiffness = 1e9;
-    const InterfaceStiffness stiffness = resolve_stiffness(type, 0.0, 0.0);
+    const InterfaceStiffness stiffness = resolve_stiffness(type, {.spacing = 0.0}, 0.0);
     EXPECT_EQ(stiffness.normal, 4e9);
     EXPECT_EQ(stiffness.shear, 1e9);
     EXPECT_FALSE(stiffness_from_ratio(type));
@@ -217,7 +217,7 @@ TEST(ResolveStiffness, DividesStiffnessTimesSpacingByTheSpacing) {
     InterfaceType type{.name = "joint"};
     type.normal_stiffness_times_spacing = 200e6;
     type.shear_stiffness_times_spacing = 50e6;
-    const InterfaceStiffness stiffness = resolve_stiffness(type, 0.05, 0.0);
+    const InterfaceStiffness stiffness = resolve_stiffness(type, {.spacing = 0.05}, 0.0);
     EXPECT_DOUBLE_EQ(stiffness.normal, 4000e6);
     EXPECT_DOUBLE_EQ(stiffness.shear, 1000e6);
     EXPECT_FALSE(stiffness_from_ratio(type));
@@ -225,7 +225,7 @@ TEST(ResolveStiffness, DividesStiffnessTimesSpacingByTheSpacing) {
 
 TEST(ResolveStiffness, ScalesWithTheRockByDefault) {
     const InterfaceType type{.name = "bond"};
-    const InterfaceStiffness stiffness = resolve_stiffness(type, 0.05, 1e9);
+    const InterfaceStiffness stiffness = resolve_stiffness(type, {.spacing = 0.05}, 1e9);
     EXPECT_DOUBLE_EQ(stiffness.normal, 10.0 * 1e9 / 0.05);
     EXPECT_DOUBLE_EQ(stiffness.shear, 0.5 * stiffness.normal);
     EXPECT_TRUE(stiffness_from_ratio(type));
@@ -235,15 +235,15 @@ TEST(ResolveStiffness, AppliesTheShearRatioToEveryWay) {
     InterfaceType type{.name = "joint"};
     type.normal_stiffness = 4e9;
     type.shear_ratio = 0.25;
-    EXPECT_DOUBLE_EQ(resolve_stiffness(type, 0.0, 0.0).shear, 1e9);
+    EXPECT_DOUBLE_EQ(resolve_stiffness(type, {.spacing = 0.0}, 0.0).shear, 1e9);
     type.shear_ratio.reset();
-    EXPECT_DOUBLE_EQ(resolve_stiffness(type, 0.0, 0.0).shear, 2e9);
+    EXPECT_DOUBLE_EQ(resolve_stiffness(type, {.spacing = 0.0}, 0.0).shear, 2e9);
 }
 
 TEST(ResolveStiffness, RejectsWhatIsMissingOrContradictory) {
     const auto error = [](InterfaceType type, double d, double youngs) {
         type.name = "joint";
-        return input_error_of([&] { (void)resolve_stiffness(type, d, youngs); });
+        return input_error_of([&] { (void)resolve_stiffness(type, {.spacing = d}, youngs); });
     };
     EXPECT_THAT(error({.stiffness_ratio = 10.0}, 0.0, 1e9), testing::HasSubstr("reference_spacing"));
     EXPECT_THAT(error({.stiffness_ratio = 10.0}, 0.05, 0.0), testing::HasSubstr("youngs_modulus"));
@@ -291,6 +291,12 @@ TEST(TriangleModuliFormula, IsInvertedByTheModuliOfTheBlocksAndByRigidOnes) {
     EXPECT_NEAR(smallest_stiffness_ratio(0.25, Plane::strain, 0.5, equilateral_net(0.3)), 1.6 * std::sqrt(3.0), 1e-12);
     EXPECT_THROW((void)block_moduli(20e9, 0.25, Plane::strain, 10.0, 0.0, equilateral_net(0.3)), InputError);
     EXPECT_THROW((void)rigid_lattice_stiffness(20e9, -0.4, Plane::stress, equilateral_net(0.3)), InputError);
+}
+
+TEST(ResolveStiffness, DefaultRatioIsThatOfTheKindOfNet) {
+    const InterfaceType type{};
+    EXPECT_DOUBLE_EQ(resolve_stiffness(type, hexagon_net(0.5), 1e9).normal, 10.0 * 1e9 / 0.5);
+    EXPECT_DOUBLE_EQ(resolve_stiffness(type, equilateral_net(0.5), 1e9).normal, 30.0 * 1e9 / 0.5);
 }
 
 } // namespace

@@ -1,5 +1,6 @@
 #include "kluft/output/curve_picture.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -63,6 +64,18 @@ TEST(CurvePicture, SaysThatACurveIsStillRising) {
     const auto plot = stress_strain_plot("t", {{"a", history, {}, 1}});
     EXPECT_FALSE(plot.curves[0].peak_reached);
     EXPECT_EQ(plot.curves[0].peak_text.back(), "still rising");
+}
+
+TEST(CurvePicture, MarksThePeakBeforeTheNetLocked) {
+    auto history = synthetic_history(1.4e6);
+    const auto peak = std::ranges::max_element(history, {}, &StepRecord::axial_stress);
+    for (auto row = peak; row != history.end(); ++row) row->net_broken = 1.0;
+    history.back().axial_stress = 2.8e6;
+    const auto plot = stress_strain_plot("t", {{"a", history, {}, 1}, {"b", history, {}, 1}});
+    EXPECT_NEAR(plot.curves[0].peak->y(), 1.2, 1e-12);
+    EXPECT_FALSE(plot.curves[0].peak_reached);
+    EXPECT_EQ(plot.curves[1].label, "b: net locked");
+    EXPECT_EQ(stress_strain_plot("t", {{"a", history, {}, 1}}).curves[0].peak_text.back(), "net locked");
 }
 
 TEST(CurvePicture, ListsThePeaksOfSeveralRunsInTheLegend) {

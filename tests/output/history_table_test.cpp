@@ -38,6 +38,7 @@ StepRecord awkward_record() {
     record.unbalanced_ratio = 1e-300;
     record.balance_error = 0.1;
     record.jumps = 10;
+    record.net_broken = 2.0 / 3.0;
     record.balanced = false;
     record.elapsed_s = 12.25;
     return record;
@@ -48,17 +49,17 @@ TEST(HistoryTable, HasTheColumnsOfTheContract) {
     EXPECT_EQ(history_header(),
               "step,stage,load_factor,axial_strain,axial_stress,lateral_strain,lateral_stress,differential_stress,"
               "volumetric_strain,cracks_tension,cracks_shear,open,sliding,locked,open_close_iterations,crack_passes,"
-              "unbalanced_ratio,balance_error,jumps,balanced,elapsed_s");
+              "unbalanced_ratio,balance_error,jumps,net_broken,balanced,elapsed_s");
     EXPECT_EQ(cracks_header(), "step,pass,interface,x,y,mode,p1,p3,axial_strain");
     EXPECT_EQ(jumps_header(), "step,load_factor,released_energy,largest_slip,blocks");
 }
 
 TEST(HistoryTable, WritesBooleansAsZeroAndOne) {
     StepRecord record;
-    EXPECT_EQ(table_row(record), "0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,1,0");
+    EXPECT_EQ(table_row(record), "0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,1,0");
     record.balanced = false;
     record.load_factor = 0.1;
-    EXPECT_EQ(table_row(record), "0,0,0.10000000000000001,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0");
+    EXPECT_EQ(table_row(record), "0,0,0.10000000000000001,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0");
 }
 
 TEST(HistoryTable, ReadsBackEveryBit) {

@@ -36,7 +36,7 @@ State state_of(int n_blocks) {
     state.memory.rate = 3.0 * state.body.displacement;
     state.memory.near_pairs = {{0, 3}, {2, 1}};
     state.control = {0.01, 2.0, 0.5, 1e-3, 2e-3, 3e-3, 2, {2, 0}};
-    state.stresses = {1.2e6, 1.5e6, 1e6, 1};
+    state.stresses = {1.2e6, 1.5e6, 1e6, 1, 1.4e6};
     state.is_settled = false;
     state.costs = {179, 180, 2, 150, 40, 2000, 3, 5, 4, 12.5, {1, 2, 3, 4, 5, 6, 7, 8, 9}};
     return state;

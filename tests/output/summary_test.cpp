@@ -151,6 +151,53 @@ TEST(Summary, InterpolatesTheRangeWhenStepsAreCoarse) {
     EXPECT_NEAR(*numbers.poissons_ratio, 0.2, 1e-12);
 }
 
+/// Axial stresses (MPa) of the platen stage, each with the share of the net's bonds that have failed.
+Rows rows_of_net(const std::vector<std::pair<double, double>>& stresses, double sense = 1.0) {
+    Rows rows{row(0, 0, 0, 0, 0, 0)};
+    for (const auto& [stress, broken] : stresses) {
+        rows.push_back(row(static_cast<int>(rows.size()), 1, sense * 1e-3 * static_cast<double>(rows.size()),
+                           sense * 1e6 * stress, 0.0, 0.0));
+        rows.back().net_broken = broken;
+    }
+    return rows;
+}
+
+TEST(Summary, LockedNetHasThePeakFromBeforeAndNoneReached) {
+    const Rows rows = rows_of_net({{10, 0}, {39, 0.9}, {37, 0.95}, {38, 1}, {40.96, 1}, {30, 1}});
+    const auto locked = curve_numbers(rows, rows, 1, Plane::stress);
+    EXPECT_TRUE(locked.net_locked);
+    EXPECT_FALSE(locked.peak_reached);
+    EXPECT_EQ(peak_remark(locked), "net locked");
+    EXPECT_DOUBLE_EQ(*locked.peak_stress, 39e6);
+    EXPECT_DOUBLE_EQ(*locked.peak_strain, 0.002);
+    EXPECT_FALSE(locked.residual_stress.has_value());
+    const Rows pulled = rows_of_net({{10, 0}, {39, 0.9}, {37, 0.95}, {38, 1}, {40.96, 1}, {30, 1}}, -1.0);
+    EXPECT_TRUE(is_net_locked(pulled, 1));
+    EXPECT_DOUBLE_EQ(peak_row(pulled, 1)->axial_stress, -39e6);
+}
+
+TEST(Summary, NetIsNotLockedByLessThanItTakes) {
+    const auto locked = [](const std::vector<std::pair<double, double>>& stresses) {
+        const Rows rows = rows_of_net(stresses);
+        return is_net_locked(rows, 1);
+    };
+    EXPECT_TRUE(locked({{39, 0.9}, {37, 0.95}, {40.96, 1}}));
+    EXPECT_FALSE(locked({{39, 0.9}, {37, 0.95}, {40.94, 1}}));          // 4.97 % above
+    EXPECT_FALSE(locked({{39, 0.9}, {37, 0.94}, {80, 0.94}, {70, 1}})); // bonds carry
+    EXPECT_FALSE(locked({{39, 0.9}, {20, 0.95}, {36, 1}}));             // rises again, but not to what the rock had
+    EXPECT_FALSE(locked({{39, 0}, {80, 0}}));                           // no net
+    EXPECT_FALSE(locked({}));
+}
+
+TEST(Summary, UnbalancedEquilibriumDoesNotLockTheNet) {
+    Rows rows = rows_of_net({{39, 0.9}, {37, 1}, {60, 1}, {36, 1}});
+    rows[3].balanced = false;
+    const auto numbers = curve_numbers(rows, rows, 1, Plane::stress);
+    EXPECT_FALSE(numbers.net_locked);
+    EXPECT_TRUE(numbers.peak_reached);
+    EXPECT_DOUBLE_EQ(*numbers.peak_stress, 39e6);
+}
+
 TEST(Summary, HasNoNumbersWithoutRowsOrPlaten) {
     const auto empty = curve_numbers({}, {}, 1, Plane::strain);
     EXPECT_FALSE(empty.peak_stress || empty.residual_stress || empty.youngs_modulus || empty.peak_reached);
@@ -171,6 +218,7 @@ TEST(Summary, HasTheKeysOfTheContractAndNullForWhatIsUnknown) {
                             "peak_stress",
                             "peak_strain",
                             "peak_reached",
+                            "net_locked",
                             "residual_stress",
                             "youngs_modulus",
                             "poissons_ratio",
@@ -206,6 +254,7 @@ TEST(Summary, IsReadBack) {
     summary.title = "slope \"A\"";
     summary.numbers.peak_stress = 1.0 / 3.0;
     summary.numbers.cracks_shear = 4;
+    summary.numbers.net_locked = true;
     summary.blocks = 255;
     summary.platen_stage = 1;
     summary.peak_memory_bytes = 5'000'000'000;

@@ -247,7 +247,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"interfaces.joint.fails_to=joint",
                 "interfaces.joint.fails_to: expected nothing for a fracture, which has failed already, found 'joint'"},
         Refusal{"interfaces.joint.dilation_angle=31",
-                "interfaces.joint.dilation_angle: expected at most the friction angle (30 deg), found '31'"},
+                "interfaces.joint.dilation_angle: expected at most the friction angle (25 deg), found '31'"},
         Refusal{"boundaries.left.sides=[3]", "boundaries.left.sides: expected nothing for a rectangle, whose "
                                              "boundaries are bottom, right, top, left, found a list of 1"},
         Refusal{"stages.1.stress={boundary: right, value: 1}",
@@ -288,7 +288,7 @@ TEST(SceneErrors, TrianglesHaveTheirKeysTogether) {
                                                "which follow them, found none")));
     EXPECT_THAT(errors_with({"geometry.tessellation.hexagons=null", "geometry.tessellation.triangles={spacing: 1e-7}"}),
                 ElementsAre(testing::HasSubstr("geometry.tessellation.triangles.spacing: expected a spacing in m that "
-                                               "fits the domain, found 1e-7, which makes ")));
+                                               "fits the domain, found '1e-7', which makes ")));
 }
 
 TEST(SceneErrors, OneOfSeveralMaterialsMustBeNamed) {
@@ -446,6 +446,21 @@ TEST(SceneErrors, NamesAreMadeOfLettersDigitsUnderscoresAndHyphens) {
 TEST(SceneErrors, ThePatternsOfTheTableAreNoKeys) {
     EXPECT_THAT(errors_in(test::short_scene + "analysis.plane: strain\n"), testing::SizeIs(1));
     EXPECT_THAT(errors_in(test::short_scene + "'*': 1\n'#': 1\n"), testing::SizeIs(2));
+}
+
+TEST(SceneErrors, StopAfterADropNeedsAPlatenOfGivenTravelWhereTheAxialStressIs) {
+    EXPECT_THAT(
+        errors_with({"stages.0.stop_after_drop=0.2"}),
+        ElementsAre(HasSubstr("stages.0.stop_after_drop: expected a displacement or a strain of a platen in the "
+                              "same stage, found none")));
+    EXPECT_THAT(errors_with({"stages.3.stop_after_drop=0.2"}), ElementsAre(HasSubstr("found none"))); // by stress
+    EXPECT_THAT(errors_with({"stages.2.stop_after_drop=0.2"}),
+                ElementsAre(HasSubstr("expected a platen on 'top', on which the axial stress is measured because it is "
+                                      "moved first, found one on 'right'")));
+    EXPECT_THAT(errors_with({"stages.1.stop_after_drop=20 %"}), IsEmpty());
+    for (const char* value : {"0", "1", "20"})
+        EXPECT_THAT(errors_with({std::string("stages.1.stop_after_drop=") + value}),
+                    ElementsAre(HasSubstr("expected a number > 0 and < 1")));
 }
 
 } // namespace

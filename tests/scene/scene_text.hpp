@@ -28,7 +28,7 @@ interfaces:
     kind: fracture
     normal_stiffness: 10 GPa/m
     shear_stiffness: 5 GPa/m
-    friction_angle: 30
+    friction_angle: 25
     cohesion: 10 kPa
     dilation_angle: 5
     cohesion_onset: 1 kPa

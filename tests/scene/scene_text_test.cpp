@@ -155,9 +155,10 @@ TEST(Overrides, GoThroughMappingsByKeyAndListsByIndex) {
 }
 
 TEST(Overrides, CreateKeysOfTheSchemaAndAppendToLists) {
-    const Scene scene = read_scene_text(
-        test::short_scene, {"interfaces.joint.kind=fracture", "geometry.fractures.0.trace=[[0, 0], [1, 1]]",
-                            "geometry.reference_spacing=1", "stages.1.pressure.left=2 MPa", "stages.1.steps=4"});
+    const Scene scene = read_scene_text(test::short_scene,
+                                        {"interfaces.joint.kind=fracture", "interfaces.joint.stiffness_ratio=10",
+                                         "geometry.fractures.0.trace=[[0, 0], [1, 1]]", "geometry.reference_spacing=1",
+                                         "stages.1.pressure.left=2 MPa", "stages.1.steps=4"});
     EXPECT_EQ(scene.geometry.fractures.size(), 1U);
     ASSERT_EQ(scene.loads.stages.size(), 2U);
     EXPECT_EQ(scene.loads.stages[1].pressure.at(3), 2e6);
@@ -178,8 +179,8 @@ TEST(Overrides, MappingsMergeAndNullRemoves) {
 TEST(Overrides, ThatAreWrongSayWhichOne) {
     EXPECT_THAT(errors_with({"stages.1.stpes=3"}),
                 ElementsAre("--set stages.1.stpes=3: stages.1.stpes: expected one of name, pressure, gravity, forces, "
-                            "displacement, strain, stress, platens, strength_reduction, steps, found 'stpes'; did you "
-                            "mean 'steps'?"));
+                            "displacement, strain, stress, platens, strength_reduction, steps, stop_after_drop, found "
+                            "'stpes'; did you mean 'steps'?"));
     EXPECT_THAT(errors_with({"stages"}), ElementsAre("--set stages: expected key.path=value"));
     EXPECT_THAT(errors_with({"=3"}), ElementsAre("--set =3: expected key.path=value"));
     EXPECT_THAT(errors_with({"stages.9.steps=3"}),

@@ -45,7 +45,7 @@ void expect_same_runs(const SceneRun& a, const SceneRun& b) {
 }
 
 SceneRun quick_start(const std::vector<std::string>& overrides) {
-    std::ifstream file(KLUFT_SOURCE_DIR "/models/quickstart.yaml");
+    std::ifstream file(KLUFT_SOURCE_DIR "/tests/support/specimen_of_hexagons.yaml");
     return run_scene({std::istreambuf_iterator<char>(file), {}}, overrides);
 }
 
@@ -75,7 +75,7 @@ private:
 // The sizes of the load steps go on from the state alone.
 TEST(SlowRepeatability, RunWithAnAccuracyGoesOnFromASavedStateAsIfItHadNotStopped) {
     SceneRun whole;
-    whole.scene = read_scene(KLUFT_SOURCE_DIR "/models/quickstart.yaml",
+    whole.scene = read_scene(KLUFT_SOURCE_DIR "/tests/support/specimen_of_hexagons.yaml",
                              {"solver.accuracy=0.01", "solver.repeatable=true", "stages.1.strain.value=0.01"});
     const Model model = build_scene_model(whole.scene).model;
     const std::atomic<bool> stop{false};

@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "kluft/simulation/stress_drop.hpp"
 #include "support/posed_run.hpp"
 #include "support/scene_run.hpp"
 
@@ -150,6 +151,45 @@ TEST(Resuming, RunThatEndedAtAFactorOfSafetyEndsTheSame) {
         run_model(posed::block_on_a_plane(19.0 * posed::degree, 25.0 * posed::degree, factors, 4), 0.0);
     EXPECT_EQ(run.report.status, RunStatus::collapsed);
     EXPECT_THAT(expect_same_end(run).diagnosis, HasSubstr("beyond it no equilibrium in stage 1"));
+}
+
+// A pile of hexagons that loses half of its stress in one load step; a stage comes after it.
+TEST(Resuming, RunThatStoppedAfterADropEndsTheSameAndGoesOnWithoutIt) {
+    const std::string scene = R"(
+kluft: 1
+materials: {r: {density: 2500, youngs_modulus: 1 GPa, poissons_ratio: 0.2, cohesion: 0.1 MPa, friction_angle: 30,
+                tensile_strength: 0.05 MPa}}
+interfaces:
+  j: {kind: fracture, friction_angle: 20, normal_stiffness: 10 GPa/m, shear_stiffness: 5 GPa/m}
+  p: {kind: potential_crack, fails_to: j, normal_stiffness: 10 GPa/m, shear_stiffness: 5 GPa/m}
+geometry: {domain: {rectangle: {width: 1, height: 2}}, tessellation: {hexagons: {spacing: 0.4}, interface: p}}
+stages:
+  - {strain: {boundary: top, value: 0.1 %}, platens: {friction_angle: 20}, steps: 20, stop_after_drop: 20 %}
+  - {strain: {boundary: top, value: 0.01 %}}
+solver: {repeatable: true}
+)";
+    SceneRun run = run_scene(scene);
+    ASSERT_EQ(run.report.status, RunStatus::done);
+    ASSERT_LT(run.state.at.step, 20);
+    EXPECT_EQ(expect_same_end(run).remark, run.report.remark);
+    const SceneRun whole = run_scene(scene, {"stages.0.stop_after_drop=null"});
+    run.model.loads.stages.front().stop_after_drop.reset();
+    const SceneRun rest = resumed(run, run.state);
+    EXPECT_EQ(rest.state.at.step, 21);
+    EXPECT_EQ(rest.history.back().axial_stress, whole.history.back().axial_stress);
+}
+
+// The largest stress was reached before the state was saved.
+TEST(Resuming, DropCountsFromALargestStressBeforeTheResume) {
+    State peaked;
+    peaked.stresses.largest_in_stage = 5e6;
+    Stage stage;
+    stage.motion = PlatenMotion{.value = 0.01};
+    stage.stop_after_drop = 0.2;
+    StepRecord row;
+    row.axial_stress = 3.9e6;
+    note_axial_stress(stage, row, peaked.stresses);
+    EXPECT_TRUE(has_dropped(stage, peaked.stresses));
 }
 
 // The stages have 1 + 30 load steps.

@@ -339,7 +339,7 @@ solver: {tolerance: 1e-10, balance: 1e-9}
 }
 
 TEST(SlowSimulation, SameSceneTwiceGivesTheSameBits) {
-    std::ifstream file(KLUFT_SOURCE_DIR "/models/quickstart.yaml");
+    std::ifstream file(KLUFT_SOURCE_DIR "/tests/support/specimen_of_hexagons.yaml");
     const std::string scene{std::istreambuf_iterator<char>(file), {}};
     const auto first = run_scene(scene);
     const auto second = run_scene(scene);

@@ -200,7 +200,7 @@ TEST(StepControl, ContactsAreDetectedInEveryFifthStepOnly) {
 
 // `all` breaks at the ends of steps; those that are too long are taken back with what broke in them.
 TEST(SlowStepControl, CracksOfARejectedStepAreNotToldOf) {
-    const auto run = run_scene(read_scene(KLUFT_SOURCE_DIR "/models/quickstart.yaml",
+    const auto run = run_scene(read_scene(KLUFT_SOURCE_DIR "/tests/support/specimen_of_hexagons.yaml",
                                           {"cracks.update=all", "solver.accuracy=0.02", "stages.1.strain.value=0.01"}));
     EXPECT_GT(run.report.costs.rejected_steps, 0);
     const StepRecord& last = run.history.back();

@@ -74,6 +74,16 @@ TEST(FinishedRun, OfTablesAloneHasTheNumbersThatTheyGive) {
     EXPECT_THAT(run.notes, Contains(HasSubstr("no cracks.csv")));
 }
 
+TEST(FinishedRun, OfTablesAloneSaysWhetherItsNetLocked) {
+    const TemporaryDirectory directory;
+    write_file(directory / "history.csv",
+               "step,stage,axial_strain,axial_stress,differential_stress,net_broken\n"
+               "0,0,0,0,0,0\n1,0,0.01,1e6,1e6,0.5\n2,0,0.02,2e6,2e6,1\n3,0,0.03,3e6,3e6,1\n");
+    const FinishedRun run = read_finished_run(directory.path(), "run");
+    EXPECT_TRUE(run.numbers.net_locked);
+    EXPECT_EQ(run.numbers.peak_stress, 2e6);
+}
+
 TEST(FinishedRun, MayLackColumnsThatNoCurveNeeds) {
     const TemporaryDirectory directory;
     write_file(directory / "history.csv",

@@ -146,9 +146,11 @@ protected:
         summary.platen_stage = 1;
         write_summary(directory_ / "summary.json", summary);
     }
-    void set_in_summary(const std::string& entry) {
+    void set_net_locked(const std::string& value) {
         std::string text = read_file(directory_ / "summary.json");
-        text.insert(text.find('{') + 1, entry + ",");
+        const std::string key = "\"net_locked\": ";
+        const std::size_t at = text.find(key) + key.size();
+        text.replace(at, text.find(',', at) - at, value);
         write_file(directory_ / "summary.json", text);
     }
     double lateral_ = 0.2e6;
@@ -179,13 +181,13 @@ TEST_F(PeakOfRun, IsABoundWhereTheSummarySaysUnbalancedOrLocked) {
     write_run(1.0, 1.4e6, 1.0e6, RunStatus::unbalanced);
     EXPECT_EQ(bound_reason(read_peak(directory_.path(), "c")), "unbalanced");
     write_run(1.0, 1.4e6, 1.0e6, RunStatus::done);
-    set_in_summary("\"net_locked\": false");
+    set_net_locked("false");
     EXPECT_EQ(bound_reason(read_peak(directory_.path(), "c")), "");
     write_run(1.0, 1.4e6, 1.0e6, RunStatus::done);
-    set_in_summary("\"net_locked\": true");
+    set_net_locked("true");
     EXPECT_EQ(bound_reason(read_peak(directory_.path(), "c")), "net locked");
     write_run(1.0, 1.4e6, 1.0e6, RunStatus::done);
-    set_in_summary("\"net_locked\": 3");
+    set_net_locked("3");
     EXPECT_THROW((void)read_peak(directory_.path(), "c"), InputError);
 }
 

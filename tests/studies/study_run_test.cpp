@@ -230,6 +230,19 @@ TEST_F(StudyRuns, RealCasesHaveCurvesAndCosts) {
     EXPECT_THAT(content_of(results_ / "cases" / "steps=5" / "summary.json"), HasSubstr("\"cpu_s\""));
 }
 
+// A body that has lost a fifth of its strength is not pressed on, and its peak is that of the whole run.
+TEST_F(StudyRuns, CasesMayEndAfterADropOfTheStress) {
+    const ReadStudy study = read("vary: {stages.1.stop_after_drop: [0.2, null]}\n"
+                                 "set: {stages.1.steps: 20, interfaces.joint.friction_angle: 10}\n"
+                                 "quantities: [peak_stress, peak_reached, steps]\n");
+    const StudyTable table = run(study, KLUFT_PROGRAM);
+    ASSERT_THAT(statuses_of(table), ::testing::Each(CaseStatus::done));
+    EXPECT_EQ(table.cases[0].quantities[0], table.cases[1].quantities[0]);
+    EXPECT_EQ(table.cases[0].quantities[1], 1.0);
+    EXPECT_LT(*table.cases[0].quantities[2], 22.0);
+    EXPECT_EQ(table.cases[1].quantities[2], 22.0);
+}
+
 // ---- others that run the cases -------------------------------------------------------------------------------------
 
 TEST_F(StudyRuns, MakefileRunsWhatHasNotEndedAndGathersTheSameTable) {

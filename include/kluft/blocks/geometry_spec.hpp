@@ -61,8 +61,6 @@ struct TriangleNet {
 /// The smallest side that the net is asked for (m).
 [[nodiscard]] double smallest_side(const TriangleNet& net);
 
-enum class NetKind { hexagons, voronoi, triangles };
-
 /// Hexagons, or the Voronoi cells or triangles where they are given, inside `region` (everywhere without one); their
 /// edges get `interface_type`.
 struct Tessellation {
@@ -119,8 +117,6 @@ struct GeometrySpec {
     int blocks_interface = 0;       ///< index into the scene's interface types: of the interfaces between them
     std::vector<BlockSetSpec> sets;
 };
-
-[[nodiscard]] NetKind kind_of(const Tessellation& tessellation);
 
 /// Mean area of a cell of the net, or of a hexagon of lattice_spacing where there is none (m2).
 [[nodiscard]] double mean_cell_area(const GeometrySpec& spec);

@@ -1,8 +1,8 @@
 // Elastic moduli in the plane, stiffness of interfaces, and what both give for a body cut by a net.
 #pragma once
 
-#include "kluft/blocks/geometry_spec.hpp"
 #include "kluft/constitutive/material.hpp"
+#include "kluft/constitutive/net_kind.hpp"
 
 namespace kluft {
 
@@ -27,7 +27,6 @@ struct InterfaceStiffness {
     double shear = 0.0;
 };
 
-inline constexpr double default_stiffness_ratio = 10.0; ///< k_n d/E
 inline constexpr double default_shear_ratio = 0.5;      ///< k_s/k_n
 
 /// Plane-reduced Lame constants of a material with Young's modulus E (Pa) and Poisson's ratio nu.
@@ -97,11 +96,12 @@ struct Net {
 [[nodiscard]] bool stiffness_from_ratio(const InterfaceType& type);
 
 /// Stiffness in Pa/m from whichever of the three ways the interface type uses: normal_stiffness (Pa/m),
-/// normal_stiffness_times_spacing (Pa) or stiffness_ratio (default, times E of the rock). A shear stiffness that is
-/// not given is shear_ratio (default 0.5) times the normal one. `spacing` (m) is needed by the two scaled ways.
+/// normal_stiffness_times_spacing (Pa) or stiffness_ratio (default that of the net's kind, times E of the rock). A shear
+/// stiffness that is not given is shear_ratio (default 0.5) times the normal one. The net's spacing is needed by the two
+/// scaled ways.
 /// Throws InputError for two ways at once, a shear stiffness without its normal one or beside shear_ratio, a missing
 /// spacing or E, a normal stiffness that is not positive, or a negative shear stiffness.
-[[nodiscard]] InterfaceStiffness resolve_stiffness(const InterfaceType& type, double spacing,
+[[nodiscard]] InterfaceStiffness resolve_stiffness(const InterfaceType& type, const Net& net,
                                                    double youngs_modulus_of_rock);
 
 } // namespace kluft

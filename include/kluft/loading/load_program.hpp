@@ -50,6 +50,7 @@ struct Stage {
     double platen_friction = 0.0; ///< tan of the friction angle of the platens; infinite: the body sticks to them
     std::optional<StrengthReduction> strength_reduction;
     int steps = 1;
+    std::optional<double> stop_after_drop; ///< the run ends where the platen has lost this part of its largest stress
 };
 
 [[nodiscard]] inline bool is_platen_loaded_by_stress(const Stage& stage) {

@@ -16,9 +16,10 @@ namespace kluft {
 
 /// The mechanical numbers of a run. Pa and fractions, positive in compression.
 struct CurveNumbers {
-    std::optional<double> peak_stress;     ///< largest axial stress over all balanced equilibria
+    std::optional<double> peak_stress;     ///< largest axial stress over all balanced equilibria, see peak_row
     std::optional<double> peak_strain;     ///< axial strain there
     bool peak_reached = false;             ///< a later balanced equilibrium lies at least 1 % below the peak
+    bool net_locked = false;               ///< see is_net_locked; then no peak is reached
     std::optional<double> residual_stress; ///< mean axial stress over the last 10 % of the strain, with a peak only
     std::optional<double> axial_modulus;   ///< slope of the differential stress over the axial strain (Pa)
     std::optional<double> lateral_ratio;   ///< slope of the lateral strain over the axial one, sign changed
@@ -38,8 +39,14 @@ struct CurveNumbers {
 /// 1 where the first stage that moves a platen presses the body, -1 where it pulls it; 1 without such a stage.
 [[nodiscard]] double platen_sense(const std::vector<StepRecord>& rows, std::optional<int> platen_stage);
 
+/// Whether loose cells of the net carry what the rock cannot, as masonry does: 95 % or more of the net's bonds in the middle
+/// half of the body have failed, and a later balanced equilibrium has an axial stress that lies by 5 % or more above all
+/// up to the first one with so many failed, in the sense of the platen. A rise that stays below an earlier peak does not
+/// count: that peak is the rock's.
+[[nodiscard]] bool is_net_locked(const std::vector<StepRecord>& rows, std::optional<int> platen_stage);
+
 /// The balanced row with the axial stress of largest magnitude in the sense of the platen, the first of equals; nothing without a
-/// balanced row.
+/// balanced row. Where the net is locked, only of the rows up to the first one with so many bonds failed.
 [[nodiscard]] std::optional<StepRecord> peak_row(const std::vector<StepRecord>& rows, std::optional<int> platen_stage);
 
 /// Computes the numbers from the rows of equilibria.csv (peak) and history.csv (the rest; also the peak when there are
@@ -53,6 +60,9 @@ struct CurveNumbers {
 [[nodiscard]] CurveNumbers curve_numbers(const std::vector<StepRecord>& equilibria,
                                          const std::vector<StepRecord>& history, std::optional<int> platen_stage,
                                          Plane plane);
+
+/// What is to be said beside a peak that is not reached: "still rising" or "net locked"; "" beside one that is.
+[[nodiscard]] std::string peak_remark(const CurveNumbers& numbers);
 
 /// The name of a status in summary.json.
 [[nodiscard]] std::string status_name(RunStatus status);
@@ -69,7 +79,7 @@ struct RunSummary {
     double cpu_s = 0.0; ///< processor time of all threads, in the system included
     std::int64_t peak_memory_bytes = 0;
     std::string version;
-    std::string message; ///< why the run ended, if not done
+    std::string message; ///< why the run ended, if not with the last load step
     RunResults results;
     std::vector<FallingBlock> falling;  ///< blocks that move where the run has ended
     std::optional<MotionReport> motion; ///< of an explicit run

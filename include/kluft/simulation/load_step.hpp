@@ -16,10 +16,11 @@ namespace kluft {
 /// To be called before each load step: a repeatable run solves it with a factor of its own.
 void begin_load_step(const StepBench& bench);
 
-/// Commits a load step of the stage. The stage ends with a failure where too many in succession were unbalanced.
+/// Commits a load step of the stage, which may be its end (end_after).
 [[nodiscard]] StageEnd commit_regular_step(const StepBench& bench, Step step, bool last_of_stage, State& state);
 
-/// How a stage ends after its last committed load step: with a failure where too many in succession were unbalanced.
+/// How a stage ends after its last committed load step: with a failure where too many in succession were unbalanced, and
+/// where the axial stress has dropped by as much as the stage waits for.
 [[nodiscard]] StageEnd end_after(const StepBench& bench, const State& state);
 
 /// Whether potential cracks are checked in the load step after `state`.

@@ -22,6 +22,9 @@ struct Gauges {
     double length = 0.0;         ///< distance of moved and opposite boundary before loading (m)
     double width = 0.0;          ///< distance of the lateral boundaries before loading (m)
     int first_platen_stage = -1; ///< first stage that moves a platen; -1 without one
+    /// Interfaces of the net that are potential cracks and have their middle in the middle half of the body along
+    /// `axial_normal`, before loading. None where the net does not fill that half.
+    std::vector<int> middle_bonds;
 };
 [[nodiscard]] Gauges make_gauges(const Model& model);
 

@@ -36,6 +36,7 @@ struct FallingBlock {
 struct RunReport {
     RunStatus status = RunStatus::done;
     std::string diagnosis; ///< names the blocks and interfaces concerned, or what ran out; empty for `done`
+    std::string remark;    ///< of a run that was done before its last load step: where and why
     RunResults results;
     RunCosts costs; ///< also of the parts of the run before a resumed state
     int unbalanced_steps = 0;

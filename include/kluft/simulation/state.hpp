@@ -80,6 +80,8 @@ struct StressHistory {
     double largest_axial = 0.0; ///< magnitude, of all balanced equilibria (Pa)
     double largest_mean = 0.0;  ///< root of the mean square over the body, where loads are prescribed (Pa)
     int stage_of_largest = -1;  ///< in which the largest axial stress was reached
+    /// Of the balanced equilibria of the stage in progress, in the sense of its platen; at least 0 (Pa).
+    double largest_in_stage = 0.0;
 
     bool operator==(const StressHistory&) const = default;
 };
@@ -137,6 +139,7 @@ template <class Members, class Visit> void visit_saved(Members& state, Visit&& v
     visit("largest_axial_stress", state.stresses.largest_axial);
     visit("largest_mean_stress", state.stresses.largest_mean);
     visit("stage_of_largest_stress", state.stresses.stage_of_largest);
+    visit("largest_axial_stress_in_stage", state.stresses.largest_in_stage);
     visit("is_settled", state.is_settled);
     visit("unbalanced_in_succession", state.unbalanced_in_succession);
     visit("worst_block", state.imbalance.worst_block);

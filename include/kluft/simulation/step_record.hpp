@@ -50,6 +50,7 @@ struct StepRecord {
     double unbalanced_ratio = 0.0; ///< of the mass-like term in F_ref
     double balance_error = 0.0;    ///< largest share left over on a block or group (docs/theory.md, (27))
     int jumps = 0;                 ///< so far
+    double net_broken = 0.0;       ///< share of the net's bonds in the middle half of the body that have failed
     bool balanced = true;
     double elapsed_s = 0.0;
     std::optional<double> strength_factor; ///< F that strengths are divided by, of runs that reduce them

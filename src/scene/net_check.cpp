@@ -1,0 +1,132 @@
+#include "kluft/scene/net_check.hpp"
+
+#include <algorithm>
+#include <numbers>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "kluft/constitutive/lattice_stiffness.hpp"
+#include "kluft/constitutive/net_kind.hpp"
+
+namespace kluft {
+
+namespace {
+
+bool gives_stiffness(const SceneSection& interface) {
+    return interface.has("normal_stiffness") || interface.has("normal_stiffness_times_spacing") ||
+           interface.has("stiffness_ratio");
+}
+
+void require_stiffness(const SceneSection& interface, const std::string& why, ReadingContext& context) {
+    context.fail(interface, "normal_stiffness",
+                 fmt::format("expected a number > 0 in Pa/m (or a normal_stiffness_times_spacing or a stiffness_ratio) "
+                             "because {}, and the stiffness of a joint does not follow from the net; found nothing",
+                             why));
+}
+
+const Material& material(const Scene& scene, int index) { return scene.materials[static_cast<std::size_t>(index)]; }
+
+/// Indices of the materials that the body is made of.
+std::set<int> materials_of_body(const Scene& scene) {
+    std::set<int> materials{scene.geometry.material};
+    for (const MaterialRegion& region : scene.geometry.regions) materials.insert(region.material);
+    std::erase_if(materials, [&](int m) {
+        return m < 0 || m >= static_cast<int>(scene.materials.size()) || !(material(scene, m).youngs_modulus > 0.0);
+    });
+    return materials;
+}
+
+/// k_n d of a net whose stiffness does not follow from a ratio (Pa).
+double stiffness_times_spacing(const InterfaceType& type, const GeometrySpec& geometry) {
+    if (type.normal_stiffness) return *type.normal_stiffness * lattice_spacing(geometry);
+    return type.normal_stiffness_times_spacing.value_or(0.0);
+}
+
+/// What is wrong with a ratio; "" if nothing. Rigid blocks do not bend at all: their compliance is in the interfaces.
+std::string ratio_problem(double ratio, const RatioRange& range, Kinematics kinematics) {
+    if (!(ratio > 0.0)) return {};
+    if (ratio < range.least) return "below it the joints carry most of the deformation";
+    if (ratio <= range.most || kinematics == Kinematics::rigid) return {};
+    return "above it affine blocks are too stiff in bending, and a body without strength noise fails everywhere at "
+           "once";
+}
+
+void warn_of_ratio(const SceneSection& interface, std::string_view key, double ratio, const std::string& of,
+                   const Scene& scene, ReadingContext& context) {
+    const NetKind kind = net_kind(*scene.geometry.tessellation);
+    const RatioRange range = good_stiffness_ratio(kind);
+    const std::string problem = ratio_problem(ratio, range, scene.kinematics);
+    if (!problem.empty())
+        context.warn(interface, key,
+                     fmt::format("k_n d/E is {:.3g}{}, outside the good range of a net of {}, {:g} to {:g}: {}", ratio,
+                                 of, cells_of(kind), range.least, range.most, problem));
+}
+
+void warn_of_stiffness(const SceneSection& interface, const InterfaceType& type, const Scene& scene,
+                       ReadingContext& context) {
+    if (stiffness_from_ratio(type)) {
+        const bool counts =
+            scene.kinematics == Kinematics::affine; // rigid blocks give the rock's moduli with any ratio
+        if (counts && type.stiffness_ratio)
+            warn_of_ratio(interface, "stiffness_ratio", *type.stiffness_ratio, "", scene, context);
+        return;
+    }
+    const auto* key = type.normal_stiffness ? "normal_stiffness" : "normal_stiffness_times_spacing";
+    for (const int m : materials_of_body(scene)) {
+        const Material& rock = material(scene, m);
+        warn_of_ratio(interface, key, stiffness_times_spacing(type, scene.geometry) / rock.youngs_modulus,
+                      " with the E of " + rock.name, scene, context);
+    }
+}
+
+void warn_of_locking(const SceneSection& joint, double friction_angle, const Tessellation& net,
+                     ReadingContext& context) {
+    const NetKind kind = net_kind(net);
+    if (!interlocks(kind) || friction_angle < locking_friction_angle) return;
+    constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
+    context.warn(
+        joint, "friction_angle",
+        fmt::format("{:.3g} deg lets the net lock: {} interlock, and where all their bonds have failed the loose "
+                    "cells carry load as masonry does, from some {:.0f} deg on without bound; "
+                    "geometry.tessellation.triangles does not lock",
+                    friction_angle * degrees_per_radian, cells_of(kind), locking_friction_angle * degrees_per_radian));
+}
+
+} // namespace
+
+std::set<int> require_stiffness_of_joints(const SceneSection& root, const Scene& scene, ReadingContext& context) {
+    const auto interfaces = root.sections("interfaces");
+    std::set<int> refused;
+    const auto require = [&](int type, const std::string& why) {
+        const bool lacks = type >= 0 && !gives_stiffness(interfaces[static_cast<std::size_t>(type)]);
+        if (lacks && refused.insert(type).second)
+            require_stiffness(interfaces[static_cast<std::size_t>(type)], why, context);
+    };
+    for (const FractureTrace& fracture : scene.geometry.fractures) {
+        if (fracture.interface_type < 0) continue;
+        require(fracture.interface_type,
+                fmt::format("the mapped fracture {} has this interface", in_quotes(fracture.name)));
+        require(scene.interface_types[static_cast<std::size_t>(fracture.interface_type)].fails_to,
+                fmt::format("the mapped fracture {} fails to it", in_quotes(fracture.name)));
+    }
+    return refused;
+}
+
+void warn_of_net(const SceneSection& root, const Scene& scene, ReadingContext& context) {
+    if (!scene.geometry.tessellation || scene.geometry.tessellation->interface_type < 0) return;
+    const Tessellation& net = *scene.geometry.tessellation;
+    const auto interfaces = root.sections("interfaces");
+    const auto index = static_cast<std::size_t>(net.interface_type);
+    const InterfaceType& type = scene.interface_types[index];
+    warn_of_stiffness(interfaces[index], type, scene, context);
+    if (type.kind != InterfaceKind::potential_crack || type.fails_to < 0) return;
+    const auto joint = static_cast<std::size_t>(type.fails_to);
+    warn_of_locking(interfaces[joint], scene.interface_types[joint].friction_angle, net, context);
+}
+
+} // namespace kluft
