@@ -236,6 +236,37 @@ struct Filled {
     std::vector<Kernel::Point_2> holes;
 };
 
+/// A point in each hole of the domain: in the largest triangle of each part that has no place in the map and that lines
+/// separate from infinity.
+std::vector<Kernel::Point_2> points_in_holes(const Triangulation& triangulation, const std::map<Face, int>& place) {
+    std::vector<Kernel::Point_2> points;
+    std::set<Face> seen;
+    std::vector<Face> stack;
+    for (auto first = triangulation.finite_faces_begin(); first != triangulation.finite_faces_end(); ++first) {
+        if (place.contains(first) || !seen.insert(first).second) continue;
+        bool reaches_infinity = false;
+        double largest = 0.0;
+        Vec2 inside = Vec2::Zero();
+        stack.push_back(first);
+        while (!stack.empty()) {
+            const Face face = stack.back();
+            stack.pop_back();
+            const Corners corners = corners_of(face);
+            if (corners.area() > largest) std::tie(largest, inside) = std::pair(corners.area(), corners.centroid());
+            for (int i = 0; i < 3; ++i) {
+                const Face across = face->neighbor(i);
+                if (triangulation.is_constrained({face, i})) continue;
+                if (triangulation.is_infinite(across))
+                    reaches_infinity = true;
+                else if (seen.insert(across).second)
+                    stack.push_back(across);
+            }
+        }
+        if (!reaches_infinity && largest > 0.0) points.push_back(to_cgal(inside));
+    }
+    return points;
+}
+
 Filled filled_part(const Triangulation& triangulation, const std::vector<Line>& lines, const TriangleFrame& frame) {
     struct Part {
         double in_region = 0.0; ///< area less that beyond the region
@@ -249,14 +280,12 @@ Filled filled_part(const Triangulation& triangulation, const std::vector<Line>& 
         return found == place.end() ? PlanarMap::outside : found->second;
     };
     Filled filled;
+    filled.holes = points_in_holes(triangulation, place);
     for (auto face = triangulation.finite_faces_begin(); face != triangulation.finite_faces_end(); ++face) {
         const Corners corners = corners_of(face);
         const Vec2 middle = corners.centroid();
         const int in = face_of(face);
-        if (in == PlanarMap::outside) {
-            filled.holes.push_back(to_cgal(middle));
-            continue;
-        }
+        if (in == PlanarMap::outside) continue;
         const bool in_region = frame.region.empty() || contains(frame.region, middle);
         parts[in].in_region += in_region ? corners.area() : -corners.area();
         if (corners.area() > parts[in].largest) {
