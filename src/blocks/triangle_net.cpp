@@ -494,12 +494,18 @@ std::vector<SourceSegment> triangle_edges(const TriangleNet& net, const Triangle
             circles.add(middle, 0.5 * half);
     }
     const Filled part = filled_part(triangulation, lines, frame);
-    if (part.triangles.empty()) return edges_of(triangulation, lines, frame.tessellation);
+    if (part.triangles.empty())
+        throw InputError(
+            "geometry.tessellation.region: expected a polygon that holds a part of the body, found none in it");
     for (auto v = triangulation.finite_vertices_begin(); v != triangulation.finite_vertices_end(); ++v)
         circles.add(place_of(v), 0.5 * size.at(place_of(v)));
 
     Darts darts(part.triangles, size, net.seed);
     const double missing = darts.triangles_asked_for() - static_cast<double>(part.triangles.size());
+    constexpr double most = 5e7;
+    if (missing > most)
+        refuse("grading", fmt::format("expected sides that make at most {:.0g} triangles in one scene, found {:.2g}",
+                                      most, missing));
     const int count = std::max(0, static_cast<int>(std::lround(0.5 * missing))); // each point adds two triangles
     for (const Vec2& point : scattered_points(count, darts, size, circles)) triangulation.insert(to_cgal(point));
     refine(triangulation, part.holes);

@@ -195,6 +195,28 @@ TEST(TriangleNet, StandsRandomFractures) {
     }
 }
 
+/// Two fractures 0.014 sides apart: the strip between them is no place for triangles.
+TEST(TriangleNet, MergesStripsThatAreNarrowerThanItsResolution) {
+    GeometrySpec spec = triangulated(5.0, 10.0, {.spacing = 0.7, .relaxation = 0, .seed = 1, .grading = {}});
+    add_trace(spec, {{-1, 3}, {6, 5}});
+    add_trace(spec, {{-1, 3.01}, {6, 5.01}});
+    const CutBody body = cut_blocks(spec);
+    EXPECT_EQ(faults(spec, body), "");
+    EXPECT_EQ(body.report.merged.size(), 1U);
+    EXPECT_GE(body.report.smallest_angle, smallest_triangle_angle);
+    EXPECT_LT(body.system.n_blocks(), 260);
+}
+
+TEST(TriangleNet, RefusesARegionWithoutBodyAndMoreTrianglesThanItCanMake) {
+    GeometrySpec outside = triangulated(5.0, 5.0, {.spacing = 0.5, .grading = {}});
+    outside.tessellation->region = {{10, 10}, {20, 10}, {20, 20}};
+    EXPECT_THROW((void)cut_blocks(outside), InputError);
+    TriangleNet net{.spacing = 0.5, .grading = {}};
+    net.grading.region = {{1, 1}, {2, 1}, {2, 2}};
+    net.grading.region_spacing = 1e-6;
+    EXPECT_THROW((void)cut_blocks(triangulated(5.0, 5.0, net)), InputError);
+}
+
 TEST(TriangleNet, RefusesWhatIsNoNet) {
     const auto refused = [](const TriangleNet& net, const std::string& key) {
         try {
