@@ -9,7 +9,7 @@ namespace kluft {
 
 enum class ExitCode {
     done = 0,
-    missed = 1, ///< a comparison or a validation case missed its tolerance, a case of a study failed
+    missed = 1, ///< a comparison, a validation case or a target missed its tolerance, a case of a study failed
     bad_input = 2,
     no_equilibrium = 3,
     out_of_resources = 4,
@@ -82,6 +82,16 @@ struct StudyArguments {
 };
 
 [[nodiscard]] ExitCode study(const StudyArguments& arguments);
+
+struct CalibrateArguments {
+    std::string target; ///< calibration file
+    std::string directory;
+    int jobs = 0; ///< 0: as many as there are processors
+    bool quiet = false;
+};
+
+/// Becomes kluft-calibrate, whose exit code is that of the program; returns only by an InputError.
+[[nodiscard]] ExitCode calibrate(const CalibrateArguments& arguments);
 
 struct ValidateArguments {
     std::vector<std::string> words; ///< for scripts/validate

@@ -247,6 +247,24 @@ void add_study_command(CLI::App& app, Command& command) {
     sub->callback([arguments, &command] { command = [arguments] { return kluft::study(*arguments); }; });
 }
 
+void add_calibrate_command(CLI::App& app, Command& command) {
+    auto arguments = std::make_shared<kluft::CalibrateArguments>();
+    CLI::App* sub = app.add_subcommand(
+        "calibrate", "Find the values of a scene's keys with which it shows what was measured on the rock");
+    sub->add_option("target", arguments->target, "Calibration file (YAML): a scene, parameters, targets")->required();
+    sub->add_option("-o,--output", arguments->directory, "Directory of the results (default: results/<file name>)");
+    sub->add_option("--jobs", arguments->jobs, "Runs at once (default: the number of processors)")
+        ->check(CLI::Range(1, most_threads));
+    sub->add_flag("--quiet", arguments->quiet, "No progress");
+    sub->footer(
+        "Writes calibrated.yaml, a scene; calibration.json; report.html. Runs that have ended are not run again, "
+        "so that the same command goes on after Ctrl-C.\n"
+        "Exit codes: 0 all targets within their tolerances, 1 some are not, 2 bad input, 4 out of disk or "
+        "memory, 130 interrupted.\n"
+        "Example: kluft calibrate models/calibration/intact-rock.yaml -o results/intact-rock");
+    sub->callback([arguments, &command] { command = [arguments] { return kluft::calibrate(*arguments); }; });
+}
+
 void add_validate_command(CLI::App& app, Command& command) {
     CLI::App* sub = app.add_subcommand("validate", "Run the validation suite, or some of its cases");
     sub->set_help_flag();
@@ -278,6 +296,7 @@ int main(int argc, char** argv) {
                "  kluft compare results/case-3 results/case-3-all\n"
                "  kluft envelope results/case-5-all results/case-3-all results/case-4-all results/case-6-all\n"
                "  kluft study step-size models/quickstart.yaml\n"
+               "  kluft calibrate models/calibration/intact-rock.yaml\n"
                "  kluft validate incline overturning");
     Command command;
     add_run_command(app, command);
@@ -286,6 +305,7 @@ int main(int argc, char** argv) {
     add_compare_command(app, command);
     add_envelope_command(app, command);
     add_study_command(app, command);
+    add_calibrate_command(app, command);
     add_validate_command(app, command);
     const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
     if (const std::string message = unknown_command(app, words); !message.empty()) return bad_input(message);

@@ -58,10 +58,13 @@ pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo)
 kluft_purpose(Threads "assembly and studies")
 find_package(Threads REQUIRED)
 
-set_package_properties(Ipopt PROPERTIES TYPE OPTIONAL PURPOSE "an independent method that checks the solver, in tests")
+set_package_properties(Ipopt PROPERTIES TYPE OPTIONAL
+  PURPOSE "kluft calibrate, and in tests an independent method that checks the solver")
 find_package(Ipopt)
+option(KLUFT_BUILD_CALIBRATE "Build kluft-calibrate, which links Ipopt" ${Ipopt_FOUND})
 option(KLUFT_BUILD_ORACLE "Build the tests against Ipopt (needs KLUFT_BUILD_TESTS)" ${Ipopt_FOUND})
 
+add_feature_info(calibrate KLUFT_BUILD_CALIBRATE "kluft calibrate, a program of its own with Ipopt")
 add_feature_info(oracle KLUFT_BUILD_ORACLE "the solver against Ipopt, label oracle of ctest")
 add_feature_info(tests KLUFT_BUILD_TESTS "GoogleTest, run by ctest")
 add_feature_info(benchmarks KLUFT_BUILD_BENCH "Google Benchmark, run by scripts/bench")

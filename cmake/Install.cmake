@@ -5,6 +5,10 @@ include(CMakePackageConfigHelpers)
 set(KLUFT_CONFIG_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/kluft)
 install(TARGETS kluft_cli RUNTIME)
 install(TARGETS kluft EXPORT kluftTargets)
+# For who builds Kluft; packages leave it out (docs/licences.md).
+if(KLUFT_BUILD_CALIBRATE)
+  install(TARGETS kluft_calibrate RUNTIME COMPONENT calibrate)
+endif()
 install(DIRECTORY include/kluft TYPE INCLUDE FILES_MATCHING PATTERN "*.hpp")
 install(EXPORT kluftTargets NAMESPACE kluft:: DESTINATION ${KLUFT_CONFIG_DIR})
 configure_package_config_file(cmake/kluftConfig.cmake.in ${PROJECT_BINARY_DIR}/kluftConfig.cmake
@@ -28,4 +32,6 @@ set(CPACK_DEBIAN_PACKAGE_DEPENDS libopenblas0-pthread)
 # The suite behind `kluft validate`.
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3, python3-numpy, python3-matplotlib")
 set(CPACK_STRIP_FILES ON)
+# Without the component calibrate, whose licences do not allow it to be handed on.
+set(CPACK_INSTALL_CMAKE_PROJECTS "${PROJECT_BINARY_DIR};${PROJECT_NAME};Unspecified;/")
 include(CPack)

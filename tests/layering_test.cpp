@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 const std::map<std::string, int> rank_of_layer{
     {"core", 0},    {"geometry", 1},   {"blocks", 2},      {"kinematics", 3},   {"constitutive", 4}, {"contact", 5},
     {"loading", 6}, {"assembly", 7},   {"equilibrium", 8}, {"fracture", 9},     {"simulation", 10},  {"scene", 11},
-    {"output", 11}, {"reference", 11}, {"studies", 12},    {"calibration", 12}, {"apps", 13},
+    {"output", 11}, {"reference", 11}, {"studies", 12},    {"calibration", 13}, {"apps", 14},
 };
 
 /// Which layers may include a header of another project, by the start of its name. What is not listed is free.

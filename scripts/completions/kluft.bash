@@ -2,7 +2,7 @@
 
 _kluft() {
     local word=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
-    local commands="run check draw compare envelope study validate"
+    local commands="run check draw compare envelope study calibrate validate"
     COMPREPLY=()
 
     local command="" index
@@ -38,6 +38,7 @@ _kluft() {
     compare) options+=" -o --output --tolerance" ;;
     envelope) options+=" -o --output --tension --compare --title" ;;
     study) options+=" -o --output --jobs --set --emit --collect --quantity --quiet" ;;
+    calibrate) options+=" -o --output --jobs --quiet" ;;
     validate) options+=" -o --output --jobs --list" ;;
     esac
     if [[ $word == -* ]]; then
@@ -46,7 +47,7 @@ _kluft() {
     fi
 
     case "$command" in
-    run | check | draw) _kluft_scenes "$word" ;;
+    run | check | draw | calibrate) _kluft_scenes "$word" ;;
     study)
         _kluft_scenes "$word"
         mapfile -t -O "${#COMPREPLY[@]}" COMPREPLY < <(compgen -W "step-size trade" -- "$word")

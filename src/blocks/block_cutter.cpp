@@ -330,6 +330,7 @@ MendLimits mend_limits(const GeometrySpec& spec, const LocalFrame& frame, const 
     MendLimits limits;
     limits.area = std::max(rounding_area * domain_area, spec.minimum_area * mean_cell_area(spec));
     limits.edge = resolution(spec, frame);
+    if (has_triangles(spec)) limits.width = limits.edge; // a strip would be filled with triangles as narrow as it is
     limits.rounding = 4.0 * std::numeric_limits<double>::epsilon() * frame.box.upper.norm();
     limits.first_fracture = numbers.first_fracture;
     limits.tessellation = numbers.tessellation;

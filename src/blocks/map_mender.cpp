@@ -167,13 +167,19 @@ private:
         return kept;
     }
 
+    double perimeter(int face) {
+        double length = 0.0;
+        for (const int h : map_.half_edges_of(face)) length += map_.length(h);
+        return length;
+    }
+
     bool merge_slivers() {
         using Entry = std::pair<double, int>;
         std::priority_queue<Entry, std::vector<Entry>, std::greater<>> slivers;
         const auto judge = [&](int face) {
             if (map_.half_edges_of(face).empty()) return;
             const double area = map_.area(face);
-            if (area < limits_.area) slivers.emplace(area, face);
+            if (area < limits_.area || 2.0 * area < limits_.width * perimeter(face)) slivers.emplace(area, face);
         };
         for (int f = 0; f < map_.n_faces(); ++f) judge(f);
         bool merged = false;

@@ -236,6 +236,37 @@ struct Filled {
     std::vector<Kernel::Point_2> holes;
 };
 
+/// A point in each hole of the domain: in the largest triangle of each part that has no place in the map and that lines
+/// separate from infinity.
+std::vector<Kernel::Point_2> points_in_holes(const Triangulation& triangulation, const std::map<Face, int>& place) {
+    std::vector<Kernel::Point_2> points;
+    std::set<Face> seen;
+    std::vector<Face> stack;
+    for (auto first = triangulation.finite_faces_begin(); first != triangulation.finite_faces_end(); ++first) {
+        if (place.contains(first) || !seen.insert(first).second) continue;
+        bool reaches_infinity = false;
+        double largest = 0.0;
+        Vec2 inside = Vec2::Zero();
+        stack.push_back(first);
+        while (!stack.empty()) {
+            const Face face = stack.back();
+            stack.pop_back();
+            const Corners corners = corners_of(face);
+            if (corners.area() > largest) std::tie(largest, inside) = std::pair(corners.area(), corners.centroid());
+            for (int i = 0; i < 3; ++i) {
+                const Face across = face->neighbor(i);
+                if (triangulation.is_constrained({face, i})) continue;
+                if (triangulation.is_infinite(across))
+                    reaches_infinity = true;
+                else if (seen.insert(across).second)
+                    stack.push_back(across);
+            }
+        }
+        if (!reaches_infinity && largest > 0.0) points.push_back(to_cgal(inside));
+    }
+    return points;
+}
+
 Filled filled_part(const Triangulation& triangulation, const std::vector<Line>& lines, const TriangleFrame& frame) {
     struct Part {
         double in_region = 0.0; ///< area less that beyond the region
@@ -249,14 +280,12 @@ Filled filled_part(const Triangulation& triangulation, const std::vector<Line>& 
         return found == place.end() ? PlanarMap::outside : found->second;
     };
     Filled filled;
+    filled.holes = points_in_holes(triangulation, place);
     for (auto face = triangulation.finite_faces_begin(); face != triangulation.finite_faces_end(); ++face) {
         const Corners corners = corners_of(face);
         const Vec2 middle = corners.centroid();
         const int in = face_of(face);
-        if (in == PlanarMap::outside) {
-            filled.holes.push_back(to_cgal(middle));
-            continue;
-        }
+        if (in == PlanarMap::outside) continue;
         const bool in_region = frame.region.empty() || contains(frame.region, middle);
         parts[in].in_region += in_region ? corners.area() : -corners.area();
         if (corners.area() > parts[in].largest) {
@@ -465,12 +494,18 @@ std::vector<SourceSegment> triangle_edges(const TriangleNet& net, const Triangle
             circles.add(middle, 0.5 * half);
     }
     const Filled part = filled_part(triangulation, lines, frame);
-    if (part.triangles.empty()) return edges_of(triangulation, lines, frame.tessellation);
+    if (part.triangles.empty())
+        throw InputError(
+            "geometry.tessellation.region: expected a polygon that holds a part of the body, found none in it");
     for (auto v = triangulation.finite_vertices_begin(); v != triangulation.finite_vertices_end(); ++v)
         circles.add(place_of(v), 0.5 * size.at(place_of(v)));
 
     Darts darts(part.triangles, size, net.seed);
     const double missing = darts.triangles_asked_for() - static_cast<double>(part.triangles.size());
+    constexpr double most = 5e7;
+    if (missing > most)
+        refuse("grading", fmt::format("expected sides that make at most {:.0g} triangles in one scene, found {:.2g}",
+                                      most, missing));
     const int count = std::max(0, static_cast<int>(std::lround(0.5 * missing))); // each point adds two triangles
     for (const Vec2& point : scattered_points(count, darts, size, circles)) triangulation.insert(to_cgal(point));
     refine(triangulation, part.holes);

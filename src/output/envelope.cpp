@@ -158,7 +158,10 @@ PeakPoint peak_point(const std::string& run, const std::vector<StepRecord>& equi
     if (!peak) throw InputError(run + ": no balanced equilibrium, so no peak");
     const auto numbers = curve_numbers(equilibria, {}, platen_stage, Plane::strain);
     const auto [low, high] = std::minmax(peak->lateral_stress, peak->axial_stress);
-    return {.run = run, .sigma_3 = low, .sigma_1 = high, .peak_reached = numbers.peak_reached,
+    return {.run = run,
+            .sigma_3 = low,
+            .sigma_1 = high,
+            .peak_reached = numbers.peak_reached,
             .net_locked = numbers.net_locked};
 }
 

@@ -4,8 +4,7 @@
 
 namespace kluft {
 
-SceneModel build_scene_model(const Scene& scene) {
-    CutBody body = cut_blocks(scene.geometry);
+ModelInput model_input(const Scene& scene) {
     ModelInput input;
     input.plane = scene.plane;
     input.kinematics = scene.kinematics;
@@ -17,7 +16,12 @@ SceneModel build_scene_model(const Scene& scene) {
     input.strength_noise = scene.cracks.strength_noise;
     input.loads = scene.loads;
     input.histories = scene.output.histories;
-    return {build_model(std::move(body.system), input), std::move(body.report)};
+    return input;
+}
+
+SceneModel build_scene_model(const Scene& scene) {
+    CutBody body = cut_blocks(scene.geometry);
+    return {build_model(std::move(body.system), model_input(scene)), std::move(body.report)};
 }
 
 } // namespace kluft

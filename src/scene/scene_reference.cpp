@@ -32,13 +32,14 @@ materials:
   sandstone: {density: 2300 kg/m3, youngs_modulus: 1.5 GPa, poissons_ratio: 0.25,
               cohesion: 0.15 MPa, friction_angle: 39.6 deg, tensile_strength: 0.05 MPa}
 interfaces:
-  joint: {kind: fracture, friction_angle: 25, normal_stiffness: 40 GPa/m, shear_stiffness: 20 GPa/m}
-  bond: {kind: potential_crack, fails_to: joint}
+  joint: {kind: fracture, friction_angle: 30, normal_stiffness: 40 GPa/m, shear_stiffness: 20 GPa/m}
+  crack: {kind: fracture, friction_angle: 35}
+  bond: {kind: potential_crack, fails_to: crack}
 geometry:
   domain: {rectangle: {width: 20 cm, height: 40 cm}}
   fractures:
     - {trace: [[-0.01, 0.1], [0.21, 0.3]], interface: joint}
-  tessellation: {hexagons: {spacing: 4 cm}, interface: bond}
+  tessellation: {triangles: {spacing: 4 cm}, interface: bond}
 boundaries:
   bottom: {support: smooth}
 stages:

@@ -162,7 +162,8 @@ std::vector<KeyRule> stiffness_rules() {
         {.path = "interfaces.*.stiffness_ratio",
          .type = KeyType::number,
          .range = positive,
-         .fallback_note = "10, of a net of triangles 30, where no other stiffness key is given; none on mapped fractures",
+         .fallback_note =
+             "10, of a net of triangles 30, where no other stiffness key is given; none on mapped fractures",
          .doc = "k_n d/E with E of the material. With it `youngs_modulus` and `poissons_ratio` are those of the rock: "
                 "the blocks' own moduli follow so that the tessellated body has them. Of a net of triangles 10 to 60, "
                 "of hexagons or Voronoi cells 5 to 20 is the good range, however the stiffness is given: below, the "

@@ -189,8 +189,7 @@ int add_law(int type, const InterfaceStiffness& given, const InterfaceStiffness&
 
 /// A law with the stiffness that the type has on a net, which decides what is given times the spacing or as a ratio.
 int add_law_on_net(int type, const Net& net, const LawBench& bench, Model& model) {
-    const InterfaceStiffness given =
-        resolve_stiffness(bench.input.interface_types[type], net, bench.youngs_modulus);
+    const InterfaceStiffness given = resolve_stiffness(bench.input.interface_types[type], net, bench.youngs_modulus);
     return add_law(type, given, stiffness_in_body(type, given, bench.system, bench.input, net), bench, model);
 }
 

@@ -246,8 +246,9 @@ private:
             const std::string net = "geometry.tessellation.triangles";
             add("triangle size",
                 {{net + ".spacing", {number_text(0.8 * triangles->spacing), number_text(1.25 * triangles->spacing)}}});
-            add("other triangles", {{net + ".seed", {number_text(static_cast<double>(triangles->seed) + 1.0),
-                                                     number_text(static_cast<double>(triangles->seed) + 2.0)}}});
+            add("other triangles", {{net + ".seed",
+                                     {number_text(static_cast<double>(triangles->seed) + 1.0),
+                                      number_text(static_cast<double>(triangles->seed) + 2.0)}}});
             return;
         }
         const HexagonLattice& hexagons = scene_.geometry.tessellation->hexagons;

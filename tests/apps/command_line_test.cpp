@@ -198,7 +198,7 @@ geometry:
 stages: [{name: push, pressure: {left: 1 MPa}, steps: 2}]
 )";
 
-const Words commands{"run", "check", "draw", "compare", "envelope", "study"};
+const Words commands{"run", "check", "draw", "compare", "envelope", "study", "calibrate"};
 
 // ---- help, version, mistakes ---------------------------------------------------------------------------------------
 

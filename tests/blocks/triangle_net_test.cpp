@@ -143,6 +143,31 @@ TEST(TriangleNet, IsFinerWhereTheGradingSaysSo) {
     }
 }
 
+Polygon turned(Polygon polygon, double angle, const Vec2& shift) {
+    for (Vec2& p : polygon)
+        p = Vec2(std::cos(angle) * p.x() - std::sin(angle) * p.y(), std::sin(angle) * p.x() + std::cos(angle) * p.y()) +
+            shift;
+    return polygon;
+}
+
+/// Points on sides that do not run along an axis lie beside them by the last digits, inside or outside.
+TEST(TriangleNet, FillsBodiesThatLieInAnyDirection) {
+    for (int i = 0; i < 24; ++i) {
+        const double angle = 0.13 + i * std::numbers::pi / 12.0;
+        const Vec2 shift(1000.0 * i, -300.0 * i);
+        GeometrySpec spec = triangulated(5.0, 10.0, {.spacing = 0.7, .relaxation = i % 2, .seed = 1, .grading = {}});
+        spec.domain = turned(spec.domain, angle, shift);
+        spec.holes = {turned({{1, 1}, {3, 1}, {3, 2.5}, {1, 2}}, angle, shift),
+                      turned({{2, 6}, {4, 6}, {3, 8}}, angle, shift)};
+        add_trace(spec, turned({{-1, 4}, {6, 5}}, angle, shift));
+        const CutBody body = cut_blocks(spec);
+        const double area = 50.0 - 2.5 - 2.0;
+        EXPECT_EQ(faults(spec, body), "") << i;
+        EXPECT_GE(body.report.smallest_angle, smallest_triangle_angle) << i;
+        EXPECT_NEAR(body.system.n_blocks(), area / triangle_area(0.7), 0.05 * area / triangle_area(0.7)) << i;
+    }
+}
+
 TEST(TriangleNet, StaysInItsRegion) {
     GeometrySpec spec = triangulated(5.0, 5.0, {.spacing = 0.5, .relaxation = 0, .seed = 1, .grading = {}});
     spec.tessellation->region = {{1, 1}, {4, 1}, {4, 4}, {1, 4}};
@@ -168,6 +193,28 @@ TEST(TriangleNet, StandsRandomFractures) {
         const CutBody body = cut_blocks(spec);
         EXPECT_EQ(faults(spec, body), "") << "seed " << seed;
     }
+}
+
+/// Two fractures 0.014 sides apart: the strip between them is no place for triangles.
+TEST(TriangleNet, MergesStripsThatAreNarrowerThanItsResolution) {
+    GeometrySpec spec = triangulated(5.0, 10.0, {.spacing = 0.7, .relaxation = 0, .seed = 1, .grading = {}});
+    add_trace(spec, {{-1, 3}, {6, 5}});
+    add_trace(spec, {{-1, 3.01}, {6, 5.01}});
+    const CutBody body = cut_blocks(spec);
+    EXPECT_EQ(faults(spec, body), "");
+    EXPECT_EQ(body.report.merged.size(), 1U);
+    EXPECT_GE(body.report.smallest_angle, smallest_triangle_angle);
+    EXPECT_LT(body.system.n_blocks(), 260);
+}
+
+TEST(TriangleNet, RefusesARegionWithoutBodyAndMoreTrianglesThanItCanMake) {
+    GeometrySpec outside = triangulated(5.0, 5.0, {.spacing = 0.5, .grading = {}});
+    outside.tessellation->region = {{10, 10}, {20, 10}, {20, 20}};
+    EXPECT_THROW((void)cut_blocks(outside), InputError);
+    TriangleNet net{.spacing = 0.5, .grading = {}};
+    net.grading.region = {{1, 1}, {2, 1}, {2, 2}};
+    net.grading.region_spacing = 1e-6;
+    EXPECT_THROW((void)cut_blocks(triangulated(5.0, 5.0, net)), InputError);
 }
 
 TEST(TriangleNet, RefusesWhatIsNoNet) {

@@ -170,5 +170,19 @@ TEST(NetKinds, AreToldApart) {
     EXPECT_EQ(net_kind(net), NetKind::voronoi);
 }
 
+// ---- triangles -----------------------------------------------------------------------------------------------------
+
+TEST(NetOfTriangles, DoesNotLockAndHasItsOwnRange) {
+    const auto with = [](const std::string& change) {
+        return warnings_with({"geometry.tessellation.hexagons=null", "geometry.tessellation.triangles={spacing: 0.5}",
+                              "interfaces.joint.friction_angle=40", change});
+    };
+    EXPECT_THAT(with("interfaces.bond.stiffness_ratio=30"), IsEmpty());
+    EXPECT_THAT(with("interfaces.bond.stiffness_ratio=5"),
+                ElementsAre(HasSubstr("k_n d/E is 5, outside the good range of a net of triangles, 10 to 60")));
+    EXPECT_THAT(with("analysis.kinematics=rigid"),
+                ElementsAre(HasSubstr("intact rock cut into rigid triangles fails at 72 to 81 % of its strength")));
+}
+
 } // namespace
 } // namespace kluft

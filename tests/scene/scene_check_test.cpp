@@ -270,9 +270,10 @@ INSTANTIATE_TEST_SUITE_P(
                 "which makes 2.3e+08 cells"}));
 
 TEST(SceneErrors, NetIsOfOneKind) {
-    EXPECT_THAT(errors_with({"geometry.tessellation.voronoi={spacing: 0.1}"}),
-                ElementsAre(testing::HasSubstr(
-                    "geometry.tessellation: expected one of triangles, hexagons, voronoi, found hexagons and voronoi")));
+    EXPECT_THAT(
+        errors_with({"geometry.tessellation.voronoi={spacing: 0.1}"}),
+        ElementsAre(testing::HasSubstr(
+            "geometry.tessellation: expected one of triangles, hexagons, voronoi, found hexagons and voronoi")));
     EXPECT_THAT(errors_with({"geometry.tessellation.hexagons=null"}),
                 ElementsAre(testing::HasSubstr(
                     "geometry.tessellation: expected one of triangles, hexagons, voronoi, found none of them")));
@@ -285,8 +286,7 @@ TEST(SceneErrors, TrianglesHaveTheirKeysTogether) {
     EXPECT_THAT(errors_with({"geometry.construction_lines=[{trace: [[0, 0], [1, 1]]}]"}),
                 ElementsAre(testing::HasSubstr("geometry.construction_lines: expected geometry.tessellation.triangles, "
                                                "which follow them, found none")));
-    EXPECT_THAT(errors_with({"geometry.tessellation.hexagons=null",
-                             "geometry.tessellation.triangles={spacing: 1e-7}"}),
+    EXPECT_THAT(errors_with({"geometry.tessellation.hexagons=null", "geometry.tessellation.triangles={spacing: 1e-7}"}),
                 ElementsAre(testing::HasSubstr("geometry.tessellation.triangles.spacing: expected a spacing in m that "
                                                "fits the domain, found '1e-7', which makes ")));
 }

@@ -37,7 +37,8 @@ struct CutBody {
 /// carried on to it, and edges shorter than that are collapsed to a point wherever the blocks around stay simple (a
 /// corner of the domain never moves, and its outline keeps its shape). Where no spacing is given, 1e-9 of the domain's
 /// diagonal takes the place of 0.02 d, and 1e-12 of the domain's area that of the minimum area. Blocks below the
-/// minimum area are merged across their longest tessellation edge, otherwise their longest interior edge, smallest
+/// minimum area (with triangles, whose resolution is 0.05 of their smallest side, also pieces narrower than that) are
+/// merged across their longest tessellation edge, otherwise their longest interior edge, smallest
 /// first, until none is left. Each edge of a block is a side of one interface or lies on one side of the domain.
 /// A fracture that ends inside a block does not cut it. Where material regions overlap, the last one holds.
 ///

@@ -11,6 +11,7 @@ namespace kluft {
 /// outline, those from `tessellation` on are hexagon edges.
 struct MendLimits {
     double area = 0.0;     ///< smallest face (m2)
+    double width = 0.0;    ///< smallest width of a face, twice its area over its perimeter (m)
     double edge = 0.0;     ///< smallest edge (m)
     double rounding = 0.0; ///< distance below which positions differ by rounding only (m)
     int first_fracture = 0;
@@ -27,7 +28,7 @@ struct MendReport {
 };
 
 /// Until nothing changes any more:
-/// 1. each face below `limits.area`, smallest first, is merged with the neighbour across its longest tessellation edge,
+/// 1. each face below `limits.area` or `limits.width`, smallest first, is merged with the neighbour across its longest tessellation edge,
 ///    otherwise across its longest interior edge; all edges between the two disappear;
 /// 2. each edge below `limits.edge`, shortest first, is collapsed to the end that is worth more (corner of the domain,
 ///    then its outline, then more fracture edges), otherwise to the other, if every face around stays simple and positively oriented, the

@@ -58,7 +58,7 @@ struct TriangleFrame {
 /// Lines are cut into equal pieces about as long as the side there. As many random points as the mean area asks for are
 /// thrown into the filled faces, none nearer to another than a distance that falls from 0.8 sides until all have found
 /// their place (McCool and Fiume 1992), none in the circle over a piece of a line. CGAL's constrained Delaunay
-/// triangulation joins them; its refinement (Shewchuk 1996) adds points until no triangle has an angle below
+/// triangulation joins them; its refinement (Ruppert 1995, Shewchuk 2002) adds points until no triangle has an angle below
 /// smallest_triangle_angle, and Lloyd's passes (1982) move the free points to the centroids of their Voronoi cells, more
 /// regular with each of `net.relaxation`. All is a function of the seed: predicates are exact, random numbers the same on
 /// every machine.

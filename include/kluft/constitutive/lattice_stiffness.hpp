@@ -27,7 +27,7 @@ struct InterfaceStiffness {
     double shear = 0.0;
 };
 
-inline constexpr double default_shear_ratio = 0.5;      ///< k_s/k_n
+inline constexpr double default_shear_ratio = 0.5; ///< k_s/k_n
 
 /// Plane-reduced Lame constants of a material with Young's modulus E (Pa) and Poisson's ratio nu.
 /// Throws InputError unless E > 0 and -1 < nu < 0.5.

@@ -12,6 +12,9 @@ struct SceneModel {
     CutReport cut;
 };
 
+/// What the scene says of the mechanics, for a body that has been cut already.
+[[nodiscard]] ModelInput model_input(const Scene& scene);
+
 /// Cuts the body and resolves its mechanics. Throws InputError.
 [[nodiscard]] SceneModel build_scene_model(const Scene& scene);
 

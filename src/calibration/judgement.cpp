@@ -1,0 +1,94 @@
+#include "kluft/calibration/judgement.hpp"
+
+#include <cmath>
+
+#include <Eigen/SVD>
+
+#include "kluft/studies/ensemble.hpp"
+
+namespace kluft {
+
+namespace {
+
+constexpr double confidence_level = 0.95;
+constexpr double indifferent = 1e-3; // singular value over the largest, below which a direction is not determined
+constexpr double much = 0.1;         // of a parameter in a unit direction
+constexpr double opposition = -0.5;  // cosine
+constexpr double no_gradient = 1e-9;
+
+Eigen::VectorXd root_weights(const std::vector<RowGroup>& groups, Eigen::Index n_rows) {
+    Eigen::VectorXd weights = Eigen::VectorXd::Ones(n_rows);
+    for (const RowGroup& group : groups) weights.segment(group.first, group.n).setConstant(std::sqrt(group.weight));
+    return weights;
+}
+
+} // namespace
+
+std::vector<char> determined(const Eigen::MatrixXd& jacobian) {
+    const Eigen::Index n = jacobian.cols();
+    std::vector<char> result(static_cast<std::size_t>(n), 1);
+    if (n == 0) return result;
+    Eigen::MatrixXd square = Eigen::MatrixXd::Zero(std::max(n, jacobian.rows()), n);
+    square.topRows(jacobian.rows()) = jacobian;
+    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(square, Eigen::ComputeFullV);
+    for (Eigen::Index i = 0; i < n; ++i) {
+        if (svd.singularValues()[i] > indifferent * svd.singularValues()[0]) continue;
+        for (Eigen::Index p = 0; p < n; ++p)
+            if (std::abs(svd.matrixV()(p, i)) > much) result[static_cast<std::size_t>(p)] = 0;
+    }
+    return result;
+}
+
+std::vector<std::optional<double>> confidence_of(const Eigen::MatrixXd& jacobian,
+                                                 const std::vector<Eigen::VectorXd>& copies,
+                                                 const std::vector<RowGroup>& groups) {
+    if (copies.size() < 2) return {};
+    const Eigen::VectorXd weights = root_weights(groups, jacobian.rows());
+    Eigen::JacobiSVD<Eigen::MatrixXd> svd(weights.asDiagonal() * jacobian, Eigen::ComputeThinU | Eigen::ComputeThinV);
+    svd.setThreshold(indifferent);
+    const auto n_copies = static_cast<int>(copies.size());
+    Eigen::VectorXd mean = Eigen::VectorXd::Zero(jacobian.rows());
+    for (const Eigen::VectorXd& each : copies) mean += each / n_copies;
+    Eigen::VectorXd squares = Eigen::VectorXd::Zero(jacobian.cols());
+    for (const Eigen::VectorXd& each : copies) {
+        const Eigen::VectorXd step = svd.solve(weights.cwiseProduct(each - mean));
+        squares += step.cwiseProduct(step);
+    }
+    const auto known = determined(jacobian);
+    std::vector<std::optional<double>> half_widths;
+    for (Eigen::Index p = 0; p < squares.size(); ++p) {
+        const double deviation = std::sqrt(squares[p] / (n_copies - 1));
+        half_widths.push_back(
+            known[static_cast<std::size_t>(p)]
+                ? std::optional(student_quantile(n_copies - 1, confidence_level) * deviation / std::sqrt(n_copies))
+                : std::nullopt);
+    }
+    return half_widths;
+}
+
+std::vector<std::pair<std::size_t, std::size_t>> opposing_groups(const Eigen::MatrixXd& jacobian,
+                                                                 const Eigen::VectorXd& rows,
+                                                                 const std::vector<RowGroup>& groups,
+                                                                 const std::vector<char>& at_bound) {
+    std::vector<Eigen::VectorXd> gradients;
+    std::vector<char> missed;
+    for (const RowGroup& group : groups) {
+        const Eigen::VectorXd own = rows.segment(group.first, group.n);
+        Eigen::VectorXd gradient = group.weight * jacobian.middleRows(group.first, group.n).transpose() * own;
+        for (Eigen::Index p = 0; p < gradient.size(); ++p)
+            if (at_bound[static_cast<std::size_t>(p)]) gradient[p] = 0.0;
+        gradients.push_back(std::move(gradient));
+        missed.push_back(own.norm() > 1.0 ? 1 : 0);
+    }
+    std::vector<std::pair<std::size_t, std::size_t>> pairs;
+    for (std::size_t i = 0; i < groups.size(); ++i) {
+        for (std::size_t j = i + 1; j < groups.size(); ++j) {
+            const double size = gradients[i].norm() * gradients[j].norm();
+            if (!(missed[i] || missed[j]) || size < no_gradient) continue;
+            if (gradients[i].dot(gradients[j]) < opposition * size) pairs.emplace_back(i, j);
+        }
+    }
+    return pairs;
+}
+
+} // namespace kluft
