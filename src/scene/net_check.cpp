@@ -93,7 +93,7 @@ void warn_of_locking(const SceneSection& joint, double friction_angle, const Tes
         joint, "friction_angle",
         fmt::format("{:.3g} deg lets the net lock: {} interlock, and where all their bonds have failed the loose "
                     "cells carry load as masonry does, from some {:.0f} deg on without bound; "
-                    "geometry.tessellation.triangles does not lock",
+                    "geometry.tessellation.triangles keeps the strength of the rock",
                     friction_angle * degrees_per_radian, cells_of(kind), locking_friction_angle * degrees_per_radian));
 }
 

@@ -151,7 +151,7 @@ TEST(NetOfCracks, ThatMayLockIsWarnedOf) {
         warnings_with({"interfaces.joint.friction_angle=28"}),
         ElementsAre(AllOf(StartsWith("--set interfaces.joint.friction_angle=28: interfaces.joint.friction_angle: 28 "
                                      "deg lets the net lock: hexagons interlock"),
-                          EndsWith("geometry.tessellation.triangles does not lock"))));
+                          EndsWith("geometry.tessellation.triangles keeps the strength of the rock"))));
     EXPECT_THAT(warnings_with({"interfaces.joint.friction_angle=35", "geometry.tessellation.hexagons=null",
                                "geometry.tessellation.voronoi.spacing=0.5"}),
                 ElementsAre(HasSubstr("35 deg lets the net lock: Voronoi cells interlock")));
