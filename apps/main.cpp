@@ -112,8 +112,9 @@ void add_run_command(CLI::App& app, Command& command) {
         ->check(CLI::Range(1, most_threads));
     sub->add_flag("--quiet", arguments->quiet, "No progress and no closing line");
     sub->add_flag("--resume", arguments->resume, "Go on from the state saved in the directory");
-    sub->footer("Exit codes: 0 done, 2 bad input, 3 no equilibrium, 4 out of disk or memory, 130 interrupted.\n"
-                "Example: kluft run models/triaxial/case-3-all.yaml --set geometry.tessellation.hexagons.spacing=0.03");
+    sub->footer(
+        "Exit codes: 0 done, 2 bad input, 3 no equilibrium, 4 out of disk or memory, 130 interrupted.\n"
+        "Example: kluft run models/triaxial/case-3-all.yaml --set geometry.tessellation.triangles.spacing=0.05");
     sub->callback([arguments, &command] { command = [arguments] { return kluft::run(*arguments); }; });
 }
 

@@ -180,7 +180,8 @@ class Job:
 
     def __init__(self, spacing):
         self.spacing = spacing
-        common = [*hexagons(spacing), "cracks.update=all", "stages.1.steps=100", "stages.1.strain.value=2 %"]
+        common = ["geometry.tessellation.triangles=null", *hexagons(spacing), "geometry.tessellation.hexagons.rotation=20",
+                  "cracks.update=all", "stages.1.steps=100", "stages.1.strain.value=2 %"]
         self.summaries = {"true": [], "false": []}
         for i in range(JOB_REPETITIONS):
             for reuse, summaries in self.summaries.items():

@@ -306,17 +306,14 @@ protected:
     }
 };
 
-/// The published tests have k_n d = 200 MPa and E = 1500 MPa.
-TEST_P(Models, AreValidAndOfNothingButTheSoftNetOfThePublishedTestsIsWarned) {
-    EXPECT_THAT(read().warnings, testing::Each(HasSubstr("k_n d/E is 0.133 with the E of sandstone")));
-}
+TEST_P(Models, AreValidWithoutAWarning) { EXPECT_THAT(read().warnings, IsEmpty()); }
 
 INSTANTIATE_TEST_SUITE_P(All, Models,
-                         testing::Values("quickstart", "outcrop-kb7", "triaxial/base", "triaxial/model-b",
-                                         "triaxial/model-c", "triaxial/model-c-all", "triaxial/case-1",
-                                         "triaxial/case-2", "triaxial/case-3", "triaxial/case-3-all", "triaxial/case-4",
-                                         "triaxial/case-4-all", "triaxial/case-5", "triaxial/case-5-all",
-                                         "triaxial/case-6", "triaxial/case-6-all"),
+                         testing::Values("quickstart", "outcrop-kb7", "calibration/intact", "triaxial/base",
+                                         "triaxial/model-b", "triaxial/model-c", "triaxial/model-c-all",
+                                         "triaxial/case-1", "triaxial/case-2", "triaxial/case-3", "triaxial/case-3-all",
+                                         "triaxial/case-4", "triaxial/case-4-all", "triaxial/case-5",
+                                         "triaxial/case-5-all", "triaxial/case-6", "triaxial/case-6-all"),
                          [](const auto& model) {
                              std::string name = model.param;
                              for (char& c : name)
@@ -328,10 +325,10 @@ Scene triaxial(const std::string& name) { return read_scene(KLUFT_SOURCE_DIR "/m
 
 TEST(TriaxialModels, EveryCaseHasAPressureStageAndAPlatenStage) {
     const std::pair<const char*, std::pair<double, double>> cases[] = {
-        {"case-1", {0.2e6, 0.025}},     {"case-2", {0.2e6, 0.025}},     {"case-3", {0.2e6, 0.025}},
-        {"case-4", {0.55e6, 0.04}},     {"case-5", {0.0, 0.025}},       {"case-6", {1.0e6, 0.055}},
-        {"case-3-all", {0.2e6, 0.025}}, {"case-4-all", {0.55e6, 0.04}}, {"case-5-all", {0.0, 0.025}},
-        {"case-6-all", {1.0e6, 0.055}}};
+        {"case-1", {0.2e6, 0.035}},     {"case-2", {0.2e6, 0.035}},     {"case-3", {0.2e6, 0.035}},
+        {"case-4", {0.55e6, 0.05}},     {"case-5", {0.0, 0.025}},       {"case-6", {1.0e6, 0.075}},
+        {"case-3-all", {0.2e6, 0.035}}, {"case-4-all", {0.55e6, 0.05}}, {"case-5-all", {0.0, 0.025}},
+        {"case-6-all", {1.0e6, 0.075}}};
     for (const auto& [name, expected] : cases) {
         const auto& [pressure, strain] = expected;
         const Scene scene = triaxial(name);

@@ -56,7 +56,14 @@ TEST(TradeStudy, CrossesStepCountsWithCrackUpdatesAndVariesTheRestOneAtATime) {
     }
     EXPECT_EQ(values_of(variant_of(study, "residual tolerance"), "solver.tolerance"),
               (std::vector<std::string>{"1e-3", "1e-4", "1e-6", "1e-7"})); // 1e-5 is the scene's own
-    EXPECT_EQ(values_of(variant_of(study, "hexagon size"), "geometry.tessellation.hexagons.spacing"),
+    EXPECT_EQ(values_of(variant_of(study, "triangle size"), "geometry.tessellation.triangles.spacing"),
+              (std::vector<std::string>{"0.052", "0.08125"}));
+    EXPECT_EQ(values_of(variant_of(study, "other triangles"), "geometry.tessellation.triangles.seed"),
+              (std::vector<std::string>{"2", "3"}));
+    const YAML::Node hexagons =
+        study_of(triaxial_scene("case-3-all", {"geometry.tessellation.triangles=null",
+                                               "geometry.tessellation.hexagons={spacing: 0.05, rotation: 20}"}));
+    EXPECT_EQ(values_of(variant_of(hexagons, "hexagon size"), "geometry.tessellation.hexagons.spacing"),
               (std::vector<std::string>{"0.04", "0.0625"}));
     EXPECT_EQ(study["reference"]["case"]["variant"].as<std::string>(), "reference");
     EXPECT_EQ(study["along"].as<std::string>(), "stages.1.steps");

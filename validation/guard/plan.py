@@ -36,7 +36,7 @@ CRACKS = {
     "few-iterations": {"solver.max_iterations": 3},
     "plane-stress": {"analysis.plane": "stress"},
     "rough": {"stages.1.platens": "rough"},
-    "voronoi": {"geometry.tessellation.hexagons": None, "geometry.tessellation.voronoi.spacing": 0.05},
+    "voronoi": {"geometry.tessellation.triangles": None, "geometry.tessellation.voronoi.spacing": 0.05},
     "all-accuracy": {"cracks.update": "all", "solver.accuracy": 0.02},
 }
 
