@@ -184,6 +184,18 @@ private:
 
     [[nodiscard]] double objective(std::size_t i) const { return squares(problem_.groups, rows_[i]); }
 
+    [[nodiscard]] bool was_tried(const Eigen::VectorXd& x) const {
+        return std::ranges::any_of(result_.all, [&](const Evaluation& each) {
+            return (each.x - x).lpNorm<Eigen::Infinity>() < shortest_step;
+        });
+    }
+
+    /// A place on the way from the best one that was not tried: half as far until there is one.
+    [[nodiscard]] Eigen::VectorXd untried(Eigen::VectorXd place) const {
+        while (was_tried(place) && (place - best_x()).norm() > shortest_step) place = 0.5 * (place + best_x());
+        return place;
+    }
+
     /// Places that would tell the slopes in directions of which the evaluations near the best say little.
     [[nodiscard]] std::vector<Eigen::VectorXd> directions() const {
         const auto chosen = near(result_.all, best_x(), radius_);
@@ -198,9 +210,13 @@ private:
             const Eigen::VectorXd there = inside(svd.matrixV().col(i));
             const Eigen::VectorXd back = inside(-svd.matrixV().col(i));
             const bool is_there_longer = (there - best_x()).norm() >= (back - best_x()).norm();
-            places.push_back(is_there_longer ? there : back);
-            if (is_at_start() && n_left() > static_cast<int>(places.size()))
-                places.push_back(is_there_longer ? back : there);
+            const Eigen::VectorXd& longer = is_there_longer ? there : back;
+            const Eigen::VectorXd& shorter = is_there_longer ? back : there;
+            const bool turns = was_tried(longer) && !was_tried(shorter);
+            const Eigen::VectorXd place = turns ? shorter : untried(longer);
+            if ((place - best_x()).norm() <= shortest_step) continue;
+            places.push_back(place);
+            if (is_at_start() && n_left() > static_cast<int>(places.size())) places.push_back(shorter);
         }
         return places;
     }
@@ -252,6 +268,10 @@ private:
         const double promised = before->values.squaredNorm() - found.residuals.values.squaredNorm();
         const double length = (found.x - from).lpNorm<Eigen::Infinity>();
         if (promised < least_gain * objective(*best_) || length < shortest_step) return retry(SearchEnding::minimum);
+        if (was_tried(found.x)) { // and was no better: the region must become smaller than the way there
+            radius_ = std::min(radius_, length);
+            return retry(SearchEnding::minimum);
+        }
         const double old = objective(*best_);
         const std::size_t n_before = result_.all.size();
         if (!evaluate({found.x})) return false;

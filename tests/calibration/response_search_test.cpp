@@ -66,6 +66,25 @@ TEST(ResponseSearch, FindsTheParametersWithoutNoise) {
     EXPECT_LT(synthetic.evaluations, 20);
 }
 
+// Runs near the answer show no peak: what was tried in vain is not tried again.
+TEST(ResponseSearch, TriesNoPlaceTwice) {
+    Synthetic synthetic;
+    SearchProblem problem = synthetic.problem();
+    const auto evaluate = problem.evaluate;
+    std::vector<Eigen::VectorXd> tried;
+    problem.evaluate = [&](const std::vector<Eigen::VectorXd>& places) {
+        auto found = evaluate(places);
+        for (Evaluation& one : *found) {
+            one.is_usable = one.x[1] < std::log(0.6); // the answer is at 0.7
+            tried.push_back(one.x);
+        }
+        return found;
+    };
+    (void)search_responses(problem, {});
+    for (std::size_t i = 0; i < tried.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j) EXPECT_GT((tried[i] - tried[j]).norm(), 1e-9) << i << " " << j;
+}
+
 // With 2 % of noise the mean of four copies scatters by 1 %, half the tolerance.
 TEST(ResponseSearch, FindsTheParametersThroughNoise) {
     Synthetic synthetic{.noise = 0.02};
