@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 #include <gmp.h>
 
+#include "blas_kernels.hpp"
 #include "commands.hpp"
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/core/nearest_name.hpp"
@@ -284,6 +285,7 @@ void load_unwinder() {
 } // namespace
 
 int main(int argc, char** argv) {
+    kluft::choose_blas_kernels(argv);
     mp_set_memory_functions(gmp_allocate, gmp_reallocate, nullptr);
     load_unwinder();
     CLI::App app{"Kluft: strength of fractured rock by the implicit expanded distinct element method"};

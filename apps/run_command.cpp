@@ -157,7 +157,7 @@ ExitCode simulate(const Model& model, const Scene& scene, State& state, RunWrite
     RunSummary summary;
     try {
         summary = writer.finish({report, unknowns_per_block(model.kinematics) * model.system.n_blocks(),
-                                 earlier_cpu + processor_seconds(), std::string(version())},
+                                 earlier_cpu + processor_seconds(), std::string(version()), blas_core()},
                                 state, [&] { return fields_of_state(model, state); });
     } catch (const ResourceError& error) {
         log.error(error.what());

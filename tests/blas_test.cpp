@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "kluft/assembly/blas.hpp"
+
 namespace kluft {
 namespace {
 
@@ -19,6 +21,14 @@ TEST(Blas, ThatTheFactorizationCallsIsOpenBlas) {
         ASSERT_NE(dladdr(symbol, &found), 0) << name;
         EXPECT_THAT(found.dli_fname, testing::HasSubstr("openblas")) << name;
     }
+}
+
+// Kernels for another processor than this one may compute nonsense; the loops that they are held against are the test's oracle.
+TEST(Blas, ComputesAsPlainLoopsDo) { EXPECT_TRUE(blas_computes_rightly()); }
+
+TEST(Blas, WiderKernelsAreOthersThanThoseInUse) {
+    EXPECT_FALSE(blas_core().empty());
+    EXPECT_NE(wider_blas_core(), blas_core());
 }
 
 } // namespace

@@ -202,6 +202,7 @@ RunSummary RunWriter::summary_of(const RunOutcome& outcome) const {
     summary.cpu_s = outcome.cpu_s;
     summary.peak_memory_bytes = peak_memory_bytes();
     summary.version = outcome.version;
+    summary.blas_core = outcome.blas_core;
     summary.message = outcome.report.diagnosis.empty() ? outcome.report.remark : outcome.report.diagnosis;
     summary.results = outcome.report.results;
     summary.falling = outcome.report.falling;

@@ -220,6 +220,7 @@ RunSummary summary_in(const Json& json) {
     if (json.contains("cpu_s")) summary.cpu_s = optional_number(json, "cpu_s").value_or(0.0);
     json.at("peak_memory_bytes").get_to(summary.peak_memory_bytes);
     json.at("version").get_to(summary.version);
+    summary.blas_core = json.value("blas_core", ""); // an earlier version does not say
     for (const Json& each : json.value("falling_blocks", Json::array())) {
         const Json& direction = each.at("direction");
         summary.falling.push_back(
@@ -349,6 +350,7 @@ std::string summary_json(const RunSummary& summary) {
                                           {"turn", each.turn}});
     json["platen_stage"] = summary.platen_stage ? Json(*summary.platen_stage) : Json(nullptr);
     json["version"] = summary.version;
+    json["blas_core"] = summary.blas_core;
     json["message"] = summary.message;
     json["seconds"] = Json::object();
     visit_seconds(summary.costs.seconds,

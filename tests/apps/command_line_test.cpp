@@ -460,6 +460,27 @@ TEST_F(CommandLine, QuietRunSaysNothing) {
     EXPECT_THAT(result.out + result.err, IsEmpty());
 }
 
+// OpenBLAS takes "Prescott" for a processor that it does not know; given by the user it stays, found by the BLAS it does not.
+TEST_F(CommandLine, KernelsOfTheBlasThatTheUserChoseStay) {
+    write("scene.yaml", tiny_scene);
+    setenv("OPENBLAS_CORETYPE", "Prescott", 1);
+    const int code = kluft({"run", "scene.yaml", "-o", "run", "--quiet"}).code;
+    unsetenv("OPENBLAS_CORETYPE");
+    ASSERT_EQ(code, 0);
+    EXPECT_EQ(summary("run").at("blas_core"), "Prescott");
+}
+
+TEST_F(CommandLine, KernelsOfTheBlasThatComputeRightlyAreUsedInASecondStart) {
+    write("scene.yaml", tiny_scene);
+    setenv("OPENBLAS_CORETYPE", "Prescott", 1);
+    setenv("KLUFT_OWN_BLAS_CORE", "Prescott", 1); // as the first start leaves it
+    const int code = kluft({"run", "scene.yaml", "-o", "run", "--quiet"}).code;
+    unsetenv("OPENBLAS_CORETYPE");
+    unsetenv("KLUFT_OWN_BLAS_CORE");
+    ASSERT_EQ(code, 0);
+    EXPECT_EQ(summary("run").at("blas_core"), "Prescott");
+}
+
 TEST_F(CommandLine, OverrideTakesEffectAndIsLogged) {
     write("tiny.yaml", tiny_scene);
     ASSERT_EQ(kluft({"run", "tiny.yaml", "-o", "r", "--set", "stages.1.steps=3", "--set", "title=Other"}).code, 0);

@@ -57,6 +57,7 @@ public:
         outcome.report.status = status;
         outcome.report.costs.factorizations = 17;
         outcome.version = "0.1.0";
+        outcome.blas_core = "Haswell";
         outcome.unknowns = 6 * system_.n_blocks();
         return writer_.finish(outcome, state_, fields());
     }

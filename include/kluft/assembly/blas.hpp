@@ -1,6 +1,8 @@
 // The few routines of the BLAS that Kluft calls itself, on matrices stored by columns.
 #pragma once
 
+#include <string>
+
 namespace kluft {
 
 /// X := L^-1 X with the lower triangle L (n x n, leading dimension ldl); X has n rows and `width` columns.
@@ -19,5 +21,16 @@ void prepare_blas();
 
 /// Number of threads of the BLAS (OpenBLAS) for the whole process.
 void set_blas_threads(int n_threads);
+
+/// The processor for which the kernels in use were written, by OpenBLAS's name, e.g. "Haswell".
+[[nodiscard]] std::string blas_core();
+
+/// The core of OpenBLAS whose kernels use the vectors of this processor, where those in use do not; "" where they do. OpenBLAS
+/// chooses its kernels when it is loaded, and takes old ones for a processor that is younger than itself; another choice
+/// needs OPENBLAS_CORETYPE in the environment of a new start.
+[[nodiscard]] std::string wider_blas_core();
+
+/// True if products and triangular solutions agree with plain loops up to round-off, for matrices of several sizes.
+[[nodiscard]] bool blas_computes_rightly();
 
 } // namespace kluft

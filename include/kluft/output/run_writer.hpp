@@ -41,6 +41,7 @@ struct RunOutcome {
     int unknowns = 0;
     double cpu_s = 0.0; ///< processor time, also of the runs that it goes on from
     std::string version;
+    std::string blas_core; ///< as in the summary
 };
 
 /// Writes history.csv, equilibria.csv, cracks.csv and histories.csv row by row, field files, state.h5 at checkpoints, and at the end

@@ -79,7 +79,8 @@ struct RunSummary {
     double cpu_s = 0.0; ///< processor time of all threads, in the system included
     std::int64_t peak_memory_bytes = 0;
     std::string version;
-    std::string message; ///< why the run ended, if not with the last load step
+    std::string blas_core; ///< the processor for which the BLAS's kernels in use were written, by its name of it
+    std::string message;   ///< why the run ended, if not with the last load step
     RunResults results;
     std::vector<FallingBlock> falling;  ///< blocks that move where the run has ended
     std::optional<MotionReport> motion; ///< of an explicit run
