@@ -64,21 +64,23 @@ void EquilibriumEvaluator::add_mass_forces(const Eigen::VectorXd& q, Eigen::Vect
     }
 }
 
-double viscous_force(const EquilibriumProblem& problem, const Eigen::VectorXd& q) {
-    if (problem.eta.empty()) return 0.0;
-    double sum = 0.0;
+ViscousForce viscous_force(const EquilibriumProblem& problem, const Eigen::VectorXd& q) {
+    ViscousForce result;
+    if (problem.eta.empty()) return result;
+    double sum_of_squares = 0.0;
     for (int b = 0; b < problem.body.system->n_blocks(); ++b) {
         const Vec6 moved = q.segment<n_block_unknowns>(n_block_unknowns * b) -
                            problem.start.segment<n_block_unknowns>(n_block_unknowns * b);
         const Block& block = problem.body.system->blocks[b];
-        if (problem.body.kinematics == Kinematics::rigid) {
-            const Vec6 force = problem.eta[b] * (mass_matrix(block, problem.least_mass_area) * moved);
-            sum += (rigid_motion(q, b, block.size).transpose() * force).squaredNorm();
-            continue;
-        }
-        sum += (problem.eta[b] * mass_matrix(block, problem.least_mass_area) * moved).squaredNorm();
+        const Vec6 force = problem.eta[b] * (mass_matrix(block, problem.least_mass_area) * moved);
+        const double squared = problem.body.kinematics == Kinematics::rigid
+                                   ? (rigid_motion(q, b, block.size).transpose() * force).squaredNorm()
+                                   : force.squaredNorm();
+        sum_of_squares += squared;
+        result.sum += std::sqrt(squared);
     }
-    return std::sqrt(sum);
+    result.norm = std::sqrt(sum_of_squares);
+    return result;
 }
 
 // ---- its derivative ----------------------------------------------------------------------------------------------------

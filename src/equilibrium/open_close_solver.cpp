@@ -206,7 +206,8 @@ private:
     }
     [[nodiscard]] bool is_relaxed(const EquilibriumProblem& problem, const Eigen::VectorXd& q,
                                   const Iterate& at) const {
-        return relaxes_ && at.held && summary_.iterations > 0 && at.norm <= relaxed_share_ * viscous_force(problem, q);
+        return relaxes_ && at.held && summary_.iterations > 0 &&
+               at.norm <= relaxed_share_ * viscous_force(problem, q).norm;
     }
 
     OpenCloseSummary& summary_;

@@ -27,9 +27,9 @@ OpenCloseOptions open_close_options(const SolverOptions& solver) {
     return options;
 }
 
-/// |eta M (q - q_start)|/F_ref (docs/theory.md, balance).
+/// Sum of |eta M (q - q_start)| over the blocks, over F_ref (27b).
 double viscous_share(const EquilibriumProblem& problem, const Eigen::VectorXd& q, double force_scale) {
-    const double force = viscous_force(problem, q);
+    const double force = viscous_force(problem, q).sum;
     return force > 0.0 ? force / std::max(force_scale, 1e-300) : 0.0;
 }
 

@@ -90,7 +90,7 @@ PosedStep::Solution PosedStep::solve_by_open_close(double tolerance, double bala
         ++solution.rounds;
         solution.iterations += summary.iterations;
         solution.residual_ratio = summary.residual_ratio;
-        solution.viscous_share = viscous_force(problem_, solution.q) / std::max(summary.force_scale, 1e-300);
+        solution.viscous_share = viscous_force(problem_, solution.q).sum / std::max(summary.force_scale, 1e-300);
         solution.converged = summary.converged() && solution.viscous_share <= balance;
         if (!summary.converged()) break;
     } while (!solution.converged && solution.rounds < max_rounds);

@@ -68,8 +68,12 @@ private:
 /// more than 20 times its own.
 [[nodiscard]] Mat6 mass_matrix(const Block& block, double least_area);
 
-/// The norm of eta M (q - q_start) (N/m).
-[[nodiscard]] double viscous_force(const EquilibriumProblem& problem, const Eigen::VectorXd& q);
+/// The size of eta M (q - q_start) (N/m).
+struct ViscousForce {
+    double norm = 0.0; ///< of all unknowns
+    double sum = 0.0;  ///< of the norms on the blocks: no part of the body is out of balance by more
+};
+[[nodiscard]] ViscousForce viscous_force(const EquilibriumProblem& problem, const Eigen::VectorXd& q);
 
 /// The positive definite part of a contact point's tangent: a sliding point has no shear stiffness.
 [[nodiscard]] Mat2 symmetric_tangent(const PointTraction& traction);

@@ -47,7 +47,7 @@ struct StepRecord {
     int locked = 0;
     int open_close_iterations = 0; ///< linear solves of this step, everything included
     int crack_passes = 0;
-    double unbalanced_ratio = 0.0; ///< of the mass-like term in F_ref
+    double unbalanced_ratio = 0.0; ///< of the mass-like term in F_ref, (27b)
     double balance_error = 0.0;    ///< largest share left over on a block or group (docs/theory.md, (27))
     int jumps = 0;                 ///< so far
     double net_broken = 0.0;       ///< share of the net's bonds in the middle half of the body that have failed
