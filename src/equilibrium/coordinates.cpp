@@ -22,13 +22,13 @@ void Coordinates::move(const Eigen::VectorXd& q, const Eigen::VectorXd& incremen
 }
 
 /// Of a rigid block dD = dw R W, and |R W| is the square root of 2.
+double Coordinates::distortion(const Eigen::VectorXd& increment, int b) const {
+    if (are_rigid()) return std::sqrt(2.0) * std::abs(increment[n_rigid_unknowns * b + 2]);
+    return increment.segment<n_block_unknowns>(n_block_unknowns * b).tail<4>().norm();
+}
+
 double Coordinates::motion(const Eigen::VectorXd& increment, int b) const {
-    if (are_rigid()) {
-        const auto block = increment.segment<n_rigid_unknowns>(n_rigid_unknowns * b);
-        return std::max(block.head<2>().norm(), std::sqrt(2.0) * std::abs(block[2]));
-    }
-    const auto block = increment.segment<n_block_unknowns>(n_block_unknowns * b);
-    return std::max(block.head<2>().norm(), block.tail<4>().norm());
+    return std::max(increment.segment<2>(per_block() * b).norm(), distortion(increment, b));
 }
 
 double Coordinates::squared_norm(const Eigen::VectorXd& v, int b) const {

@@ -5,6 +5,7 @@
 
 #include "kluft/core/stopwatch.hpp"
 #include "kluft/equilibrium/boundary_terms.hpp"
+#include "kluft/equilibrium/motion_limit.hpp"
 
 namespace kluft {
 
@@ -89,16 +90,12 @@ bool NewtonIncrement::solve_refined(const NewtonPoint& at) {
 
 /// Scales the increment by one factor for all blocks: it stays Newton's direction.
 void NewtonIncrement::limit_motions(const NewtonPoint& at) {
-    const BlockSystem& system = *at.evaluator.problem().body.system;
-    double largest = 0.0; // over its limit
     limited_.clear();
-    for (int b = 0; b < system.n_blocks(); ++b) {
-        const double limit = options_.motion_limit * motion_scale(system, system.blocks[b]);
-        const double motion = at.evaluator.coordinates().motion(increment_, b) / limit;
-        if (motion > 1.0) limited_.push_back(b);
-        largest = std::max(largest, motion);
-    }
-    if (largest > 1.0) increment_ /= largest;
+    const std::vector<double> over = motions_over_limit(at.evaluator.problem(), at.evaluator.coordinates(), at.q,
+                                                        increment_, options_.motion_limit); // (28a)
+    for (int b = 0; b < static_cast<int>(over.size()); ++b)
+        if (over[b] > 1.0) limited_.push_back(b);
+    if (!limited_.empty()) increment_ /= *std::ranges::max_element(over);
 }
 
 bool NewtonIncrement::find(const NewtonPoint& at, TangentKind kind) {

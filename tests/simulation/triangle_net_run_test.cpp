@@ -157,5 +157,28 @@ TEST(TriangleNetRun, MassLikeTermDoesNotStiffenABodyThatNothingHoldsSideways) {
     EXPECT_NEAR(axial_modulus_of(run), axial_modulus_of(without), 2e-4 * axial_modulus_of(without));
 }
 
+// A fine net hangs together: the platen moves by a sixth of a triangle's side, and no two neighbours part. Newton's method
+// needs two or three iterations for an elastic body however fine its net is.
+TEST(TriangleNetRun, ElasticStepOfAFineNetTakesFewIterations) {
+    for (const double spacing : {0.2, 0.05}) {
+        const auto run = run_scene(fmt::format(R"(
+kluft: 1
+materials: {{rock: {{density: 2500, youngs_modulus: 10 GPa, poissons_ratio: 0.2, cohesion: 800 MPa, friction_angle: 40,
+           tensile_strength: 250 MPa}}}}
+interfaces:
+  bond: {{kind: potential_crack, fails_to: crack}}
+  crack: {{kind: fracture, friction_angle: 30}}
+geometry:
+  domain: {{rectangle: {{width: 1, height: 2}}}}
+  tessellation: {{triangles: {{spacing: {}}}, interface: bond}}
+boundaries: {{bottom: {{support: pinned}}}}
+stages: [{{strain: {{boundary: top, value: 0.4 %}}, steps: 1}}]
+)",
+                                               spacing));
+        ASSERT_TRUE(stands(run)) << run.report.diagnosis;
+        EXPECT_LE(run.report.costs.open_close_iterations, 4) << spacing;
+    }
+}
+
 } // namespace
 } // namespace kluft

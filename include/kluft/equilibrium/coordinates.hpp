@@ -24,6 +24,8 @@ public:
     /// Moves q by s times an increment of the unknowns; rotations of rigid blocks add up exactly. `moved` may be q
     /// itself.
     void move(const Eigen::VectorXd& q, const Eigen::VectorXd& increment, double s, Eigen::VectorXd& moved) const;
+    /// |dD| of block `b` in an increment of the unknowns: how far it turns and is strained, times its size (m).
+    [[nodiscard]] double distortion(const Eigen::VectorXd& increment, int b) const;
     /// The larger of |du| and |dD| of block `b` in an increment of the unknowns (m).
     [[nodiscard]] double motion(const Eigen::VectorXd& increment, int b) const;
     /// The square of the norm of block `b`'s part of a vector over the unknowns.

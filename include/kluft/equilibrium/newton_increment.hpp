@@ -27,9 +27,8 @@ struct NewtonPoint {
 };
 
 struct NewtonOptions {
-    bool reuse = true; ///< of the factor; false: the tangent itself is factorized anew
-    double motion_limit =
-        0.04; ///< largest change of a block's u or D, relative to d, and to 4 times the d of hexagons of its size
+    bool reuse = true;          ///< of the factor; false: the tangent itself is factorized anew
+    double motion_limit = 0.04; ///< largest relative motion of neighbours, and distortion, of the motion_scale (28a)
 };
 
 /// Finds increments one after the other, and keeps the factor in between.

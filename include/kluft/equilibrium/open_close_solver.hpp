@@ -17,7 +17,7 @@ struct OpenCloseOptions {
     int max_iterations = 12; ///< linear solves per attempt: give up early, a relaxation is cheaper (measured)
     TangentKind tangent = TangentKind::exact;
     bool reuse = true; ///< of the factor from one linear solve to the next; false: the exact tangent is factorized anew
-    double motion_limit = 0.04; ///< largest change of a block's u or D per iteration, relative to the lattice spacing
+    double motion_limit = 0.04; ///< largest relative motion per iteration, of the lattice spacing (28a)
 };
 
 enum class Aim {
