@@ -193,12 +193,10 @@ double resolution(const GeometrySpec& spec, const LocalFrame& frame) {
 
 std::vector<SourceTrace> local_traces(const GeometrySpec& spec, const LocalFrame& frame, const SourceNumbers& numbers) {
     std::vector<SourceTrace> traces;
-    int source = numbers.first_fracture;
     for (const FractureTrace& fracture : spec.fractures) {
-        for (auto& part : parts_near(frame.box, frame.to_local(fracture.points)))
-            traces.push_back(
-                {has_triangles(spec) ? simplified(part, resolution(spec, frame)) : std::move(part), source});
-        ++source;
+        const std::vector<Vec2> points = frame.to_local(fracture.points);
+        traces.push_back({has_triangles(spec) ? simplified(points, resolution(spec, frame)) : points,
+                          numbers.first_fracture + static_cast<int>(traces.size())});
     }
     return traces;
 }
@@ -565,22 +563,6 @@ void grade(BlockSystem& system, const TriangleSize& size) {
     }
 }
 
-/// Fractures of which no interface is left, although their box meets that of the domain.
-std::vector<int> lost_fractures(const GeometrySpec& spec, const BlockSystem& system) {
-    std::vector<char> is_there(spec.fractures.size(), 0);
-    for (const Interface& interface : system.interfaces)
-        if (interface.fracture >= 0) is_there[interface.fracture] = 1;
-    const Box domain = bounding_box(spec.domain);
-    std::vector<int> lost;
-    for (int i = 0; i < static_cast<int>(spec.fractures.size()); ++i) {
-        const Box trace = bounding_box(spec.fractures[i].points);
-        const bool outside =
-            (trace.lower.array() > domain.upper.array()).any() || (trace.upper.array() < domain.lower.array()).any();
-        if (is_there[i] == 0 && !outside) lost.push_back(i);
-    }
-    return lost;
-}
-
 PlanarMap filled_with_triangles(const GeometrySpec& spec, const LocalFrame& frame, const SourceNumbers& numbers,
                                 PlanarMap map, const std::vector<SourceSegment>& free) {
     TriangleFrame lines;
@@ -604,14 +586,13 @@ CutBody cut(const GeometrySpec& spec) {
     body.report.joined_ends = cuts.joined_ends;
     PlanarMap map = arrange(cuts.segments);
     take_outside_away(map, numbers);
-    std::vector<SourceSegment> free = has_triangles(spec) ? free_pieces(map) : std::vector<SourceSegment>{};
+    const std::vector<SourceSegment> free = has_triangles(spec) ? free_pieces(map) : std::vector<SourceSegment>{};
     body.report.pruned_ends = count_free_pieces(map, numbers, 2.0 * resolution(spec, frame));
     map.remove_edges_inside_faces();
 
     MendReport mended = mend(map, mend_limits(spec, frame, numbers));
     check_faces(map, frame);
     if (has_triangles(spec)) {
-        free.insert(free.end(), mended.freed.begin(), mended.freed.end());
         map = filled_with_triangles(spec, frame, numbers, std::move(map), free);
         body.report.pruned_ends = count_free_pieces(map, numbers, 2.0 * resolution(spec, frame));
         map.remove_edges_inside_faces();
@@ -622,8 +603,6 @@ CutBody cut(const GeometrySpec& spec) {
     body.system = SystemBuilder(spec, frame, numbers, map).build();
     if (has_triangles(spec)) grade(body.system, side_of_triangles(spec, frame, numbers));
     form_sets(spec, body.system);
-    body.report.lost_fractures = lost_fractures(spec, body.system);
-    body.report.resolution = resolution(spec, frame);
     return body;
 }
 

@@ -83,57 +83,7 @@ std::optional<SourceSegment> bridge(const std::vector<Vec2>& points, int source,
     return SourceSegment{p, *across, source};
 }
 
-/// The shares of ab between which it lies in the box (Liang and Barsky); nothing where it misses it.
-std::optional<std::pair<double, double>> shares_inside(const Box& box, const Vec2& a, const Vec2& b) {
-    double first = 0.0;
-    double last = 1.0;
-    for (int i = 0; i < 2; ++i) {
-        const double way = b[i] - a[i];
-        if (way == 0.0) {
-            if (a[i] < box.lower[i] || a[i] > box.upper[i]) return std::nullopt;
-            continue;
-        }
-        const double at_lower = (box.lower[i] - a[i]) / way;
-        const double at_upper = (box.upper[i] - a[i]) / way;
-        first = std::max(first, std::min(at_lower, at_upper));
-        last = std::min(last, std::max(at_lower, at_upper));
-    }
-    if (first >= last) return std::nullopt;
-    return std::pair(first, last);
-}
-
 } // namespace
-
-std::vector<std::vector<Vec2>> parts_near(const Box& box, const std::vector<Vec2>& points) {
-    constexpr double far = 100.0; // diagonals
-    constexpr double kept = 10.0;
-    const double diagonal = (box.upper - box.lower).norm();
-    const auto widened = [&](double by) {
-        const Vec2 margin = Vec2::Constant(by * diagonal);
-        return Box{box.lower - margin, box.upper + margin};
-    };
-    const Box all = bounding_box(points);
-    const Box outer = widened(far);
-    if ((all.lower.array() >= outer.lower.array()).all() && (all.upper.array() <= outer.upper.array()).all())
-        return {points};
-    const Box inner = widened(kept);
-    std::vector<std::vector<Vec2>> parts;
-    bool goes_on = false; // the last part ends at the next point
-    for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-        const Vec2& a = points[i];
-        const Vec2& b = points[i + 1];
-        const auto inside = shares_inside(inner, a, b);
-        if (!inside) {
-            goes_on = false;
-            continue;
-        }
-        const auto [first, last] = *inside;
-        if (!goes_on || first > 0.0) parts.push_back({a + first * (b - a)});
-        parts.back().push_back(last < 1.0 ? Vec2(a + last * (b - a)) : b);
-        goes_on = last == 1.0;
-    }
-    return parts;
-}
 
 std::vector<SourceSegment> bridge_ends(const std::vector<SourceTrace>& traces,
                                        const std::vector<SourceSegment>& segments, double reach) {

@@ -157,40 +157,8 @@ private:
         return best;
     }
 
-    /// The edges between two faces that one passes from h on without a turn into another fracture or by more than 60 degrees.
-    [[nodiscard]] std::unordered_set<int> chain_through(int h) const {
-        std::unordered_set<int> chain{PlanarMap::edge_of(h)};
-        const int neighbour = map_.face(map_.twin(h));
-        const auto direction = [this](int k) {
-            return Vec2((map_.positions[map_.end(k)] - map_.positions[map_.start(k)]).normalized());
-        };
-        const auto goes_on = [&](int from, int to) {
-            constexpr double cosine_of_turn = 0.5;
-            return map_.face(map_.twin(to)) == neighbour && map_.source(to) == map_.source(h) &&
-                   direction(from).dot(direction(to)) > cosine_of_turn;
-        };
-        for (int k = h; goes_on(k, map_.next(k)) && chain.insert(PlanarMap::edge_of(map_.next(k))).second;)
-            k = map_.next(k);
-        for (int k = h; goes_on(map_.previous(k), k) && chain.insert(PlanarMap::edge_of(map_.previous(k))).second;)
-            k = map_.previous(k);
-        return chain;
-    }
-
-    /// Notes the fractures that vanish with the edges between the two faces at `exit` and lie elsewhere than that edge.
-    void note_freed(int exit) {
-        if (is_outline(exit)) return;
-        const int neighbour = map_.face(map_.twin(exit));
-        const std::unordered_set<int> chain = chain_through(exit);
-        for (const int h : map_.half_edges_of(map_.face(exit))) {
-            const bool vanishes = map_.face(map_.twin(h)) == neighbour && !chain.contains(PlanarMap::edge_of(h));
-            if (!vanishes || is_outline(h) || is_tessellation(h)) continue;
-            report_.freed.push_back({map_.positions[map_.start(h)], map_.positions[map_.end(h)], map_.source(h)});
-        }
-    }
-
     /// Merges the faces on both sides of an edge and returns the face that is left.
     int merge_across(int exit) {
-        note_freed(exit);
         int face = map_.face(exit);
         int kept = map_.face(map_.twin(exit));
         report_.merged.push_back({face_centroid(map_, face), std::max(0.0, map_.area(face))});

@@ -59,24 +59,5 @@ TEST(BridgeEnds, ATraceMayCloseOnItselfButNotOnItsOwnStart) {
     EXPECT_TRUE(bridges({closed}, 0.1).empty());
 }
 
-TEST(PartsNear, LeaveALineThatIsNearAsItIs) {
-    const std::vector<Vec2> line{{-3, 0}, {4, 1}, {30, -20}};
-    EXPECT_EQ(parts_near({{0, 0}, {3, 4}}, line), std::vector<std::vector<Vec2>>{line});
-}
-
-// The diagonal is 5, so that a line is cut off at 50 around the box.
-TEST(PartsNear, CutALineOffThatGoesFarAndGiveEachReturnAPartOfItsOwn) {
-    const auto parts = parts_near({{0, 0}, {3, 4}}, {{1, 1}, {1e6, 1}, {1e6, 3}, {1, 3}, {1, 2}});
-    ASSERT_EQ(parts.size(), 2U);
-    ASSERT_EQ(parts[0].size(), 2U);
-    EXPECT_EQ(parts[0][0], Vec2(1, 1));
-    EXPECT_NEAR((parts[0][1] - Vec2(53, 1)).norm(), 0.0, 1e-9);
-    ASSERT_EQ(parts[1].size(), 3U);
-    EXPECT_NEAR((parts[1][0] - Vec2(53, 3)).norm(), 0.0, 1e-9);
-    EXPECT_EQ(parts[1][1], Vec2(1, 3));
-    EXPECT_EQ(parts[1][2], Vec2(1, 2));
-    EXPECT_TRUE(parts_near({{0, 0}, {3, 4}}, {{1e6, 0}, {1e6, 1e6}}).empty());
-}
-
 } // namespace
 } // namespace kluft

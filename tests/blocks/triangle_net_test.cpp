@@ -207,69 +207,6 @@ TEST(TriangleNet, MergesStripsThatAreNarrowerThanItsResolution) {
     EXPECT_LT(body.system.n_blocks(), 260);
 }
 
-/// All of the fractures' interfaces.
-double fracture_length(const BlockSystem& system, int n_fractures) {
-    double length = 0.0;
-    for (int i = 0; i < n_fractures; ++i) length += cut_scenes::interface_length(system, EdgeOrigin::fracture, i);
-    return length;
-}
-
-// Two traces nearer to each other than the net resolves are one fracture, as two digitisings of one line are, and not none:
-// the strip between them lies inside one piece of the body, to which both its sides are inner lines.
-TEST(TriangleNet, OfTwoTracesThatEncloseANarrowStripOneStays) {
-    const Vec2 a(1.0, 3.0);
-    for (const Vec2& b : {Vec2(4.0, 3.0), Vec2(3.5, 6.0)}) {
-        const double length = (b - a).norm();
-        const Vec2 across = right_normal(b - a).normalized();
-        for (const double apart : {0.02, 5e-3, 1e-4, 1e-9, 1e-15}) {
-            GeometrySpec spec = triangulated(5.0, 10.0, {.spacing = 0.7, .relaxation = 0, .seed = 1, .grading = {}});
-            add_trace(spec, {a, b});
-            add_trace(spec, {a + apart * across, b + apart * across});
-            const CutBody body = cut_blocks(spec);
-            EXPECT_EQ(faults(spec, body), "");
-            EXPECT_NEAR(fracture_length(body.system, 2), length, 2.0 * (0.02 + 0.035)) << apart; // what closes its ends
-        }
-    }
-}
-
-// A trace that turns back on itself encloses a strip with itself.
-TEST(TriangleNet, OfATraceThatTurnsBackOneSideStays) {
-    for (const double apart : {0.02, 1e-3}) {
-        GeometrySpec spec = triangulated(5.0, 10.0, {.spacing = 0.7, .relaxation = 0, .seed = 1, .grading = {}});
-        add_trace(spec, {{1.0, 3.0}, {4.0, 3.0}, {4.0, 3.0 + apart}, {1.0, 3.0 + apart}});
-        const CutBody body = cut_blocks(spec);
-        EXPECT_EQ(faults(spec, body), "");
-        EXPECT_NEAR(fracture_length(body.system, 1), 3.0, 2.0 * (0.02 + 0.035)) << apart;
-    }
-}
-
-TEST(TriangleNet, FracturesOfWhichNothingIsLeftAreTold) {
-    GeometrySpec spec = triangulated(5.0, 10.0, {.spacing = 0.7, .relaxation = 0, .seed = 1, .grading = {}});
-    add_trace(spec, {{1.0, 3.0}, {4.0, 3.0}});
-    add_trace(spec, {{2.0, 6.0}, {2.0, 6.001}});   // shorter than the resolution of 0.035 m
-    add_trace(spec, {{0.001, 2.0}, {0.001, 8.0}}); // beside the outline
-    add_trace(spec, {{1.0, 3.0}, {4.0, 3.0}});     // the first again
-    add_trace(spec, {{7.0, 3.0}, {9.0, 3.0}});     // outside
-    const CutBody body = cut_blocks(spec);
-    EXPECT_EQ(body.report.lost_fractures, (std::vector<int>{1, 2, 3}));
-    EXPECT_DOUBLE_EQ(body.report.resolution, 0.05 * 0.7);
-}
-
-// A trace may come from far outside its window of a map.
-TEST(TriangleNet, TracesFromFarAwayCutAsThoseFromNearBy) {
-    const auto body_with = [](double far) {
-        GeometrySpec spec = triangulated(5.0, 10.0, {.spacing = 0.7, .relaxation = 0, .seed = 1, .grading = {}});
-        add_trace(spec, {{-far, 4.0}, {far, 4.0}});
-        return cut_blocks(spec);
-    };
-    const CutBody near = body_with(10.0);
-    for (const double far : {1e4, 1e6, 1e9, 1e15}) {
-        const CutBody body = body_with(far);
-        EXPECT_EQ(body.system.n_blocks(), near.system.n_blocks());
-        EXPECT_NEAR(fracture_length(body.system, 1), 5.0, 1e-12) << far;
-    }
-}
-
 TEST(TriangleNet, RefusesARegionWithoutBodyAndMoreTrianglesThanItCanMake) {
     GeometrySpec outside = triangulated(5.0, 5.0, {.spacing = 0.5, .grading = {}});
     outside.tessellation->region = {{10, 10}, {20, 10}, {20, 20}};

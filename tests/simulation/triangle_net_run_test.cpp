@@ -5,7 +5,6 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "kluft/constitutive/lattice_stiffness.hpp"
@@ -179,26 +178,6 @@ stages: [{{strain: {{boundary: top, value: 0.4 %}}, steps: 1}}]
         ASSERT_TRUE(stands(run)) << run.report.diagnosis;
         EXPECT_LE(run.report.costs.open_close_iterations, 4) << spacing;
     }
-}
-
-TEST(TriangleNetRun, FractureOfWhichNothingIsLeftIsSaid) {
-    const Scene scene = read_scene_text(R"(
-kluft: 1
-materials: {rock: {density: 2500, youngs_modulus: 10 GPa, poissons_ratio: 0.2, cohesion: 8 MPa, friction_angle: 40, tensile_strength: 2 MPa}}
-interfaces:
-  bond: {kind: potential_crack, fails_to: crack}
-  crack: {kind: fracture, friction_angle: 30}
-  joint: {kind: fracture, normal_stiffness: 500 GPa/m, shear_stiffness: 250 GPa/m, friction_angle: 30}
-geometry:
-  domain: {rectangle: {width: 1, height: 2}}
-  fractures: [{name: hair, trace: [[0.5, 1], [0.5, 1.001]], interface: joint}]
-  tessellation: {triangles: {spacing: 0.2}, interface: bond}
-boundaries: {bottom: {support: pinned}}
-stages: [{strain: {boundary: top, value: 0.01 %}, steps: 1}]
-)");
-    EXPECT_THAT(build_scene_model(scene).model.warnings,
-                testing::Contains(testing::AllOf(testing::HasSubstr("nothing is left in the body of 1 fracture: hair"),
-                                                 testing::HasSubstr("shorter than 0.01 m"))));
 }
 
 } // namespace

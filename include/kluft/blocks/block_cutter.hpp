@@ -15,15 +15,13 @@ struct CutReport {
         Vec2 at = Vec2::Zero(); ///< centroid of the piece, scene coordinates (m)
         double area = 0.0;      ///< m2
     };
-    std::vector<Merged> merged;      ///< pieces below the minimum area that went into a neighbour
-    int collapsed_edges = 0;         ///< short edges collapsed to a point
-    int joined_ends = 0;             ///< ends of traces that were carried on to what they nearly met
-    int pruned_ends = 0;             ///< pieces of traces that separate nothing (dangling ends, isolated traces)
-    std::vector<int> lost_fractures; ///< those of which no interface is left, but for those outside the domain's box
-    double resolution = 0.0;         ///< what is shorter, or nearer to something else, is lost (m)
-    double smallest_area = 0.0;      ///< m2
-    double smallest_edge = 0.0;      ///< m
-    double smallest_angle = 0.0;     ///< radians, between successive edges of a block
+    std::vector<Merged> merged;  ///< pieces below the minimum area that went into a neighbour
+    int collapsed_edges = 0;     ///< short edges collapsed to a point
+    int joined_ends = 0;         ///< ends of traces that were carried on to what they nearly met
+    int pruned_ends = 0;         ///< pieces of traces that separate nothing (dangling ends, isolated traces)
+    double smallest_area = 0.0;  ///< m2
+    double smallest_edge = 0.0;  ///< m
+    double smallest_angle = 0.0; ///< radians, between successive edges of a block
 };
 
 struct CutBody {

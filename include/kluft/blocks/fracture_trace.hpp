@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "kluft/blocks/arrangement.hpp"
-#include "kluft/geometry/polygon.hpp"
 
 namespace kluft {
 
@@ -25,9 +24,5 @@ struct SourceTrace {
 
 /// A polyline without the points that it passes within `tolerance` (m) anyway (Douglas and Peucker 1973).
 [[nodiscard]] std::vector<Vec2> simplified(const std::vector<Vec2>& points, double tolerance);
-
-/// The parts of a polyline near a box: whole where all of it is within 100 of the box's diagonals, else cut off at 10 of them.
-/// What lies in the box stays, to the rounding of the place where it is cut.
-[[nodiscard]] std::vector<std::vector<Vec2>> parts_near(const Box& box, const std::vector<Vec2>& points);
 
 } // namespace kluft

@@ -24,15 +24,12 @@ struct MendReport {
         double area = 0.0;      ///< m2
     };
     std::vector<Merged> merged;
-    std::vector<SourceSegment>
-        freed; ///< fracture edges that a merged face had to the same neighbour on its other sides
     int collapsed_edges = 0;
 };
 
 /// Until nothing changes any more:
 /// 1. each face below `limits.area` or `limits.width`, smallest first, is merged with the neighbour across its longest tessellation edge,
-///    otherwise across its longest interior edge; all edges between the two disappear. Where a strip between two fractures lies
-///    inside one neighbour the edges on its other side are told, so that one of the two fractures can be kept;
+///    otherwise across its longest interior edge; all edges between the two disappear;
 /// 2. each edge below `limits.edge`, shortest first, is collapsed to the end that is worth more (corner of the domain,
 ///    then its outline, then more fracture edges), otherwise to the other, if every face around stays simple and positively oriented, the
 ///    outline keeps its shape and corners, and no two vertices get joined twice;
