@@ -586,13 +586,14 @@ CutBody cut(const GeometrySpec& spec) {
     body.report.joined_ends = cuts.joined_ends;
     PlanarMap map = arrange(cuts.segments);
     take_outside_away(map, numbers);
-    const std::vector<SourceSegment> free = has_triangles(spec) ? free_pieces(map) : std::vector<SourceSegment>{};
+    std::vector<SourceSegment> free = has_triangles(spec) ? free_pieces(map) : std::vector<SourceSegment>{};
     body.report.pruned_ends = count_free_pieces(map, numbers, 2.0 * resolution(spec, frame));
     map.remove_edges_inside_faces();
 
     MendReport mended = mend(map, mend_limits(spec, frame, numbers));
     check_faces(map, frame);
     if (has_triangles(spec)) {
+        free.insert(free.end(), mended.freed.begin(), mended.freed.end());
         map = filled_with_triangles(spec, frame, numbers, std::move(map), free);
         body.report.pruned_ends = count_free_pieces(map, numbers, 2.0 * resolution(spec, frame));
         map.remove_edges_inside_faces();

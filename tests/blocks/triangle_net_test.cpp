@@ -207,6 +207,44 @@ TEST(TriangleNet, MergesStripsThatAreNarrowerThanItsResolution) {
     EXPECT_LT(body.system.n_blocks(), 260);
 }
 
+double length_of_fractures(const CutBody& body) {
+    return cut_scenes::interface_length(body.system, EdgeOrigin::fracture);
+}
+
+/// Two traces that end in the body and are nearer to each other than 0.05 sides are one: its length is that of either,
+/// but for what the resolution of 0.01 m leaves open at both ends.
+TEST(TriangleNet, KeepsOneOfTwoTracesThatEncloseAStripInTheBody) {
+    const TriangleNet net{.spacing = 0.2, .relaxation = 0, .seed = 1, .grading = {}};
+    for (const double apart : {0.008, 0.005, 0.001, 1e-6, 1e-9, 1e-15}) {
+        for (const double rise : {0.0, 0.4, 0.8}) {
+            GeometrySpec spec = triangulated(1.0, 2.0, net);
+            add_trace(spec, {{0.1, 0.6}, {0.9, 0.6 + rise}});
+            add_trace(spec, {{0.1, 0.6 + apart}, {0.9, 0.6 + rise + apart}});
+            const CutBody body = cut_blocks(spec);
+            EXPECT_EQ(faults(spec, body), "");
+            EXPECT_NEAR(length_of_fractures(body), std::hypot(0.8, rise), 0.02) << apart << ' ' << rise;
+        }
+    }
+}
+
+/// Traces in echelon, 5 mm apart, that overlap from 0.3 to 0.7 are one from 0.1 to 0.9; a shorter one beside a long one
+/// adds nothing; legs of an L, 8 mm beside another, are those of one.
+TEST(TriangleNet, KeepsWhatGoesOnBeyondAMergedStrip) {
+    const TriangleNet net{.spacing = 0.2, .relaxation = 0, .seed = 1, .grading = {}};
+    GeometrySpec echelon = triangulated(1.0, 2.0, net);
+    add_trace(echelon, {{0.1, 1.0}, {0.7, 1.0}});
+    add_trace(echelon, {{0.3, 1.005}, {0.9, 1.005}});
+    EXPECT_NEAR(length_of_fractures(cut_blocks(echelon)), 0.8, 0.02);
+    GeometrySpec beside = triangulated(1.0, 2.0, net);
+    add_trace(beside, {{0.1, 1.0}, {0.9, 1.0}});
+    add_trace(beside, {{0.3, 1.005}, {0.6, 1.005}});
+    EXPECT_NEAR(length_of_fractures(cut_blocks(beside)), 0.8, 0.02);
+    GeometrySpec bent = triangulated(1.0, 2.0, net);
+    add_trace(bent, {{0.2, 1.5}, {0.2, 0.5}, {0.8, 0.5}});
+    add_trace(bent, {{0.208, 1.5}, {0.208, 0.508}, {0.8, 0.508}});
+    EXPECT_NEAR(length_of_fractures(cut_blocks(bent)), 1.6, 0.04);
+}
+
 TEST(TriangleNet, RefusesARegionWithoutBodyAndMoreTrianglesThanItCanMake) {
     GeometrySpec outside = triangulated(5.0, 5.0, {.spacing = 0.5, .grading = {}});
     outside.tessellation->region = {{10, 10}, {20, 10}, {20, 20}};
