@@ -6,6 +6,7 @@
 #include <map>
 #include <numbers>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <tuple>
 
@@ -23,6 +24,7 @@
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/core/memory.hpp"
 #include "kluft/geometry/polygon.hpp"
+#include "kluft/geometry/predicates.hpp"
 #include "kluft/geometry/segment_grid.hpp"
 
 namespace kluft {
@@ -81,14 +83,15 @@ std::vector<int> boundary_of_sides(const GeometrySpec& spec) {
 }
 
 void check_spec(const GeometrySpec& spec) {
-    check_polygon(spec.domain, "geometry.domain");
+    check_polygon(spec.domain, spec.places.domain);
     for (std::size_t i = 0; i < spec.holes.size(); ++i) {
-        check_polygon(spec.holes[i], fmt::format("geometry.domain: hole {}", i));
+        check_polygon(spec.holes[i], fmt::format("{}: hole {}", spec.places.domain, i));
     }
     for (std::size_t i = 0; i < spec.fractures.size(); ++i) {
         const FractureTrace& trace = spec.fractures[i];
         const std::string what =
-            fmt::format("geometry.fractures.{}{}", i, trace.name.empty() ? "" : fmt::format(" ({})", trace.name));
+            fmt::format("{}{}", trace.place.empty() ? fmt::format("geometry.fractures.{}", i) : trace.place,
+                        trace.name.empty() ? "" : fmt::format(" ({})", trace.name));
         if (trace.points.size() < 2) {
             throw InputError(
                 fmt::format("{}: expected a trace of at least 2 points, got {}", what, trace.points.size()));
@@ -146,21 +149,88 @@ std::vector<SourceSegment> outline_segments(const GeometrySpec& spec, const Loca
     return segments;
 }
 
+/// Which polygon a side of the domain belongs to, and the place that it has there.
+struct SideOfPolygon {
+    int polygon = -1; ///< -1: the outline; the index of a hole
+    int index = 0;
+    int n_sides = 0;
+
+    [[nodiscard]] std::string name() const { return polygon < 0 ? "the outline" : fmt::format("hole {}", polygon); }
+    [[nodiscard]] bool is_before(const SideOfPolygon& other) const {
+        return polygon == other.polygon && (index + 1) % n_sides == other.index;
+    }
+};
+
+std::vector<SideOfPolygon> sides_of_domain(const GeometrySpec& spec) {
+    std::vector<SideOfPolygon> sides;
+    const auto add = [&sides](int polygon, const Polygon& points) {
+        const int n_sides = static_cast<int>(points.size());
+        for (int i = 0; i < n_sides; ++i) sides.push_back({polygon, i, n_sides});
+    };
+    add(-1, spec.domain);
+    for (std::size_t i = 0; i < spec.holes.size(); ++i) add(static_cast<int>(i), spec.holes[i]);
+    return sides;
+}
+
+/// A place that two segments which meet have in common.
+Vec2 common_place(const SourceSegment& first, const SourceSegment& second) {
+    for (const Vec2& p : {second.a, second.b})
+        if (on_segment(p, first.a, first.b)) return p;
+    for (const Vec2& p : {first.a, first.b})
+        if (on_segment(p, second.a, second.b)) return p;
+    const Vec2 along = first.b - first.a;
+    const Vec2 across = second.b - second.a;
+    return first.a + cross(second.a - first.a, across) / cross(along, across) * along;
+}
+
+/// Where two sides have more in common than the corner between successive ones, if anywhere.
+std::optional<Vec2> conflict_of(const SourceSegment& first, const SideOfPolygon& of_first, const SourceSegment& second,
+                                const SideOfPolygon& of_second) {
+    if (of_second.is_before(of_first)) return conflict_of(second, of_second, first, of_first);
+    if (!of_first.is_before(of_second)) {
+        if (!segments_meet(first.a, first.b, second.a, second.b)) return std::nullopt;
+        return common_place(first, second);
+    }
+    const bool turns_back =
+        orientation(first.a, first.b, second.b) == 0 && (first.a - first.b).dot(second.b - first.b) > 0.0;
+    return turns_back ? std::optional(first.b) : std::nullopt;
+}
+
+/// "the outline crosses or touches itself at (1, 2)" for the first place where that is so.
+std::string flaw_of_outline(const GeometrySpec& spec, const std::vector<SourceSegment>& segments, const Vec2& origin) {
+    const std::vector<SideOfPolygon> sides = sides_of_domain(spec);
+    std::vector<SegmentGrid::Segment> pairs;
+    for (const SourceSegment& side : segments) pairs.emplace_back(side.a, side.b);
+    const SegmentGrid grid(pairs);
+    for (std::size_t i = 0; i < segments.size(); ++i) {
+        for (const int j : grid.near(bounding_box({segments[i].a, segments[i].b}))) {
+            if (j <= static_cast<int>(i)) continue;
+            const auto local = conflict_of(segments[i], sides[i], segments[j], sides[j]);
+            if (!local) continue;
+            const Vec2 at = origin + *local;
+            const bool same = sides[i].polygon == sides[j].polygon;
+            return fmt::format("{} crosses or touches {} at ({:.6g}, {:.6g})", sides[i].name(),
+                               same ? "itself" : sides[j].name(), at.x(), at.y());
+        }
+    }
+    return "the outline or a hole crosses or touches itself or another";
+}
+
 /// An outline is sound if it subdivides into exactly its own sides and vertices, and each hole lies in the body.
-void check_outline(const GeometrySpec& spec, const std::vector<SourceSegment>& segments) {
-    for (const SourceSegment& side : segments) {
-        if (side.a == side.b) throw InputError("geometry.domain: two successive points are the same");
+void check_outline(const GeometrySpec& spec, const std::vector<SourceSegment>& segments, const Vec2& origin) {
+    const std::vector<SideOfPolygon> sides = sides_of_domain(spec);
+    for (std::size_t i = 0; i < segments.size(); ++i) {
+        if (segments[i].a != segments[i].b) continue;
+        const Vec2 at = origin + segments[i].a;
+        throw InputError(fmt::format("{}: two successive points of {} are the same, ({:.6g}, {:.6g})",
+                                     spec.places.domain, sides[i].name(), at.x(), at.y()));
     }
     const PlanarMap map = arrange(segments);
     const int n_vertices = static_cast<int>(map.positions.size());
     bool simple = map.n_edges() == static_cast<int>(segments.size()) && n_vertices == map.n_edges() &&
                   map.n_faces() == 2 + static_cast<int>(spec.holes.size());
     for (int v = 0; v < n_vertices && simple; ++v) simple = map.degree(v, 3) == 2;
-    if (!simple) {
-        throw InputError(spec.holes.empty()
-                             ? "geometry.domain: the outline crosses or touches itself"
-                             : "geometry.domain: the outline or a hole crosses or touches itself or another");
-    }
+    if (!simple) throw InputError(fmt::format("{}: {}", spec.places.domain, flaw_of_outline(spec, segments, origin)));
     // Inside the body every hole has the body's face on its outer side: the face that is left of or right of side 0.
     const auto faces_of = [&map](int source) {
         const auto e = std::find(map.sources.begin(), map.sources.end(), source) - map.sources.begin();
@@ -169,11 +239,14 @@ void check_outline(const GeometrySpec& spec, const std::vector<SourceSegment>& s
     const auto [left, right] = faces_of(0);
     const int body = left == 0 ? right : left;
     int first = static_cast<int>(spec.domain.size());
-    for (const Polygon& hole : spec.holes) {
+    for (std::size_t i = 0; i < spec.holes.size(); ++i) {
         const auto [a, b] = faces_of(first);
+        const Vec2& at = spec.holes[i].front();
         if (a != body && b != body)
-            throw InputError("geometry.domain: a hole lies outside the outline or inside another");
-        first += static_cast<int>(hole.size());
+            throw InputError(
+                fmt::format("{}: hole {}, from ({:.6g}, {:.6g}) on, lies outside the outline or inside another",
+                            spec.places.domain, i, at.x(), at.y()));
+        first += static_cast<int>(spec.holes[i].size());
     }
 }
 
@@ -195,8 +268,10 @@ std::vector<SourceTrace> local_traces(const GeometrySpec& spec, const LocalFrame
     std::vector<SourceTrace> traces;
     for (const FractureTrace& fracture : spec.fractures) {
         const std::vector<Vec2> points = frame.to_local(fracture.points);
-        traces.push_back({has_triangles(spec) ? simplified(points, resolution(spec, frame)) : points,
-                          numbers.first_fracture + static_cast<int>(traces.size())});
+        const int source = numbers.first_fracture + static_cast<int>(&fracture - spec.fractures.data());
+        for (auto& part :
+             parts_near(frame.box, has_triangles(spec) ? simplified(points, resolution(spec, frame)) : points))
+            traces.push_back({std::move(part), source});
     }
     return traces;
 }
@@ -228,11 +303,14 @@ std::vector<std::pair<Vec2, Vec2>> net_edges(const GeometrySpec& spec, const Loc
 std::vector<SourceSegment> lines_of_net(const GeometrySpec& spec, const LocalFrame& frame,
                                         const SourceNumbers& numbers) {
     std::vector<SourceTrace> lines;
-    for (const auto& line : spec.construction_lines) lines.push_back({frame.to_local(line), numbers.tessellation});
+    const auto add = [&](const std::vector<Vec2>& line) {
+        for (auto& part : parts_near(frame.box, line)) lines.push_back({std::move(part), numbers.tessellation});
+    };
+    for (const auto& line : spec.construction_lines) add(frame.to_local(line));
     if (spec.tessellation->region) {
         Polygon closed = frame.to_local(*spec.tessellation->region);
         closed.push_back(closed.front());
-        lines.push_back({closed, numbers.tessellation});
+        add(closed);
     }
     std::vector<SourceSegment> segments;
     add_traces(segments, lines);
@@ -247,7 +325,7 @@ struct Cuts {
 Cuts cuts_of(const GeometrySpec& spec, const LocalFrame& frame, const SourceNumbers& numbers) {
     Cuts cuts;
     cuts.segments = outline_segments(spec, frame);
-    check_outline(spec, cuts.segments);
+    check_outline(spec, cuts.segments, frame.origin);
     std::vector<SegmentGrid::Segment> sides;
     for (const SourceSegment& side : cuts.segments) sides.emplace_back(side.a, side.b);
 
@@ -570,10 +648,134 @@ PlanarMap filled_with_triangles(const GeometrySpec& spec, const LocalFrame& fram
     lines.map = &map;
     if (spec.tessellation->region) lines.region = frame.to_local(*spec.tessellation->region);
     lines.tessellation = numbers.tessellation;
+    lines.origin = frame.origin;
+    lines.places = spec.places;
     PlanarMap filled =
         arrange(triangle_edges(*spec.tessellation->triangles, side_of_triangles(spec, frame, numbers), lines));
     take_outside_away(filled, numbers);
     return filled;
+}
+
+/// What is asked of the traces that have no interface.
+class LossSearch {
+public:
+    LossSearch(const GeometrySpec& spec, const LocalFrame& frame, const SourceNumbers& numbers)
+        : spec_(spec), domain_(frame.to_local(spec.domain)), resolution_(resolution(spec, frame)),
+          rounding_(1e-12 * frame.box.upper.norm()), segments_(outline_segments(spec, frame)), numbers_(numbers) {
+        for (const Polygon& hole : spec.holes) holes_.push_back(frame.to_local(hole));
+        if (spec.tessellation && spec.tessellation->region) region_ = frame.to_local(*spec.tessellation->region);
+        for (const FractureTrace& fracture : spec.fractures)
+            for (auto& part : parts_near(frame.box, frame.to_local(fracture.points)))
+                traces_.push_back({std::move(part), numbers.first_fracture + index_of(fracture)});
+        add_traces(segments_, traces_);
+    }
+
+    [[nodiscard]] std::vector<LostFracture> lost(const BlockSystem& system) const {
+        std::vector<char> found(spec_.fractures.size(), 0);
+        for (const Interface& interface : system.interfaces)
+            if (interface.origin == EdgeOrigin::fracture) found[interface.fracture] = 1;
+        std::vector<LostFracture> lost;
+        for (int f = 0; f < static_cast<int>(found.size()); ++f) {
+            if (found[f] != 0) continue;
+            if (const auto loss = loss_of(f)) lost.push_back(*loss);
+        }
+        return lost;
+    }
+
+private:
+    [[nodiscard]] int index_of(const FractureTrace& fracture) const {
+        return static_cast<int>(&fracture - spec_.fractures.data());
+    }
+
+    [[nodiscard]] bool in_body(const Vec2& p) const {
+        return contains(domain_, p) &&
+               std::none_of(holes_.begin(), holes_.end(), [&p](const Polygon& hole) { return contains(hole, p); });
+    }
+
+    /// Places on the parts of a fracture that are in the body, an odd number to each of its segments.
+    [[nodiscard]] std::vector<Vec2> places_in_body(int fracture) const {
+        constexpr int per_segment = 63;
+        std::vector<Vec2> places;
+        for (const SourceTrace& trace : traces_) {
+            if (trace.source != numbers_.first_fracture + fracture) continue;
+            for (std::size_t i = 0; i + 1 < trace.points.size(); ++i) {
+                for (int k = 0; k < per_segment; ++k) {
+                    const Vec2 p = trace.points[i] + (k + 0.5) / per_segment * (trace.points[i + 1] - trace.points[i]);
+                    if (in_body(p)) places.push_back(p);
+                }
+            }
+        }
+        return places;
+    }
+
+    /// The first source before the fracture that runs through all the places; -1 if none does.
+    [[nodiscard]] int source_along(const std::vector<Vec2>& places, int fracture) const {
+        const int last = numbers_.first_fracture + fracture;
+        int first = -1;
+        for (const Vec2& p : places) {
+            int here = -1;
+            for (const SourceSegment& segment : segments_) {
+                if (segment.source >= last || distance_to_segment(p, segment.a, segment.b) > rounding_) continue;
+                if (here < 0 || segment.source < here) here = segment.source;
+            }
+            if (here < 0) return -1;
+            if (first < 0) first = here;
+        }
+        return first;
+    }
+
+    [[nodiscard]] std::optional<LostFracture> loss_of(int fracture) const {
+        const std::vector<Vec2> places = places_in_body(fracture);
+        if (places.empty()) return std::nullopt;
+        LostFracture loss{.fracture = fracture};
+        const Box extent = bounding_box(spec_.fractures[fracture].points);
+        const int along = source_along(places, fracture);
+        if (along >= 0) {
+            loss.cause = LostFracture::Cause::coincides;
+            if (along >= numbers_.first_fracture) loss.other = along - numbers_.first_fracture;
+        } else if ((extent.upper - extent.lower).norm() < resolution_) {
+            loss.cause = LostFracture::Cause::too_short;
+        } else if (has_triangles(spec_) && (region_.empty() || contains(region_, places[places.size() / 2]))) {
+            loss.cause = LostFracture::Cause::too_near;
+        }
+        return loss;
+    }
+
+    const GeometrySpec& spec_;
+    Polygon domain_;
+    std::vector<Polygon> holes_;
+    Polygon region_;
+    double resolution_ = 0.0;
+    double rounding_ = 0.0;
+    std::vector<SourceSegment> segments_; ///< of the outline and of all traces
+    std::vector<SourceTrace> traces_;
+    const SourceNumbers& numbers_;
+};
+
+/// Sides of the outline and holes that are smaller than the triangles can follow without becoming as small.
+std::vector<FineDetail> fine_details(const GeometrySpec& spec, double resolution) {
+    std::vector<FineDetail> details;
+    for (std::size_t i = 0; i < spec.domain.size(); ++i) {
+        const Vec2& a = spec.domain[i];
+        const Vec2& b = spec.domain[(i + 1) % spec.domain.size()];
+        if ((b - a).norm() < resolution) details.push_back({-1, false, 0.5 * (a + b), (b - a).norm()});
+    }
+    for (std::size_t k = 0; k < spec.holes.size(); ++k) {
+        const Polygon& hole = spec.holes[k];
+        const Box box = bounding_box(hole);
+        const double extent = (box.upper - box.lower).maxCoeff();
+        const int number = static_cast<int>(k);
+        if (extent < resolution) {
+            details.push_back({number, true, 0.5 * (box.lower + box.upper), extent});
+            continue;
+        }
+        for (std::size_t i = 0; i < hole.size(); ++i) {
+            const Vec2& a = hole[i];
+            const Vec2& b = hole[(i + 1) % hole.size()];
+            if ((b - a).norm() < resolution) details.push_back({number, false, 0.5 * (a + b), (b - a).norm()});
+        }
+    }
+    return details;
 }
 
 CutBody cut(const GeometrySpec& spec) {
@@ -586,13 +788,14 @@ CutBody cut(const GeometrySpec& spec) {
     body.report.joined_ends = cuts.joined_ends;
     PlanarMap map = arrange(cuts.segments);
     take_outside_away(map, numbers);
-    const std::vector<SourceSegment> free = has_triangles(spec) ? free_pieces(map) : std::vector<SourceSegment>{};
+    std::vector<SourceSegment> free = has_triangles(spec) ? free_pieces(map) : std::vector<SourceSegment>{};
     body.report.pruned_ends = count_free_pieces(map, numbers, 2.0 * resolution(spec, frame));
     map.remove_edges_inside_faces();
 
     MendReport mended = mend(map, mend_limits(spec, frame, numbers));
     check_faces(map, frame);
     if (has_triangles(spec)) {
+        free.insert(free.end(), mended.freed.begin(), mended.freed.end());
         map = filled_with_triangles(spec, frame, numbers, std::move(map), free);
         body.report.pruned_ends = count_free_pieces(map, numbers, 2.0 * resolution(spec, frame));
         map.remove_edges_inside_faces();
@@ -602,6 +805,9 @@ CutBody cut(const GeometrySpec& spec) {
 
     body.system = SystemBuilder(spec, frame, numbers, map).build();
     if (has_triangles(spec)) grade(body.system, side_of_triangles(spec, frame, numbers));
+    body.report.lost = LossSearch(spec, frame, numbers).lost(body.system);
+    body.report.resolution = resolution(spec, frame);
+    if (has_triangles(spec)) body.report.fine_details = fine_details(spec, body.report.resolution);
     form_sets(spec, body.system);
     return body;
 }

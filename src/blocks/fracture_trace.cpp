@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include <boost/geometry/algorithms/simplify.hpp>
 #include <boost/geometry/geometries/linestring.hpp>
@@ -21,6 +22,34 @@ SegmentGrid grid_of(const std::vector<SourceSegment>& segments) {
     pairs.reserve(segments.size());
     for (const SourceSegment& segment : segments) pairs.emplace_back(segment.a, segment.b);
     return SegmentGrid(std::move(pairs));
+}
+
+/// The part of the segment ab in a box, from the first to the second share of its length (Liang and Barsky 1984).
+std::optional<std::pair<long double, long double>> shares_in(const Box& box, const Vec2& a, const Vec2& b) {
+    long double from = 0.0L;
+    long double to = 1.0L;
+    for (const int axis : {0, 1}) {
+        const long double start = a[axis];
+        const long double step = static_cast<long double>(b[axis]) - start;
+        if (step == 0.0L) {
+            if (start < box.lower[axis] || start > box.upper[axis]) return std::nullopt;
+            continue;
+        }
+        const long double at_lower = (box.lower[axis] - start) / step;
+        const long double at_upper = (box.upper[axis] - start) / step;
+        from = std::max(from, std::min(at_lower, at_upper));
+        to = std::min(to, std::max(at_lower, at_upper));
+    }
+    if (from >= to) return std::nullopt;
+    return std::pair(from, to);
+}
+
+Vec2 at_share(const Vec2& a, const Vec2& b, long double share) {
+    const auto coordinate = [&](int axis) {
+        const long double start = a[axis];
+        return static_cast<double>(start + share * (b[axis] - start));
+    };
+    return {coordinate(0), coordinate(1)};
 }
 
 /// Whether a segment is one of those that follow the first point of `points` within `arc` along the trace.
@@ -109,6 +138,25 @@ std::vector<Vec2> simplified(const std::vector<Vec2>& points, double tolerance) 
     std::vector<Vec2> result;
     for (const Point& p : simple) result.emplace_back(p.x(), p.y());
     return result;
+}
+
+std::vector<std::vector<Vec2>> parts_near(const Box& box, const std::vector<Vec2>& points) {
+    const Vec2 margin = Vec2::Constant((box.upper - box.lower).norm());
+    const Box wide{box.lower - margin, box.upper + margin};
+    std::vector<std::vector<Vec2>> parts;
+    bool goes_on = false; // from the last point of the last part
+    for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+        const auto shares = shares_in(wide, points[i], points[i + 1]);
+        if (!shares) {
+            goes_on = false;
+            continue;
+        }
+        const auto [from, to] = *shares;
+        if (!goes_on) parts.push_back({from > 0.0L ? at_share(points[i], points[i + 1], from) : points[i]});
+        parts.back().push_back(to < 1.0L ? at_share(points[i], points[i + 1], to) : points[i + 1]);
+        goes_on = to == 1.0L;
+    }
+    return parts;
 }
 
 } // namespace kluft

@@ -123,7 +123,9 @@ std::vector<SourceSegment> joined_pieces(PlanarMap& map, const std::vector<Sourc
     const EdgeSearch search = living_edges(map);
     const SegmentGrid grid(search.segments);
     Moves moves;
-    std::vector<Vec2> added; // vertices
+    std::vector<Vec2> added;    // vertices
+    std::map<Place, int> worth; // of ends: how many pieces they join; those on the map stay there
+    constexpr int worth_of_vertex = 1 << 20;
     const auto join = [&](const Vec2& end) {
         const Vec2 around = Vec2::Constant(reach);
         double nearest_vertex = reach;
@@ -145,12 +147,14 @@ std::vector<SourceSegment> joined_pieces(PlanarMap& map, const std::vector<Sourc
         }
         if (nearest_vertex < reach) {
             moves.add(end, to);
+            worth[key_of(to)] += worth_of_vertex;
         } else if (edge >= 0) {
             const int part = part_at(map, edge, end);
             const Vec2 on_edge = nearest_point(end, map.positions[map.start(part)], map.positions[map.end(part)]);
             map.split_edge(part, on_edge);
             moves.add(end, on_edge);
             added.push_back(on_edge);
+            worth[key_of(on_edge)] += worth_of_vertex;
         }
     };
     std::map<Place, bool> seen;
@@ -158,13 +162,22 @@ std::vector<SourceSegment> joined_pieces(PlanarMap& map, const std::vector<Sourc
         for (const Vec2& end : {piece.a, piece.b})
             if (seen.emplace(key_of(end), true).second) join(end);
     }
+    for (const SourceSegment& piece : pieces)
+        for (const Vec2& end : {piece.a, piece.b}) ++worth[key_of(moves.of(end))];
+    const auto shrink = [&](const Vec2& a, const Vec2& b) {
+        const bool keeps_a = worth[key_of(a)] >= worth[key_of(b)];
+        const Vec2& kept = keeps_a ? a : b;
+        const Vec2& lost = keeps_a ? b : a;
+        moves.add(lost, kept);
+        worth[key_of(kept)] += worth[key_of(lost)];
+    };
     std::vector<SourceSegment> joined;
     for (const SourceSegment& piece : pieces) {
         const Vec2 a = moves.of(piece.a);
         const Vec2 b = moves.of(piece.b);
         if (a == b) continue;
         if ((b - a).norm() < reach) {
-            moves.add(b, a);
+            shrink(a, b);
         } else {
             joined.push_back({a, b, piece.source});
         }

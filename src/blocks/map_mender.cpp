@@ -1,6 +1,7 @@
 #include "kluft/blocks/map_mender.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <numeric>
 #include <optional>
@@ -157,8 +158,61 @@ private:
         return best;
     }
 
+    /// Angle to the left between an edge and the one after it in their face (radians).
+    [[nodiscard]] double turn_between(int arriving, int leaving) const {
+        const Vec2 before = map_.positions[map_.end(arriving)] - map_.positions[map_.start(arriving)];
+        const Vec2 after = map_.positions[map_.end(leaving)] - map_.positions[map_.start(leaving)];
+        return std::atan2(cross(before, after), before.dot(after));
+    }
+
+    /// What goes on from a half-edge of a face along one neighbour, in one direction, before the face's outline turns
+    /// back: by more than 120 degrees within twice the shortest edge. The end of a strip, which lies between two turns,
+    /// belongs to neither of its sides.
+    [[nodiscard]] std::vector<int> one_way_along_side(int exit, bool forward) const {
+        constexpr double turning_back = 2.1; // radians
+        struct Turn {
+            double arc = 0.0; // m
+            double angle = 0.0;
+            std::size_t n_before = 0; // half-edges of the side
+        };
+        std::vector<int> side{exit};
+        std::vector<Turn> recent;
+        double arc = 0.0;
+        for (int h = exit;;) {
+            const int onward = forward ? map_.next(h) : map_.previous(h);
+            if (onward == exit || map_.face(map_.twin(onward)) != map_.face(map_.twin(exit))) return side;
+            recent.push_back({arc, forward ? turn_between(h, onward) : turn_between(onward, h), side.size()});
+            std::erase_if(recent, [&](const Turn& turn) { return turn.arc < arc - 2.0 * limits_.edge; });
+            const double turned = std::accumulate(recent.begin(), recent.end(), 0.0,
+                                                  [](double sum, const Turn& turn) { return sum + turn.angle; });
+            if (turned > turning_back) {
+                const auto first =
+                    std::find_if(recent.begin(), recent.end(), [](const Turn& turn) { return turn.angle > 0.0; });
+                side.resize(first->n_before);
+                return side;
+            }
+            side.push_back(onward);
+            arc += map_.length(onward);
+            h = onward;
+        }
+    }
+
+    /// The edges between the faces on both sides of an edge, but for those on its own side, are free from now on.
+    void free_other_sides(int exit) {
+        std::unordered_set<int> side;
+        for (const bool forward : {true, false})
+            for (const int h : one_way_along_side(exit, forward)) side.insert(PlanarMap::edge_of(h));
+        const int face = map_.face(exit);
+        const int neighbour = map_.face(map_.twin(exit));
+        for (const int h : map_.half_edges_of(face)) {
+            if (map_.face(map_.twin(h)) != neighbour || side.contains(PlanarMap::edge_of(h))) continue;
+            report_.freed.push_back({map_.positions[map_.start(h)], map_.positions[map_.end(h)], map_.source(h)});
+        }
+    }
+
     /// Merges the faces on both sides of an edge and returns the face that is left.
     int merge_across(int exit) {
+        free_other_sides(exit);
         int face = map_.face(exit);
         int kept = map_.face(map_.twin(exit));
         report_.merged.push_back({face_centroid(map_, face), std::max(0.0, map_.area(face))});

@@ -130,6 +130,13 @@ std::vector<Line> lines_of(const TriangleFrame& frame, Triangulation& triangulat
     return lines;
 }
 
+Box box_of_living_edges(const PlanarMap& map) {
+    std::vector<Vec2> ends;
+    for (int h = 0; h < 2 * map.n_edges(); ++h)
+        if (map.alive[PlanarMap::edge_of(h)] != 0) ends.push_back(map.positions[map.start(h)]);
+    return bounding_box(ends);
+}
+
 /// Cuts a line into equal pieces about as long as the side of the net in its middle. Returns their middles with half
 /// their length as radius.
 std::vector<std::pair<Vec2, double>> insert_in_pieces(const Line& line, const TriangleSize& size, bool cut,
@@ -372,7 +379,7 @@ std::vector<Vec2> scattered_points(int count, Darts& darts, const TriangleSize& 
 }
 
 /// Adds points until no angle is too small. Lines that lie very close to each other ask for many.
-void refine(Triangulation& triangulation, const std::vector<Kernel::Point_2>& holes) {
+void refine(Triangulation& triangulation, const std::vector<Kernel::Point_2>& holes, const TriangleFrame& frame) {
     constexpr double bound = 0.125; // on 1/(4 B^2), with B the ratio of circumradius to shortest edge
     const std::size_t most = 20 * triangulation.number_of_vertices() + 10000;
     CGAL::Delaunay_mesher_2<Triangulation, Criteria> mesher(triangulation, Criteria(bound, 0.0));
@@ -381,21 +388,20 @@ void refine(Triangulation& triangulation, const std::vector<Kernel::Point_2>& ho
     while (!mesher.is_refinement_done()) {
         mesher.step_by_step_refine_mesh();
         if (triangulation.number_of_vertices() <= most) continue;
-        const Vec2 last = place_of(std::prev(triangulation.finite_vertices_end()));
-        throw InputError(
-            fmt::format("geometry.tessellation.triangles: lines lie so close to each other that triangles "
-                        "without small angles are too many, at about ({:.6g}, {:.6g}) m from the lower left "
-                        "corner of the domain's box",
-                        last.x(), last.y()));
+        const Vec2 last = frame.origin + place_of(std::prev(triangulation.finite_vertices_end()));
+        throw InputError(fmt::format("{}: lines lie so close to each other that triangles without small angles are too "
+                                     "many, at about ({:.6g}, {:.6g})",
+                                     frame.places.net, last.x(), last.y()));
     }
 }
 
-void relax(Triangulation& triangulation, const std::vector<Kernel::Point_2>& holes, int passes) {
+void relax(Triangulation& triangulation, const std::vector<Kernel::Point_2>& holes, int passes,
+           const TriangleFrame& frame) {
     namespace set = CGAL::parameters;
     CGAL::lloyd_optimize_mesh_2(triangulation, set::max_iteration_number = passes, set::convergence = 0.0,
                                 set::freeze_bound = 0.0, set::seeds_begin = holes.begin(), set::seeds_end = holes.end(),
                                 set::mark = false);
-    refine(triangulation, holes);
+    refine(triangulation, holes, frame);
 }
 
 std::vector<SourceSegment> edges_of(const Triangulation& triangulation, const std::vector<Line>& lines,
@@ -486,7 +492,7 @@ std::vector<SourceSegment> triangle_edges(const TriangleNet& net, const Triangle
                                           const TriangleFrame& frame) {
     Triangulation triangulation;
     const std::vector<Line> lines = lines_of(frame, triangulation);
-    Circles circles(bounding_box(frame.map->positions), size.largest());
+    Circles circles(box_of_living_edges(*frame.map), size.largest());
     for (const Line& line : lines) {
         const Vec2 middle_of_line = 0.5 * (place_of(line.start) + place_of(line.end));
         const bool cut = frame.region.empty() || contains(frame.region, middle_of_line);
@@ -504,12 +510,12 @@ std::vector<SourceSegment> triangle_edges(const TriangleNet& net, const Triangle
     const double missing = darts.triangles_asked_for() - static_cast<double>(part.triangles.size());
     constexpr double most = 5e7;
     if (missing > most)
-        refuse("grading", fmt::format("expected sides that make at most {:.0g} triangles in one scene, found {:.2g}",
-                                      most, missing));
+        throw InputError(fmt::format("{}: expected sides that make at most {:.0g} triangles in one scene, found {:.2g}",
+                                     frame.places.grading, most, missing));
     const int count = std::max(0, static_cast<int>(std::lround(0.5 * missing))); // each point adds two triangles
     for (const Vec2& point : scattered_points(count, darts, size, circles)) triangulation.insert(to_cgal(point));
-    refine(triangulation, part.holes);
-    if (net.relaxation > 0) relax(triangulation, part.holes, net.relaxation);
+    refine(triangulation, part.holes, frame);
+    if (net.relaxation > 0) relax(triangulation, part.holes, net.relaxation, frame);
     return edges_of(triangulation, lines, frame.tessellation);
 }
 

@@ -224,6 +224,7 @@ private:
     // ---- a domain that is cut --------------------------------------------------------------------------------
 
     void read_domain(const SceneSection& domain) {
+        spec_.places.domain = context_.place(domain, {});
         if (!domain.node()->is_mapping() || !gives_one_of(domain, {"rectangle", "polygon", "file"}, context_)) return;
         if (domain.has("rectangle")) {
             read_rectangle(domain.section("rectangle"));
@@ -258,6 +259,7 @@ private:
     void read_domain_file(const SceneSection& domain) {
         const auto file = file_of(domain);
         if (!file) return;
+        spec_.places.domain = fmt::format("{}: {}", context_.place(domain, "file"), file->string());
         try {
             auto area = read_geojson_area(*file);
             spec_.holes = std::move(area.holes);
@@ -307,6 +309,7 @@ private:
         trace.interface_type = interface_of(section);
         const auto name = section.given_text("name");
         trace.name = name.value_or(fmt::format("fracture {}", spec_.fractures.size() + 1));
+        trace.place = context_.place(section, {});
         if (!section.node()->is_mapping() || !gives_one_of(section, {"trace", "file"}, context_)) return;
         if (section.has("file")) return read_trace_file(section, trace);
         auto points = section.given_points("trace");
@@ -366,7 +369,7 @@ private:
         hexagons.offset = section.point("offset");
         hexagons.jitter = section.number("jitter");
         hexagons.seed = static_cast<std::uint64_t>(section.integer("seed"));
-        check_cell_count(section, "hexagons", hexagon_area(1.0));
+        check_cell_count(section, "spacing", "hexagons", hexagon_area(1.0), signed_area(spec_.domain));
         return hexagons;
     }
 
@@ -376,17 +379,20 @@ private:
         cells.offset = section.point("offset");
         cells.relaxation = section.count("relaxation");
         cells.seed = static_cast<std::uint64_t>(section.integer("seed"));
-        check_cell_count(section, "cells", hexagon_area(1.0));
+        check_cell_count(section, "spacing", "cells", hexagon_area(1.0), signed_area(spec_.domain));
         return cells;
     }
 
     TriangleNet read_triangles(const SceneSection& section) {
         TriangleNet net;
+        spec_.places.net = context_.place(section, {});
+        spec_.places.spacing = context_.place(section, "spacing");
+        spec_.places.grading = context_.place(section, "grading");
         net.spacing = section.number("spacing");
         net.relaxation = section.count("relaxation");
         net.seed = static_cast<std::uint64_t>(section.integer("seed"));
         if (section.has("grading")) net.grading = read_grading(section.section("grading"));
-        check_cell_count(section, "triangles", triangle_area(1.0));
+        check_cell_count(section, "spacing", "triangles", triangle_area(1.0), signed_area(spec_.domain));
         return net;
     }
 
@@ -400,6 +406,9 @@ private:
                           "expected region and region_spacing together, found one of them");
         if (section.has("region")) grading.region = read_polygon(section, "region");
         grading.region_spacing = section.given_number("region_spacing").value_or(0.0);
+        if (!grading.region.empty() && grading.region_spacing > 0.0)
+            check_cell_count(section, "region_spacing", "triangles", triangle_area(1.0),
+                             std::min(std::abs(signed_area(grading.region)), signed_area(spec_.domain)));
         return grading;
     }
 
@@ -415,15 +424,16 @@ private:
         }
     }
 
-    /// `unit_area`: of a cell with a spacing of one metre.
-    void check_cell_count(const SceneSection& net, std::string_view cells, double unit_area) {
-        const auto spacing = net.given_number("spacing");
+    /// `unit_area`: of a cell with a spacing of one metre; `area` of what is filled.
+    void check_cell_count(const SceneSection& net, std::string_view key, std::string_view cells, double unit_area,
+                          double area) {
+        const auto spacing = net.given_number(key);
         if (!spacing) return;
-        const double n_cells = signed_area(spec_.domain) / (unit_area * *spacing * *spacing);
+        const double n_cells = area / (unit_area * *spacing * *spacing);
         if (n_cells > most_cells)
-            context_.fail(net, "spacing",
+            context_.fail(net, key,
                           fmt::format("expected a spacing in m that fits the domain, found {}, which makes {:.1e} {}",
-                                      found_text(*net.value("spacing")), n_cells, cells));
+                                      found_text(*net.value(key)), n_cells, cells));
     }
 
     void read_region(const SceneSection& section) {

@@ -1,8 +1,97 @@
 #include "kluft/scene/scene_model.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <string>
 #include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "kluft/core/diagnostics.hpp"
+#include "kluft/geometry/polygon.hpp"
 
 namespace kluft {
+
+namespace {
+
+constexpr std::size_t most_told = 10; ///< warnings of one kind
+
+/// Why nothing is left of a fracture.
+std::string reason(const LostFracture& lost, const GeometrySpec& geometry, double resolution) {
+    switch (lost.cause) {
+    case LostFracture::Cause::too_short:
+        return fmt::format("it is shorter than {:.3g} m, the smallest length that the net resolves", resolution);
+    case LostFracture::Cause::coincides:
+        return lost.other < 0 ? "it lies on the outline of the domain"
+                              : fmt::format("{} runs along it already",
+                                            geometry.fractures[static_cast<std::size_t>(lost.other)].name);
+    case LostFracture::Cause::too_near:
+        return fmt::format("it lies nearer to another line than {:.3g} m, the smallest length that the net resolves, "
+                           "or at less than 14 degrees to it",
+                           resolution);
+    case LostFracture::Cause::separates_nothing:
+        return "it ends inside a block and separates nothing";
+    }
+    return {};
+}
+
+std::vector<std::string> lost_fractures(const GeometrySpec& geometry, const CutReport& report) {
+    std::vector<std::string> warnings;
+    for (const LostFracture& lost : report.lost) {
+        if (warnings.size() == most_told) {
+            warnings.push_back(fmt::format("geometry.fractures: {} more fractures are left out for such reasons",
+                                           report.lost.size() - most_told));
+            break;
+        }
+        const FractureTrace& fracture = geometry.fractures[static_cast<std::size_t>(lost.fracture)];
+        warnings.push_back(fmt::format("{}: {} is left out: {}", fracture.place, fracture.name,
+                                       reason(lost, geometry, report.resolution)));
+    }
+    return warnings;
+}
+
+std::vector<std::string> fine_details(const GeometrySpec& geometry, const CutReport& report) {
+    std::vector<std::string> warnings;
+    for (const FineDetail& detail : report.fine_details) {
+        if (warnings.size() == most_told) {
+            warnings.push_back(fmt::format("{}: {} more sides or holes are that small", geometry.places.domain,
+                                           report.fine_details.size() - most_told));
+            break;
+        }
+        const std::string hole = fmt::format("hole {}", detail.hole);
+        const std::string what = detail.is_whole_hole ? hole
+                                 : detail.hole < 0    ? std::string("a side of the outline")
+                                                      : "a side of " + hole;
+        warnings.push_back(fmt::format(
+            "{}: {} at ({:.6g}, {:.6g}) is {:.3g} m {}, less than {:.3g} m, the smallest length that the net "
+            "resolves: triangles as small as that lie around it, and the run may fail there",
+            geometry.places.domain, what, detail.at.x(), detail.at.y(), detail.size,
+            detail.is_whole_hole ? "wide" : "long", report.resolution));
+    }
+    return warnings;
+}
+
+/// Twice the area over the length of the outline: of a strip its width (m).
+double width_of(const Polygon& domain) {
+    double length = 0.0;
+    for (std::size_t i = 0; i < domain.size(); ++i) length += (domain[(i + 1) % domain.size()] - domain[i]).norm();
+    return 2.0 * std::abs(signed_area(domain)) / length;
+}
+
+/// A net that is coarser than the body has other edges than those that the laws of its stiffness are made for.
+void blame_coarse_net(const GeometrySpec& geometry, const InputError& error) {
+    if (!geometry.tessellation || !geometry.tessellation->triangles) return;
+    const double spacing = geometry.tessellation->triangles->spacing;
+    const double width = width_of(geometry.domain);
+    if (spacing <= width) return;
+    throw InputError(
+        fmt::format("{}: the spacing of the net, {:.6g} m, is larger than the body, which is about {:.3g} m "
+                    "wide (twice its area over its outline); with such a net {}",
+                    geometry.places.spacing, spacing, width, error.what()));
+}
+
+} // namespace
 
 ModelInput model_input(const Scene& scene) {
     ModelInput input;
@@ -21,7 +110,17 @@ ModelInput model_input(const Scene& scene) {
 
 SceneModel build_scene_model(const Scene& scene) {
     CutBody body = cut_blocks(scene.geometry);
-    return {build_model(std::move(body.system), model_input(scene)), std::move(body.report)};
+    SceneModel built;
+    try {
+        built.model = build_model(std::move(body.system), model_input(scene));
+    } catch (const InputError& error) {
+        blame_coarse_net(scene.geometry, error);
+        throw;
+    }
+    built.cut = std::move(body.report);
+    for (const auto& warnings : {lost_fractures(scene.geometry, built.cut), fine_details(scene.geometry, built.cut)})
+        built.model.warnings.insert(built.model.warnings.end(), warnings.begin(), warnings.end());
+    return built;
 }
 
 } // namespace kluft

@@ -618,14 +618,18 @@ std::vector<BadSpec> bad_specs() {
     add("TwoPoints", "geometry.domain").domain = {{0, 0}, {1, 0}};
     add("NotANumber", "geometry.domain").domain[2] = {nan, 0};
     add("Infinite", "geometry.domain").domain[2] = {1, std::numeric_limits<double>::infinity()};
-    add("BowTie", "crosses or touches").domain = {{0, 0}, {1, 1}, {1, 0}, {0, 1}};
-    add("Touching", "crosses or touches").domain = {{0, 0}, {2, 0}, {2, 2}, {1, 0}, {0, 2}};
+    add("BowTie", "the outline crosses or touches itself at (0.5, 0.5)").domain = {{0, 0}, {1, 1}, {1, 0}, {0, 1}};
+    add("Touching", "the outline crosses or touches itself at (1, 0)").domain = {
+        {0, 0}, {2, 0}, {2, 2}, {1, 0}, {0, 2}};
     add("Flat", "crosses or touches").domain = {{0, 0}, {1, 0}, {2, 0}};
     add("RepeatedPoint", "the same").domain = {{0, 0}, {1, 0}, {1, 0}, {1, 1}};
-    add("HoleOutside", "hole").holes = {{{2, 2}, {3, 2}, {3, 3}}};
-    add("HoleAcross", "hole").holes = {{{0.5, 0.5}, {1.5, 0.5}, {0.5, 0.7}}};
-    add("HoleInHole", "hole").holes = {{{0.1, 0.1}, {0.9, 0.1}, {0.9, 0.9}, {0.1, 0.9}},
-                                       {{0.4, 0.4}, {0.6, 0.4}, {0.5, 0.6}}};
+    add("HoleOutside", "hole 0, from (2, 2) on, lies outside").holes = {{{2, 2}, {3, 2}, {3, 3}}};
+    add("HoleAcross", "the outline crosses or touches hole 0 at (1, 0.5)").holes = {
+        {{0.5, 0.5}, {1.5, 0.5}, {0.5, 1.5}}};
+    add("HoleAtHole", "hole 0 crosses or touches hole 1 at (0.5, 0.5)").holes = {{{0.1, 0.1}, {0.5, 0.5}, {0.1, 0.9}},
+                                                                                 {{0.5, 0.5}, {0.9, 0.1}, {0.9, 0.9}}};
+    add("HoleInHole", "hole 1").holes = {{{0.1, 0.1}, {0.9, 0.1}, {0.9, 0.9}, {0.1, 0.9}},
+                                         {{0.4, 0.4}, {0.6, 0.4}, {0.5, 0.6}}};
     add("SideOutOfRange", "boundaries.top").boundaries = {{"top", {4}}};
     add("SideTwice", "boundaries.b").boundaries = {{"a", {1}}, {"b", {1}}};
     add("ShortTrace", "geometry.fractures.0").fractures = {{{{0, 0}}, 0, ""}};

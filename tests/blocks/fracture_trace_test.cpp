@@ -59,5 +59,22 @@ TEST(BridgeEnds, ATraceMayCloseOnItselfButNotOnItsOwnStart) {
     EXPECT_TRUE(bridges({closed}, 0.1).empty());
 }
 
+// The box has a diagonal of 5: segments are kept within 5 of it, and one that passes beyond splits the trace.
+TEST(PartsNear, KeepsWhatIsNearAndSplitsWhatGoesFarAway) {
+    const Box box{{0, 0}, {4, 3}};
+    const std::vector<Vec2> inside{{-1, 1}, {2, 2}, {5, 1}};
+    EXPECT_EQ(parts_near(box, inside), (std::vector<std::vector<Vec2>>{inside}));
+    EXPECT_TRUE(parts_near(box, {{100, 0}, {100, 50}}).empty());
+    const auto parts = parts_near(box, {{-1e9, 1}, {1e9, 1}, {1e9, 2}, {-1e9, 2}});
+    ASSERT_EQ(parts.size(), 2U);
+    ASSERT_EQ(parts[0].size(), 2U);
+    ASSERT_EQ(parts[1].size(), 2U);
+    constexpr double rounding = 1e-9; // that of the ends far away is 1e-7
+    EXPECT_NEAR((parts[0][0] - Vec2(-5, 1)).norm(), 0.0, rounding);
+    EXPECT_NEAR((parts[0][1] - Vec2(9, 1)).norm(), 0.0, rounding);
+    EXPECT_NEAR((parts[1][0] - Vec2(9, 2)).norm(), 0.0, rounding);
+    EXPECT_NEAR((parts[1][1] - Vec2(-5, 2)).norm(), 0.0, rounding);
+}
+
 } // namespace
 } // namespace kluft

@@ -130,5 +130,39 @@ TEST(MapMender, VerticesInStraightEdgesOfOneSourceGo) {
     EXPECT_EQ(n_alive(fracture + 1), 1);
 }
 
+double freed_length(const MendReport& report, int source) {
+    double length = 0.0;
+    for (const SourceSegment& piece : report.freed) length += piece.source == source ? (piece.b - piece.a).norm() : 0.0;
+    return length;
+}
+
+// A strip that ends inside the body leaves across one of its long sides; the other one and both ends, which join it
+// with what goes on from there, are free.
+TEST(MapMender, OfAStripInsideAFaceOneSideIsFreed) {
+    std::vector<SourceSegment> segments = square(4);
+    segments.push_back({{1, 2}, {3, 2}, fracture});
+    segments.push_back({{1, 2.05}, {3, 2.05}, fracture + 1});
+    segments.push_back({{1, 2}, {1, 2.05}, fracture + 2});
+    segments.push_back({{3, 2}, {3, 2.05}, fracture + 2});
+    PlanarMap map = body_of(segments);
+    const MendReport report = mend(map, limits(0.2, 0.1));
+    EXPECT_EQ(report.merged.size(), 1U);
+    EXPECT_EQ(n_faces(map), 1);
+    EXPECT_NEAR(freed_length(report, fracture) + freed_length(report, fracture + 1), 2.0, 1e-14);
+    EXPECT_NEAR(freed_length(report, fracture + 2), 2 * 0.05, 1e-14);
+}
+
+// One trace that turns round a bend of 90 degrees and comes back at a distance of 0.05: lengths of its sides are
+// 2 x 2 and 2 x 1.95, and it is closed by ends of 0.05. One whole side is left, not one leg of each.
+TEST(MapMender, ASideGoesOnRoundABendButNotRoundTheEndOfAStrip) {
+    std::vector<SourceSegment> segments = square(4);
+    const std::vector<Vec2> hairpin{{1, 3}, {1, 1}, {3, 1}, {3, 1.05}, {1.05, 1.05}, {1.05, 3}, {1, 3}};
+    for (std::size_t i = 0; i + 1 < hairpin.size(); ++i) segments.push_back({hairpin[i], hairpin[i + 1], fracture});
+    PlanarMap map = body_of(segments);
+    const MendReport report = mend(map, limits(0.5, 0.1));
+    EXPECT_EQ(n_faces(map), 1);
+    EXPECT_NEAR(freed_length(report, fracture), 2 * 1.95 + 2 * 0.05, 1e-12);
+}
+
 } // namespace
 } // namespace kluft

@@ -207,6 +207,105 @@ TEST(TriangleNet, MergesStripsThatAreNarrowerThanItsResolution) {
     EXPECT_LT(body.system.n_blocks(), 260);
 }
 
+double length_of_fractures(const CutBody& body) {
+    return cut_scenes::interface_length(body.system, EdgeOrigin::fracture);
+}
+
+/// Two traces that end in the body and are nearer to each other than 0.05 sides are one: its length is that of either,
+/// but for what the resolution of 0.01 m leaves open at both ends.
+TEST(TriangleNet, KeepsOneOfTwoTracesThatEncloseAStripInTheBody) {
+    const TriangleNet net{.spacing = 0.2, .relaxation = 0, .seed = 1, .grading = {}};
+    for (const double apart : {0.008, 0.005, 0.001, 1e-6, 1e-9, 1e-15}) {
+        for (const double rise : {0.0, 0.4, 0.8}) {
+            GeometrySpec spec = triangulated(1.0, 2.0, net);
+            add_trace(spec, {{0.1, 0.6}, {0.9, 0.6 + rise}});
+            add_trace(spec, {{0.1, 0.6 + apart}, {0.9, 0.6 + rise + apart}});
+            const CutBody body = cut_blocks(spec);
+            EXPECT_EQ(faults(spec, body), "");
+            EXPECT_NEAR(length_of_fractures(body), std::hypot(0.8, rise), 0.02) << apart << ' ' << rise;
+        }
+    }
+}
+
+/// Traces in echelon, 5 mm apart, that overlap from 0.3 to 0.7 are one from 0.1 to 0.9; a shorter one beside a long one
+/// adds nothing; legs of an L, 8 mm beside another, are those of one.
+TEST(TriangleNet, KeepsWhatGoesOnBeyondAMergedStrip) {
+    const TriangleNet net{.spacing = 0.2, .relaxation = 0, .seed = 1, .grading = {}};
+    GeometrySpec echelon = triangulated(1.0, 2.0, net);
+    add_trace(echelon, {{0.1, 1.0}, {0.7, 1.0}});
+    add_trace(echelon, {{0.3, 1.005}, {0.9, 1.005}});
+    EXPECT_NEAR(length_of_fractures(cut_blocks(echelon)), 0.8, 0.02);
+    GeometrySpec beside = triangulated(1.0, 2.0, net);
+    add_trace(beside, {{0.1, 1.0}, {0.9, 1.0}});
+    add_trace(beside, {{0.3, 1.005}, {0.6, 1.005}});
+    EXPECT_NEAR(length_of_fractures(cut_blocks(beside)), 0.8, 0.02);
+    GeometrySpec bent = triangulated(1.0, 2.0, net);
+    add_trace(bent, {{0.2, 1.5}, {0.2, 0.5}, {0.8, 0.5}});
+    add_trace(bent, {{0.208, 1.5}, {0.208, 0.508}, {0.8, 0.508}});
+    EXPECT_NEAR(length_of_fractures(cut_blocks(bent)), 1.6, 0.04);
+}
+
+std::vector<LostFracture> lost_of(GeometrySpec spec, const std::vector<std::vector<Vec2>>& traces) {
+    for (const auto& trace : traces) add_trace(spec, trace);
+    return cut_blocks(spec).report.lost;
+}
+
+/// With a resolution of 0.05 x 0.2 = 0.01 m.
+TEST(TriangleNet, SaysWhichFracturesAreNotLeftAndWhy) {
+    using Cause = LostFracture::Cause;
+    const GeometrySpec spec = triangulated(1.0, 2.0, {.spacing = 0.2, .relaxation = 0, .seed = 1, .grading = {}});
+    const std::vector<Vec2> line{{0.1, 1.0}, {0.9, 1.0}};
+    EXPECT_TRUE(lost_of(spec, {line, {{5, 5}, {6, 6}}}).empty()); // beyond the domain, of which the reader tells
+    const auto twice = lost_of(spec, {line, {{0.9, 1.0}, {0.1, 1.0}}});
+    ASSERT_EQ(twice.size(), 1U);
+    EXPECT_EQ(twice[0].fracture, 1);
+    EXPECT_EQ(twice[0].cause, Cause::coincides);
+    EXPECT_EQ(twice[0].other, 0);
+    const auto on_outline = lost_of(spec, {{{0, 0.5}, {0, 1.5}}});
+    ASSERT_EQ(on_outline.size(), 1U);
+    EXPECT_EQ(on_outline[0].cause, Cause::coincides);
+    EXPECT_EQ(on_outline[0].other, -1);
+    const auto short_one = lost_of(spec, {line, {{0.3, 0.5}, {0.305, 0.5}}});
+    ASSERT_EQ(short_one.size(), 1U);
+    EXPECT_EQ(short_one[0].fracture, 1);
+    EXPECT_EQ(short_one[0].cause, Cause::too_short);
+    const auto near = lost_of(spec, {{{0.005, 0.5}, {0.005, 1.5}}, line});
+    ASSERT_EQ(near.size(), 1U);
+    EXPECT_EQ(near[0].fracture, 0);
+    EXPECT_EQ(near[0].cause, Cause::too_near);
+}
+
+TEST(TriangleNet, SaysWhichPartsOfTheOutlineAreSmallerThanItResolves) {
+    GeometrySpec spec = triangulated(1.0, 2.0, {.spacing = 0.2, .relaxation = 0, .seed = 1, .grading = {}});
+    EXPECT_TRUE(cut_blocks(spec).report.fine_details.empty());
+    spec.domain = {{0, 0}, {0.5, 0}, {0.504, 0}, {1, 0}, {1, 2}, {0, 2}};
+    spec.boundaries.clear();
+    spec.holes = {{{0.3, 1}, {0.306, 1}, {0.306, 1.008}, {0.3, 1.008}}};
+    const auto details = cut_blocks(spec).report.fine_details;
+    ASSERT_EQ(details.size(), 2U);
+    EXPECT_EQ(details[0].hole, -1);
+    EXPECT_NEAR(details[0].size, 0.004, 1e-15);
+    EXPECT_NEAR((details[0].at - Vec2(0.502, 0)).norm(), 0.0, 1e-15);
+    EXPECT_TRUE(details[1].is_whole_hole);
+    EXPECT_NEAR(details[1].size, 0.008, 1e-15);
+}
+
+/// What a trace does beyond the body costs nothing and moves nothing in it: y = x + 1/2 cuts 1.5^2/2 off a square of 2.
+TEST(TriangleNet, FollowsTracesThatEndFarAway) {
+    for (const double far : {1e6, 1e9}) {
+        GeometrySpec spec = triangulated(2.0, 2.0, {.spacing = 0.5, .relaxation = 0, .seed = 1, .grading = {}});
+        spec.tessellation->triangles->grading.fractures = 0.4;
+        add_trace(spec, {{-far, -far + 0.5}, {far, far + 0.5}});
+        const CutBody body = cut_blocks(spec);
+        EXPECT_EQ(faults(spec, body), "");
+        EXPECT_NEAR(length_of_fractures(body), 1.5 * std::numbers::sqrt2, 1e-9);
+        double above = 0.0;
+        for (const Block& block : body.system.blocks)
+            above += block.centroid.y() > block.centroid.x() + 0.5 ? block.area : 0.0;
+        EXPECT_NEAR(above, 1.125, 1e-9);
+    }
+}
+
 TEST(TriangleNet, RefusesARegionWithoutBodyAndMoreTrianglesThanItCanMake) {
     GeometrySpec outside = triangulated(5.0, 5.0, {.spacing = 0.5, .grading = {}});
     outside.tessellation->region = {{10, 10}, {20, 10}, {20, 20}};

@@ -9,19 +9,43 @@
 
 namespace kluft {
 
+/// A fracture with a part in the domain of which no interface is left.
+struct LostFracture {
+    enum class Cause {
+        too_short,        ///< than what is resolved
+        coincides,        ///< with an earlier fracture or the outline
+        too_near,         ///< to another line, of a net of triangles
+        separates_nothing ///< it ends inside blocks
+    };
+    int fracture = 0;
+    Cause cause = Cause::separates_nothing;
+    int other = -1; ///< the fracture that it coincides with; -1 for the outline and other causes
+};
+
+/// A side of the outline or of a hole, or a whole hole, that is smaller than what a net of triangles resolves.
+struct FineDetail {
+    int hole = -1; ///< -1: of the outline
+    bool is_whole_hole = false;
+    Vec2 at = Vec2::Zero(); ///< its middle, scene coordinates (m)
+    double size = 0.0;      ///< length of the side, or the largest extent of the hole (m)
+};
+
 /// What the cut had to mend and what came out.
 struct CutReport {
     struct Merged {
         Vec2 at = Vec2::Zero(); ///< centroid of the piece, scene coordinates (m)
         double area = 0.0;      ///< m2
     };
-    std::vector<Merged> merged;  ///< pieces below the minimum area that went into a neighbour
-    int collapsed_edges = 0;     ///< short edges collapsed to a point
-    int joined_ends = 0;         ///< ends of traces that were carried on to what they nearly met
-    int pruned_ends = 0;         ///< pieces of traces that separate nothing (dangling ends, isolated traces)
-    double smallest_area = 0.0;  ///< m2
-    double smallest_edge = 0.0;  ///< m
-    double smallest_angle = 0.0; ///< radians, between successive edges of a block
+    std::vector<Merged> merged; ///< pieces below the minimum area that went into a neighbour
+    int collapsed_edges = 0;    ///< short edges collapsed to a point
+    int joined_ends = 0;        ///< ends of traces that were carried on to what they nearly met
+    int pruned_ends = 0;        ///< pieces of traces that separate nothing (dangling ends, isolated traces)
+    std::vector<LostFracture> lost;
+    std::vector<FineDetail> fine_details; ///< of a body with triangles
+    double resolution = 0.0;              ///< the smallest length that the cut resolves (m)
+    double smallest_area = 0.0;           ///< m2
+    double smallest_edge = 0.0;           ///< m
+    double smallest_angle = 0.0;          ///< radians, between successive edges of a block
 };
 
 struct CutBody {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "kluft/blocks/arrangement.hpp"
+#include "kluft/geometry/polygon.hpp"
 
 namespace kluft {
 
@@ -24,5 +25,9 @@ struct SourceTrace {
 
 /// A polyline without the points that it passes within `tolerance` (m) anyway (Douglas and Peucker 1973).
 [[nodiscard]] std::vector<Vec2> simplified(const std::vector<Vec2>& points, double tolerance);
+
+/// The parts of a polyline whose segments come near a box. Segments that reach farther beyond it than its diagonal are
+/// cut off there, in extended precision, so that what lies in the box moves by less than rounding; others keep every bit.
+[[nodiscard]] std::vector<std::vector<Vec2>> parts_near(const Box& box, const std::vector<Vec2>& points);
 
 } // namespace kluft

@@ -11,7 +11,8 @@ namespace kluft {
 /// The edges of the map that have the same face on both sides, in the order of the map.
 [[nodiscard]] std::vector<SourceSegment> free_pieces(const PlanarMap& map);
 
-/// The pieces joined again with a map that was mended without them: pieces shorter than `reach` (m) shrink to a point,
+/// The pieces joined again with a map that was mended without them: pieces shorter than `reach` (m) shrink to that end that
+/// lies on the map or joins more of them,
 /// ends within `reach` of a vertex of the map move there, other ends within `reach` of an edge to the nearest point of it,
 /// where the edge gets a vertex. A piece that comes nearer than `reach` to another line, or leaves it at less than
 /// 14 degrees, is left out: no triangle fits between them.

@@ -18,6 +18,7 @@ struct FractureTrace {
     std::vector<Vec2> points;
     int interface_type = 0; ///< index into the scene's interface types
     std::string name;
+    std::string place{}; ///< where the scene gives it, as messages begin; empty: its index is told
 };
 
 /// A net of regular hexagons. `spacing` is the distance of centres, which is also the distance across flats (m).
@@ -102,6 +103,14 @@ struct BoundarySides {
     std::string block{}; ///< the given block whose sides they are; empty: of the whole body
 };
 
+/// Where the scene gives its parts: file, line and key, as messages begin, or the keys alone.
+struct GeometryPlaces {
+    std::string domain = "geometry.domain";
+    std::string net = "geometry.tessellation.triangles";
+    std::string spacing = "geometry.tessellation.triangles.spacing";
+    std::string grading = "geometry.tessellation.triangles.grading";
+};
+
 struct GeometrySpec {
     Polygon domain;                        ///< outline, scene coordinates (m)
     std::vector<Polygon> holes;            ///< of the domain
@@ -116,6 +125,7 @@ struct GeometrySpec {
     std::vector<GivenBlock> blocks; ///< instead of domain, holes, fractures, tessellation and regions
     int blocks_interface = 0;       ///< index into the scene's interface types: of the interfaces between them
     std::vector<BlockSetSpec> sets;
+    GeometryPlaces places{};
 };
 
 /// Mean area of a cell of the net, or of a hexagon of lattice_spacing where there is none (m2).

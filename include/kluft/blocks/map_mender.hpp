@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "kluft/blocks/arrangement.hpp"
 #include "kluft/blocks/planar_map.hpp"
 
 namespace kluft {
@@ -24,12 +25,15 @@ struct MendReport {
         double area = 0.0;      ///< m2
     };
     std::vector<Merged> merged;
+    std::vector<SourceSegment> freed; ///< sides of merged faces that went with the side across which these were merged
     int collapsed_edges = 0;
 };
 
 /// Until nothing changes any more:
 /// 1. each face below `limits.area` or `limits.width`, smallest first, is merged with the neighbour across its longest tessellation edge,
-///    otherwise across its longest interior edge; all edges between the two disappear;
+///    otherwise across its longest interior edge; all edges between the two disappear. A face that is merged away
+///    has one side less: the edges that go on from that edge up to a sharp turn, or two turns within 2 `limits.edge`.
+///    Where its other sides lie in the same neighbour they separate nothing any more, and are `freed`;
 /// 2. each edge below `limits.edge`, shortest first, is collapsed to the end that is worth more (corner of the domain,
 ///    then its outline, then more fracture edges), otherwise to the other, if every face around stays simple and positively oriented, the
 ///    outline keeps its shape and corners, and no two vertices get joined twice;

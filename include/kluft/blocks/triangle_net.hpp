@@ -48,8 +48,10 @@ private:
 struct TriangleFrame {
     const PlanarMap* map = nullptr;
     std::vector<SourceSegment> free_pieces; ///< of lines that end inside a face, which separate nothing
-    Polygon region;       ///< whose sides are lines of the map: the net is in the faces inside; empty: in all
-    int tessellation = 0; ///< source of the net's edges
+    Polygon region;             ///< whose sides are lines of the map: the net is in the faces inside; empty: in all
+    int tessellation = 0;       ///< source of the net's edges
+    Vec2 origin = Vec2::Zero(); ///< of the map's coordinates, for messages (m)
+    GeometryPlaces places{};    ///< of the net, for messages
 };
 
 /// All edges of the body with the net in it: those of the map and the free pieces, cut where the net meets them, each

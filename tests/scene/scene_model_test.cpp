@@ -1,0 +1,79 @@
+#include "kluft/scene/scene_model.hpp"
+
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "scene/scene_text.hpp"
+
+namespace kluft {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// A body of 1 m by 2 m with triangles of 0.2 m, which resolve 0.05 x 0.2 = 0.01 m.
+const std::string body_of_triangles = R"(kluft: 1
+materials: {rock: {youngs_modulus: 5 GPa, poissons_ratio: 0.25, cohesion: 5 MPa, friction_angle: 40, tensile_strength: 2 MPa}}
+interfaces:
+  joint: {kind: fracture, normal_stiffness: 500 GPa/m, shear_stiffness: 250 GPa/m, friction_angle: 30}
+  bond: {kind: potential_crack, fails_to: crack}
+  crack: {kind: fracture, friction_angle: 35}
+geometry:
+  domain: {polygon: [[0, 0], [1, 0], [1, 2], [0, 2]]}
+  fractures: [{name: main, trace: [[0.1, 1], [0.9, 1]], interface: joint}]
+  tessellation: {triangles: {spacing: 0.2}, interface: bond}
+stages: [{pressure: {top: 1 MPa}}]
+)";
+
+std::vector<std::string> warnings_of(const std::vector<std::string>& overrides) {
+    return build_scene_model(read_scene_text(body_of_triangles, overrides, "scene.yaml")).model.warnings;
+}
+
+std::string refusal_of(const std::vector<std::string>& overrides) {
+    const auto messages = test::messages_of(
+        [&] { return build_scene_model(read_scene_text(body_of_triangles, overrides, "scene.yaml")); });
+    return messages.empty() ? "" : messages.front();
+}
+
+TEST(SceneModel, WarnsOfFracturesThatAreNotLeft) {
+    EXPECT_THAT(warnings_of({}), IsEmpty());
+    EXPECT_THAT(warnings_of({"geometry.fractures.0.trace=[[0.3, 1], [0.306, 1]]"}),
+                ElementsAre(AllOf(HasSubstr("scene.yaml:9:"), HasSubstr("geometry.fractures.0: main is left out: "),
+                                  HasSubstr("shorter than 0.01 m"))));
+    EXPECT_THAT(warnings_of({"geometry.fractures.0.trace=[[0.004, 0.5], [0.004, 1.5]]"}),
+                ElementsAre(HasSubstr("nearer to another line than 0.01 m")));
+    EXPECT_THAT(warnings_of({"geometry.fractures.0.trace=[[1, 0.5], [1, 1.5]]"}),
+                ElementsAre(HasSubstr("it lies on the outline")));
+    EXPECT_THAT(warnings_of({"geometry.fractures=[{name: main, trace: [[0.1, 1], [0.9, 1]], interface: joint}, {name: "
+                             "again, trace: [[0.9, 1], [0.1, 1]], interface: joint}]"}),
+                ElementsAre(HasSubstr("geometry.fractures.1: again is left out: main runs along it already")));
+}
+
+TEST(SceneModel, WarnsOfDetailsThatAreFinerThanTheNet) {
+    EXPECT_THAT(warnings_of({"geometry.domain.polygon=[[0, 0], [0.5, 0], [0.502, 0], [1, 0], [1, 2], [0, 2]]"}),
+                ElementsAre(AllOf(HasSubstr("scene.yaml:8:"),
+                                  HasSubstr("a side of the outline at (0.501, 0) is 0.002 m long, less than 0.01 m"))));
+}
+
+/// One triangle of 0.05 m has 1.08e-3 m2, the strip of 1 mm 1e-3 m2.
+TEST(SceneModel, BlamesANetThatIsCoarserThanTheBody) {
+    EXPECT_THAT(refusal_of({"geometry.domain.polygon=[[0, 0], [1, 0], [1, 0.001], [0, 0.001]]",
+                            "geometry.tessellation.triangles.spacing=0.05", "geometry.fractures=[]"}),
+                AllOf(HasSubstr("geometry.tessellation.triangles.spacing: the spacing of the net, 0.05 m, is larger "
+                                "than the body, which is about 0.000999 m wide")));
+}
+
+/// Triangles of 1e-6 m on 1 m2: 2.3e12.
+TEST(SceneModel, NamesTheSpacingThatMakesTooManyTriangles) {
+    const std::string grading = "geometry.tessellation.triangles.grading";
+    EXPECT_THAT(refusal_of({grading + ".region=[[0, 0], [1, 0], [1, 1], [0, 1]]", grading + ".region_spacing=1e-6"}),
+                AllOf(HasSubstr("--set " + grading + ".region_spacing=1e-6"), HasSubstr("2.3e+12 triangles")));
+}
+
+} // namespace
+} // namespace kluft
