@@ -298,6 +298,9 @@ private:
     void read_targets_of(TargetQuantity quantity, const SceneNode& node) {
         const std::string pattern = fmt::format("targets.{}", quantity_name(quantity));
         if (!node.is_list()) return read_target(quantity, node, pattern, pattern, std::string(quantity_name(quantity)));
+        if (node.items.empty())
+            errors_.add(node.at, pattern,
+                        "expected {value: ..., tolerance: ...} or a list of such, found an empty list");
         for (std::size_t i = 0; i < node.items.size(); ++i)
             read_target(quantity, node.items[i], pattern, fmt::format("{}.{}", pattern, i),
                         fmt::format("{} {}", quantity_name(quantity), i + 1));
@@ -347,6 +350,8 @@ private:
                 const std::string problem = scalar_problem(item, rule);
                 if (!problem.empty())
                     errors_.add(item.at, place, "expected " + expected_text(rule) + ", found " + problem);
+                else if (*read_quantity(item.text, Measure::stress).value < 0.0)
+                    errors_.add(item.at, place, "expected a lateral pressure >= 0, found " + in_quotes(item.text));
                 else if (different.insert(*read_quantity(item.text, Measure::stress).value).second)
                     target.pressures.push_back(item.text);
             }
@@ -369,8 +374,11 @@ private:
             return errors_.add(name->at, joined_path(path, "file"), error.what());
         }
         if (target.curve.size() < 2)
+            return errors_.add(name->at, joined_path(path, "file"),
+                               "expected a curve of at least two points with growing axial_strain, found fewer");
+        if (std::ranges::none_of(target.curve, [](const Vec2& point) { return point.y() > 0.0; }))
             errors_.add(name->at, joined_path(path, "file"),
-                        "expected a curve of at least two points with growing axial_strain, found fewer");
+                        "expected a curve with a differential_stress above zero, positive in compression, found none");
     }
 
     void read_replicas() {

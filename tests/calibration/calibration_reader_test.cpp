@@ -116,6 +116,15 @@ TEST_F(CalibrationFiles, MistakesAreAnsweredWithPlaceAndNearestKey) {
                 HasSubstr("expected a number > 0 in Pa, found '-1 MPa'"));
     EXPECT_THAT(refusal(head + parameters + "targets: {cohesion: {value: 1 MPa, tolerance: 1 %, pressures: [1, 1]}}\n"),
                 HasSubstr("at least two different pressures"));
+    EXPECT_THAT(
+        refusal(head + parameters + "targets: {cohesion: {value: 1 MPa, tolerance: 1 %, pressures: [1, -1]}}\n"),
+        HasSubstr("expected a lateral pressure >= 0, found '-1'"));
+    EXPECT_THAT(refusal(head + parameters + "targets: {peak_stress: []}\n"), HasSubstr("found an empty list"));
+    for (const char* const stresses : {"0,0\n0.01,0\n", "0,0\n0.01,-1e6\n"}) {
+        write_text(directory_ / "flat.csv", std::string("axial_strain,differential_stress\n") + stresses);
+        EXPECT_THAT(refusal(head + parameters + "targets: {curve: {file: flat.csv, tolerance: 5 %}}\n"),
+                    HasSubstr("expected a curve with a differential_stress above zero"));
+    }
     EXPECT_THAT(refusal(head + parameters + target + "replicas: 0\n"), HasSubstr("replicas"));
     EXPECT_THAT(refusal("[1, 2]\n"), HasSubstr("kluft_calibration: 1"));
 }
