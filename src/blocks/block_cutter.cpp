@@ -674,10 +674,10 @@ public:
         std::vector<char> found(spec_.fractures.size(), 0);
         for (const Interface& interface : system.interfaces)
             if (interface.origin == EdgeOrigin::fracture) found[interface.fracture] = 1;
+        const SegmentGrid fractures = what_is_left(system);
         std::vector<LostFracture> lost;
         for (int f = 0; f < static_cast<int>(found.size()); ++f) {
-            if (found[f] != 0) continue;
-            if (const auto loss = loss_of(f)) lost.push_back(*loss);
+            if (const auto loss = found[f] != 0 ? loss_in_part(f, fractures) : loss_of(f)) lost.push_back(*loss);
         }
         return lost;
     }
@@ -722,6 +722,39 @@ private:
             if (first < 0) first = here;
         }
         return first;
+    }
+
+    /// All fractures and the outline.
+    [[nodiscard]] SegmentGrid what_is_left(const BlockSystem& system) const {
+        std::vector<SegmentGrid::Segment> segments;
+        for (const SourceSegment& segment : segments_)
+            if (segment.source < numbers_.first_fracture) segments.emplace_back(segment.a, segment.b);
+        for (const Interface& interface : system.interfaces) {
+            if (interface.origin != EdgeOrigin::fracture) continue;
+            const Edge& edge = system.blocks[interface.block_a].edges[interface.edge_a];
+            segments.emplace_back(edge_start(system, edge), edge_end(system, edge));
+        }
+        return SegmentGrid(std::move(segments));
+    }
+
+    /// Other nets cut off what ends inside a block.
+    [[nodiscard]] std::optional<LostFracture> loss_in_part(int fracture, const SegmentGrid& left) const {
+        if (!has_triangles(spec_) || !region_.empty()) return std::nullopt;
+        const double reach = 2.0 * resolution_;
+        double missing = 0.0;
+        for (const SourceTrace& trace : traces_) {
+            if (trace.source != numbers_.first_fracture + fracture) continue;
+            for (std::size_t i = 0; i + 1 < trace.points.size(); ++i) {
+                const Vec2 along = trace.points[i + 1] - trace.points[i];
+                const double n_pieces = std::clamp(std::ceil(along.norm() / resolution_), 1.0, 1e4);
+                for (double k = 0.5; k < n_pieces; k += 1.0) {
+                    const Vec2 p = trace.points[i] + k / n_pieces * along;
+                    if (in_body(p) && !std::isfinite(left.distance(p, reach))) missing += along.norm() / n_pieces;
+                }
+            }
+        }
+        if (missing <= reach) return std::nullopt;
+        return LostFracture{.fracture = fracture, .cause = LostFracture::Cause::in_part, .length = missing};
     }
 
     [[nodiscard]] std::optional<LostFracture> loss_of(int fracture) const {

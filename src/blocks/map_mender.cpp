@@ -183,12 +183,11 @@ private:
             if (onward == exit || map_.face(map_.twin(onward)) != map_.face(map_.twin(exit))) return side;
             recent.push_back({arc, forward ? turn_between(h, onward) : turn_between(onward, h), side.size()});
             std::erase_if(recent, [&](const Turn& turn) { return turn.arc < arc - 2.0 * limits_.edge; });
-            const double turned = std::accumulate(recent.begin(), recent.end(), 0.0,
-                                                  [](double sum, const Turn& turn) { return sum + turn.angle; });
-            if (turned > turning_back) {
-                const auto first =
-                    std::find_if(recent.begin(), recent.end(), [](const Turn& turn) { return turn.angle > 0.0; });
-                side.resize(first->n_before);
+            double turned = 0.0;
+            for (auto turn = recent.rbegin(); turn != recent.rend(); ++turn) {
+                turned += turn->angle;
+                if (turned <= turning_back) continue;
+                side.resize(turn->n_before);
                 return side;
             }
             side.push_back(onward);

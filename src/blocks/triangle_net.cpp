@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <set>
 #include <stdexcept>
 #include <tuple>
@@ -309,11 +310,47 @@ Filled filled_part(const Triangulation& triangulation, const std::vector<Line>& 
     return filled;
 }
 
+/// What the side of a net is at least, cell by cell of a grid over the body: where it is large, most random places are
+/// turned down, for which this is enough to know.
+class LeastSides {
+public:
+    LeastSides(const std::vector<Corners>& triangles, const TriangleSize& size) {
+        std::vector<Vec2> corners;
+        for (const Corners& t : triangles) corners.insert(corners.end(), {t.a, t.b, t.c});
+        const Box box = bounding_box(corners);
+        lower_ = box.lower;
+        cell_ = (box.upper - box.lower).maxCoeff() / n_cells;
+        const double away = size.growth() * std::numbers::sqrt2 / 2.0 * cell_;
+        constexpr double rounding = 1e-6;
+        least_.reserve(static_cast<std::size_t>(n_cells) * n_cells);
+        for (int j = 0; j < n_cells; ++j) {
+            for (int i = 0; i < n_cells; ++i) {
+                const Vec2 middle = lower_ + cell_ * Vec2(i + 0.5, j + 0.5);
+                least_.push_back((1.0 - rounding) * (size.at(middle) - away));
+            }
+        }
+    }
+
+    [[nodiscard]] double at(const Vec2& place) const {
+        const Vec2 cell = (place - lower_) / cell_;
+        const int i = std::clamp(static_cast<int>(cell.x()), 0, n_cells - 1);
+        const int j = std::clamp(static_cast<int>(cell.y()), 0, n_cells - 1);
+        return least_[static_cast<std::size_t>(j) * n_cells + i];
+    }
+
+private:
+    static constexpr int n_cells = 256; ///< in each direction
+    Vec2 lower_ = Vec2::Zero();
+    double cell_ = 1.0;
+    std::vector<double> least_;
+};
+
 /// Random places in triangles, as dense as the net is to be.
 class Darts {
 public:
     Darts(const std::vector<Corners>& triangles, const TriangleSize& size, std::uint64_t seed)
         : triangles_(triangles), size_(size), random_(seed) {
+        if (size.is_graded()) least_.emplace(triangles, size);
         double sum = 0.0;
         for (const Corners& triangle : triangles) area_up_to_.push_back(sum += triangle.area());
         smallest_ = size.largest();
@@ -325,6 +362,15 @@ public:
     Vec2 next() {
         while (true) {
             const Vec2 place = anywhere();
+            const double least = least_ ? least_->at(place) : 0.0;
+            if (least > smallest_) {
+                const double most = smallest_ / least;
+                const double share = random_.next();
+                if (share >= most * most) continue;
+                const double ratio = smallest_ / size_.at(place);
+                if (share < ratio * ratio) return place;
+                continue;
+            }
             const double ratio = smallest_ / size_.at(place);
             if (ratio >= 1.0 || random_.next() < ratio * ratio) return place;
         }
@@ -352,6 +398,7 @@ private:
     const std::vector<Corners>& triangles_;
     const TriangleSize& size_;
     RandomNumbers random_;
+    std::optional<LeastSides> least_;
     std::vector<double> area_up_to_;
     double smallest_ = 0.0;
 };

@@ -67,10 +67,27 @@ std::vector<int> SegmentGrid::near(const Box& box) const {
 
 double SegmentGrid::distance(const Vec2& p, double limit) const {
     double least = std::numeric_limits<double>::infinity();
-    const Vec2 reach(limit, limit);
-    for (const int i : near({p - reach, p + reach})) {
-        const double away = distance_to_segment(p, segments_[i].first, segments_[i].second);
-        if (away <= limit) least = std::min(least, away);
+    const auto look = [&](int r, int c) {
+        for (const int i : cells_[static_cast<std::size_t>(r) * n_x_ + c]) {
+            const double away = distance_to_segment(p, segments_[i].first, segments_[i].second);
+            if (away <= limit) least = std::min(least, away);
+        }
+    };
+    // Cells in squares about that of the point q of the grid's box that is nearest to p. What lies beyond the square of
+    // number k is farther than k cells from q, and at a right angle or more to p as seen from there.
+    const Vec2 upper = lower_ + cell_ * Vec2(n_x_, n_y_);
+    const double to_box = (p - p.cwiseMax(lower_).cwiseMin(upper)).norm();
+    const int middle_column = column(p.x());
+    const int middle_row = row(p.y());
+    for (int k = 0; k <= std::max(n_x_, n_y_); ++k) {
+        const double beyond = std::hypot(to_box, std::max(0, k - 2) * cell_); // one cell less for rounding
+        if (beyond > std::min(limit, least)) break;
+        for (int r = std::max(0, middle_row - k); r <= std::min(n_y_ - 1, middle_row + k); ++r) {
+            const bool whole_row = r == middle_row - k || r == middle_row + k;
+            const int step = whole_row || k == 0 ? 1 : 2 * k;
+            for (int c = middle_column - k; c <= middle_column + k; c += step)
+                if (c >= 0 && c < n_x_) look(r, c);
+        }
     }
     return least;
 }

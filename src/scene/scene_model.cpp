@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,7 +16,7 @@ namespace kluft {
 
 namespace {
 
-constexpr std::size_t most_told = 10; ///< warnings of one kind
+constexpr std::size_t most_told = 3; ///< warnings of one kind
 
 /// Why nothing is left of a fracture.
 std::string reason(const LostFracture& lost, const GeometrySpec& geometry, double resolution) {
@@ -32,21 +33,36 @@ std::string reason(const LostFracture& lost, const GeometrySpec& geometry, doubl
                            resolution);
     case LostFracture::Cause::separates_nothing:
         return "it ends inside a block and separates nothing";
+    case LostFracture::Cause::in_part:
+        return fmt::format("{:.3g} m of it are nearer to another line than {:.3g} m, the smallest length that the net "
+                           "resolves, or at less than 14 degrees to it",
+                           lost.length, resolution);
     }
     return {};
 }
 
+/// Of each cause the first few by name, and how many more.
 std::vector<std::string> lost_fractures(const GeometrySpec& geometry, const CutReport& report) {
+    const auto trace_of = [&geometry](const LostFracture& lost) -> const FractureTrace& {
+        return geometry.fractures[static_cast<std::size_t>(lost.fracture)];
+    };
     std::vector<std::string> warnings;
-    for (const LostFracture& lost : report.lost) {
-        if (warnings.size() == most_told) {
-            warnings.push_back(fmt::format("geometry.fractures: {} more fractures are left out for such reasons",
-                                           report.lost.size() - most_told));
-            break;
+    for (const auto cause :
+         {LostFracture::Cause::too_short, LostFracture::Cause::coincides, LostFracture::Cause::too_near,
+          LostFracture::Cause::separates_nothing, LostFracture::Cause::in_part}) {
+        std::vector<LostFracture> of_cause;
+        std::ranges::copy_if(report.lost, std::back_inserter(of_cause),
+                             [cause](const LostFracture& lost) { return lost.cause == cause; });
+        const std::size_t n_told = std::min(of_cause.size(), most_told);
+        for (std::size_t i = 0; i < n_told; ++i) {
+            const FractureTrace& trace = trace_of(of_cause[i]);
+            const std::size_t n_others = i + 1 == n_told ? of_cause.size() - n_told : 0;
+            warnings.push_back(fmt::format(
+                "{}: {} is left out{}: {}{}", trace.place, trace.name,
+                cause == LostFracture::Cause::in_part ? " in part" : "",
+                reason(of_cause[i], geometry, report.resolution),
+                n_others > 0 ? fmt::format("; and {} more fractures for a reason like this", n_others) : ""));
         }
-        const FractureTrace& fracture = geometry.fractures[static_cast<std::size_t>(lost.fracture)];
-        warnings.push_back(fmt::format("{}: {} is left out: {}", fracture.place, fracture.name,
-                                       reason(lost, geometry, report.resolution)));
     }
     return warnings;
 }

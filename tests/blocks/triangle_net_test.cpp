@@ -245,6 +245,30 @@ TEST(TriangleNet, KeepsWhatGoesOnBeyondAMergedStrip) {
     EXPECT_NEAR(length_of_fractures(cut_blocks(bent)), 1.6, 0.04);
 }
 
+/// Copies of a bent trace within 0.008 m of it, less than the resolution of 0.01 m, add nothing to its length and take
+/// nothing away, but for some resolutions where they end and cross.
+TEST(TriangleNet, NearCopiesOfATraceAreTheTrace) {
+    for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+        Uniform uniform(seed);
+        GeometrySpec spec = triangulated(1.0, 2.0, {.spacing = 0.2, .relaxation = 0, .seed = seed, .grading = {}});
+        const Vec2 middle(uniform(0.4, 0.6), uniform(0.6, 1.4));
+        const double angle = uniform(0.0, 2.0 * std::numbers::pi);
+        const double bend = uniform(-1.8, 1.8);
+        const auto along = [](double direction) { return Vec2(std::cos(direction), std::sin(direction)); };
+        const std::vector<Vec2> trace{middle - 0.3 * along(angle), middle, middle + 0.3 * along(angle + bend)};
+        add_trace(spec, trace);
+        const int n_copies = 1 + static_cast<int>(seed % 3);
+        for (int i = 0; i < n_copies; ++i) {
+            std::vector<Vec2> copy = trace;
+            for (Vec2& p : copy) p += 0.004 * Vec2(uniform(-1.0, 1.0), uniform(-1.0, 1.0));
+            add_trace(spec, copy);
+        }
+        const CutBody body = cut_blocks(spec);
+        EXPECT_EQ(faults(spec, body), "") << seed;
+        EXPECT_NEAR(length_of_fractures(body), 0.6, 0.06) << seed;
+    }
+}
+
 std::vector<LostFracture> lost_of(GeometrySpec spec, const std::vector<std::vector<Vec2>>& traces) {
     for (const auto& trace : traces) add_trace(spec, trace);
     return cut_blocks(spec).report.lost;
@@ -273,6 +297,15 @@ TEST(TriangleNet, SaysWhichFracturesAreNotLeftAndWhy) {
     ASSERT_EQ(near.size(), 1U);
     EXPECT_EQ(near[0].fracture, 0);
     EXPECT_EQ(near[0].cause, Cause::too_near);
+    // Legs at 5 degrees to one another are 0.4 sin(5 deg) = 0.035 m apart at their ends: from 0.02/sin(5 deg) = 0.23 m
+    // on the second one is missed, which makes 0.17 m.
+    const double angle = 5.0 * std::numbers::pi / 180.0;
+    const Vec2 end(0.5 + 0.4 * std::cos(angle), 1.0 + 0.4 * std::sin(angle));
+    const auto sharp = lost_of(spec, {{{0.92, 1.0}, {0.5, 1.0}}, {end, {0.5, 1.0}, {0.1, 0.6}}});
+    ASSERT_EQ(sharp.size(), 1U);
+    EXPECT_EQ(sharp[0].fracture, 1);
+    EXPECT_EQ(sharp[0].cause, Cause::in_part);
+    EXPECT_NEAR(sharp[0].length, 0.17, 0.02);
 }
 
 TEST(TriangleNet, SaysWhichPartsOfTheOutlineAreSmallerThanItResolves) {

@@ -24,8 +24,9 @@ TEST(SegmentGrid, FindsTheNearestSegmentWithinTheLimit) {
         }
         const SegmentGrid grid(segments);
         for (int i = 0; i < 300; ++i) {
-            const Vec2 p(12.0 * unit() - 1.0, 5.0 * unit() - 1.0);
-            const double limit = 0.3 * unit();
+            const double farther = i % 3 == 0 ? 20.0 : 1.0; // also far beyond what the grid covers
+            const Vec2 p = farther * Vec2(12.0 * unit() - 1.0, 5.0 * unit() - 1.0);
+            const double limit = (i % 2 == 0 ? 0.3 : 60.0) * unit();
             double least = std::numeric_limits<double>::infinity();
             for (const auto& [a, b] : segments) least = std::min(least, distance_to_segment(p, a, b));
             EXPECT_EQ(grid.distance(p, limit), least <= limit ? least : std::numeric_limits<double>::infinity());

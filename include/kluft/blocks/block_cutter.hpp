@@ -9,17 +9,19 @@
 
 namespace kluft {
 
-/// A fracture with a part in the domain of which no interface is left.
+/// A fracture with a part in the domain of which no interface is left, or with triangles not all of it.
 struct LostFracture {
     enum class Cause {
-        too_short,        ///< than what is resolved
-        coincides,        ///< with an earlier fracture or the outline
-        too_near,         ///< to another line, of a net of triangles
-        separates_nothing ///< it ends inside blocks
+        too_short,         ///< than what is resolved
+        coincides,         ///< with an earlier fracture or the outline
+        too_near,          ///< to another line, of a net of triangles
+        separates_nothing, ///< it ends inside blocks
+        in_part            ///< pieces of it are too near to another line
     };
     int fracture = 0;
     Cause cause = Cause::separates_nothing;
-    int other = -1; ///< the fracture that it coincides with; -1 for the outline and other causes
+    int other = -1;      ///< the fracture that it coincides with; -1 for the outline and other causes
+    double length = 0.0; ///< of what is missing of a part, where no fracture is within two resolutions (m)
 };
 
 /// A side of the outline or of a hole, or a whole hole, that is smaller than what a net of triangles resolves.

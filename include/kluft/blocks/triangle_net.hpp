@@ -32,6 +32,8 @@ public:
     [[nodiscard]] double level_at(const Vec2& place) const;
     [[nodiscard]] bool is_graded() const { return !features_.empty(); }
     [[nodiscard]] double largest() const { return spacing_; }
+    /// By how much the side changes per metre at most.
+    [[nodiscard]] double growth() const { return growth_; }
 
 private:
     struct Feature {
