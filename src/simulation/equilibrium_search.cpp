@@ -38,6 +38,14 @@ bool is_on_the_way(const Equilibrium& found) {
     return found.converged() || found.summary.termination == Termination::relaxed;
 }
 
+/// Whether the mass-like term is more than the iteration leaves, in a state where nothing slides.
+bool lags_behind(const EquilibriumProblem& problem, const Equilibrium& found, double tolerance) {
+    if (found.viscous_share <= tolerance) return false;
+    return std::ranges::none_of(problem.body.placement->contacts, [&](const ContactPoint& point) {
+        return contact_traction(*problem.body.laws, point, found.displacement).state == ContactState::sliding;
+    });
+}
+
 /// Each block and group, and the mass-like term, which holds strains of blocks back too.
 bool is_balanced(const Equilibrium& found, const BlockGoal& goal) {
     return found.verdict.balanced() && found.viscous_share <= goal.share;
@@ -152,6 +160,25 @@ void EquilibriumSearch::settle(EquilibriumProblem& problem, const BlockGoal& bal
         found.summary = std::move(summary);
     }
     found.balanced = is_balanced(found, balance);
+    if (found.balanced && lags_behind(problem, found, open_close_.options().tolerance))
+        catch_up(problem, balance, found);
+}
+
+/// A body in which nothing slides stands where the mass-like term from its last state, a tenth of it, leaves it: in small steps
+/// of load what (27b) allows would be seen beside the growth of the load.
+void EquilibriumSearch::catch_up(EquilibriumProblem& problem, const BlockGoal& balance, Equilibrium& found) {
+    problem.start = found.displacement;
+    for (double& eta : problem.eta) eta *= eta_decay;
+    Equilibrium next = found;
+    next.summary =
+        open_close_.solve(problem, pattern_, next.displacement, {.block_tolerance = share_of_solve * balance.share});
+    found.iterations += next.summary.iterations;
+    if (!next.converged()) return;
+    next.iterations = found.iterations;
+    next.blocks = block_balance(problem.body, next.displacement);
+    next.verdict = judge_blocks(next.blocks, &found.blocks, balance);
+    next.viscous_share = viscous_share(problem, next.displacement, next.summary.force_scale);
+    if (is_balanced(next, balance)) found = std::move(next);
 }
 
 Equilibrium EquilibriumSearch::move_on(const EquilibriumProblem& problem, const Eigen::VectorXd& guess,

@@ -62,6 +62,7 @@ public:
     OpenCloseSummary solve(const EquilibriumProblem& problem, const BlockPattern& pattern, Eigen::VectorXd& q,
                            const IterationGoal& goal = {});
 
+    [[nodiscard]] const OpenCloseOptions& options() const { return options_; }
     void set_tolerance(double tolerance) { options_.tolerance = tolerance; }
 
     /// The next linear solve makes a new factor: what follows does not depend on what was solved before.

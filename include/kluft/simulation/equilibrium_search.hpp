@@ -75,6 +75,7 @@ private:
     Equilibrium move_held(const EquilibriumProblem& problem, Eigen::VectorXd guess, const BlockGoal& balance,
                           bool unloaded);
     void settle(EquilibriumProblem& problem, const BlockGoal& balance, Equilibrium& found);
+    void catch_up(EquilibriumProblem& problem, const BlockGoal& balance, Equilibrium& found);
 
     const Model& model_;
     double viscosity_;
