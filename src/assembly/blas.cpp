@@ -40,6 +40,11 @@ bool has_wide_kernels(std::string_view core) {
     return std::ranges::find(wide, core) != wide.end();
 }
 
+/// The place of an entry of an n x n matrix that is stored by columns.
+std::size_t place(int n, int row, int column) {
+    return static_cast<std::size_t>(n) * static_cast<std::size_t>(column) + static_cast<std::size_t>(row);
+}
+
 std::vector<double> random_matrix(int n, std::mt19937& random) {
     std::vector<double> matrix(static_cast<std::size_t>(n) * static_cast<std::size_t>(n));
     for (double& each : matrix) each = static_cast<double>(random()) / static_cast<double>(std::mt19937::max()) - 0.5;
@@ -54,9 +59,8 @@ double largest_difference(int n, const std::vector<double>& a, const std::vector
         for (int row = 0; row < n; ++row) {
             double sum = 0.0;
             const int n_terms = lower ? row + 1 : n;
-            for (int k = 0; k < n_terms; ++k)
-                sum += a[static_cast<std::size_t>(n * k + row)] * b[static_cast<std::size_t>(n * column + k)];
-            const double difference = std::abs(c[static_cast<std::size_t>(n * column + row)] - sum);
+            for (int k = 0; k < n_terms; ++k) sum += a[place(n, row, k)] * b[place(n, k, column)];
+            const double difference = std::abs(c[place(n, row, column)] - sum);
             if (!(difference <= largest)) largest = difference;
         }
     }
@@ -123,7 +127,7 @@ bool blas_computes_rightly() {
     std::mt19937 random;
     for (const int n : {3, 6, 17, 40, 128}) {
         std::vector<double> a = random_matrix(n, random);
-        for (int k = 0; k < n; ++k) a[static_cast<std::size_t>((n + 1) * k)] += n; // far from singular
+        for (int k = 0; k < n; ++k) a[place(n, k, k)] += n; // far from singular
         const std::vector<double> b = random_matrix(n, random);
         std::vector<double> c(a.size());
         multiply(n, n, n, a.data(), n, b.data(), n, c.data(), n);
