@@ -40,8 +40,9 @@ bool follow(FactoredBody& body, std::span<const StiffnessChange> changes) {
     return true;
 }
 
-/// Per sample.
+/// Per sample. Zeros are left out: over several repetitions their coefficient of variation is NaN, which JSON does not know.
 void report(benchmark::State& state, const char* name, int n) {
+    if (n == 0) return;
     state.counters[name] = benchmark::Counter(n, benchmark::Counter::kAvgIterations);
 }
 
