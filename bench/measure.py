@@ -698,6 +698,8 @@ def arguments():
                         help="of the kernels up to 100 000 blocks, whose median counts; 3 by default")
     parser.add_argument("--limit", type=seconds, default=LIMIT, metavar="SECONDS",
                         help=f"of each run of walls, collapse and unconfined; {LIMIT:g} by default")
+    parser.add_argument("--check", action="store_true",
+                        help="no table: only whether small bodies are measured without gaps, in half a minute")
     parser.add_argument("-o", "--output", type=Path, default=ROOT / "bench" / "results.md", metavar="FILE",
                         help="table, bench/results.md by default")
     options = parser.parse_args()
@@ -707,9 +709,33 @@ def arguments():
     return options
 
 
+def check(options):
+    """What is wrong with the measurements of small bodies, each of which takes a second."""
+    options.sizes, options.walls, options.repetitions = [3, 20, 100], [(4, 4)], 2
+    options.parts = ["kernels", "runs", "shares", "walls"]
+    report = Report(options)
+    report.measure_all()
+    text = report.text()
+    problems = list(report.failures)
+    if 100 in report.kernels:  # smaller ones have too few interfaces for some rows
+        kernels = report.kernels[100]
+        problems += [f"100 blocks: no value of '{row[0]}'" for row in KERNEL_ROWS if row[1](kernels) is None]
+    if re.search(r"\b(nan|inf|None)\b", text):
+        problems.append("the table has numbers that are none:\n" + text)
+    options.limit = 0.2
+    stopped = report.measure("a run that is ended", lambda: Wall(*WALLS[-1], options))
+    if stopped is None or "> 0.2 s" not in walls_table([stopped]):
+        problems.append("a run that takes longer than the limit is not told as such")
+    return problems
+
+
 def main():
     options = arguments()
     RUNS.mkdir(parents=True, exist_ok=True)
+    if options.check:
+        problems = check(options)
+        print("\n".join(problems) or "all is measured")
+        return 1 if problems else 0
     report = Report(options)
     report.measure_all()
     text = report.text()
