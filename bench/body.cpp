@@ -52,14 +52,16 @@ double mean_diagonal(const BlockMatrix& matrix) {
 
 Body::Body(const Model& model, Joining joining) : model_(&model), displacement_(grown(model.system)) {
     const BlockSystem& system = model.system;
-    const State state = state_of(model, joining, displacement_);
+    State state = state_of(model, joining, displacement_);
     placement_.bonds = placed_bonds(model, state.body);
     DetectedContacts contacts = detected_contacts(model, state.body);
     placement_.contacts = std::move(contacts.points);
     pattern_ = pattern_of(system, std::move(contacts.near_pairs));
 
     const int last = static_cast<int>(model.loads.stages.size()) - 1;
-    at_ = loads_at(model, StageLoads(model, state.stage_start, model.loads.stages.back()), last, 1.0);
+    const StageLoads stage_loads(model, state.stage_start, model.loads.stages.back());
+    state.body.platen_points = stage_loads.platen_points(); // all of them touch
+    at_ = loads_at(model, stage_loads, hold_of(model, stage_loads, state.body), last, 1.0);
     problem_.body = loaded_body(model, placement_, at_);
     problem_.start = displacement_;
     problem_.least_mass_area = std::sqrt(0.75) * system.spacing * system.spacing;

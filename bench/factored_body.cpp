@@ -33,6 +33,7 @@ void FactoredBody::assemble(std::span<const StiffnessChange> changes) {
 }
 
 void FactoredBody::factorize() {
+    factor_is_changed_ = true; // should it fail
     if (!solver_.factorize(matrix_, Factorization::rounded_cholesky))
         throw std::runtime_error("the stiffness is singular");
     factor_is_changed_ = matrix_is_changed_;

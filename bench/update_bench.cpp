@@ -21,8 +21,9 @@ constexpr int many_blocks = 100'000; ///< a factor takes half a minute
 
 /// Changes since the factor was made.
 struct Changes {
-    std::vector<StiffnessChange> in_factor; ///< what is put on it
-    std::vector<StiffnessChange> in_matrix; ///< what the tangent has
+    Sliding sliding;
+    std::vector<StiffnessChange> in_factor; ///< what is put on it: symmetric
+    std::vector<StiffnessChange> in_matrix; ///< what the tangent has; of friction it is unsymmetric
 };
 
 /// The factor of the unchanged body, outside the measurement: no path has been solved on it.
@@ -39,8 +40,9 @@ bool follow(FactoredBody& body, std::span<const StiffnessChange> changes) {
     return true;
 }
 
-/// Per sample.
+/// Per sample. Zeros are left out: over several repetitions their coefficient of variation is NaN, which JSON does not know.
 void report(benchmark::State& state, const char* name, int n) {
+    if (n == 0) return;
     state.counters[name] = benchmark::Counter(n, benchmark::Counter::kAvgIterations);
 }
 
@@ -56,8 +58,13 @@ void iterate(benchmark::State& state, FactoredBody& body, const Changes& changes
     int refinements = 0;
     while (state.KeepRunning()) {
         renew_factor(state, body);
-        body.assemble(changes.in_matrix);
-        if (follow(body, changes.in_factor)) ++factorizations;
+        const bool updated = body.update(changes.in_factor);
+        if (!updated) { // Cholesky's method takes no tangent of friction
+            body.assemble(changes.in_factor);
+            body.factorize();
+            ++factorizations;
+        }
+        if (updated || changes.sliding == Sliding::frictional) body.assemble(changes.in_matrix);
         refinements += body.solve_refined();
     }
     report(state, "factorizations", factorizations);
@@ -112,8 +119,9 @@ int samples(int n_blocks) { return n_blocks < 10'000 ? 5 : 1; }
 void add_placement(FactoredBody& body, Placement placement, const std::string& suffix, int threads) {
     for (const auto& [name, measure, points, sliding] : update_benchmarks) {
         const int interfaces = points / n_bond_points;
-        const Changes changes{changed_interfaces(body.body(), placement, interfaces, Sliding::frictionless),
+        const Changes changes{sliding, changed_interfaces(body.body(), placement, interfaces, Sliding::frictionless),
                               changed_interfaces(body.body(), placement, interfaces, sliding)};
+        if (static_cast<int>(changes.in_factor.size()) < interfaces) continue; // the body is too small
         const auto run = [measure = measure, &body, changes, threads](benchmark::State& state) {
             set_blas_threads(threads);
             measure(state, body, changes);
