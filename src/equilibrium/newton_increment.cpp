@@ -22,6 +22,14 @@ void make_free(const Constraints& constraints, BlockMatrix& matrix) {
     project(constraints, matrix, matrix.trace() / (pattern.block_unknowns() * pattern.n_blocks()));
 }
 
+/// Adds lambda M to the tangent (29c).
+void add_damping(const EquilibriumProblem& problem, double damping, BlockMatrix& matrix) {
+    if (damping == 0.0) return;
+    const std::vector<Block>& blocks = problem.body.system->blocks;
+    for (int b = 0; b < matrix.pattern->n_blocks(); ++b)
+        matrix.values[matrix.pattern->diagonal(b)] += damping * mass_matrix(blocks[b], problem.least_mass_area);
+}
+
 /// The second bound of (31): far from equilibrium a linear solve need not be exact, near it it leaves less than what
 /// the iteration tolerates. `right_side`: its norm (N/m).
 double linear_residual(double right_side, double tolerance, double force_scale) {
@@ -36,6 +44,7 @@ void NewtonIncrement::assemble(const NewtonPoint& at, TangentKind kind) {
     const Stopwatch watch(assembly_seconds_);
     const EquilibriumProblem& problem = at.evaluator.problem();
     at.evaluator.tangent(at.q, kind, matrix_);
+    add_damping(problem, at.damping, matrix_);
     if (at.border.exists()) set_platen_equation(problem, at.evaluator.coordinates(), matrix_, at.border);
     right_side_ = -at.residual.forces;
     if (!at.prescribed.isZero(0.0)) {
@@ -49,6 +58,7 @@ void NewtonIncrement::assemble(const NewtonPoint& at, TangentKind kind) {
 void NewtonIncrement::assemble_symmetric(const NewtonPoint& at) {
     const Stopwatch watch(assembly_seconds_);
     at.evaluator.tangent(at.q, TangentKind::symmetric, matrix_);
+    add_damping(at.evaluator.problem(), at.damping, matrix_);
     make_free(at.evaluator.problem().body.loads->constraints, matrix_);
 }
 

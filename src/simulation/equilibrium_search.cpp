@@ -117,19 +117,23 @@ Equilibrium EquilibriumSearch::find_touching(const EquilibriumProblem& problem, 
 }
 
 Equilibrium EquilibriumSearch::find(const EquilibriumProblem& problem, const Eigen::VectorXd& guess,
-                                    const BlockGoal& balance, bool unloaded) {
-    return find_touching(
-        problem, Aim::equilibrium, balance, [&](const EquilibriumProblem& held, const Equilibrium* last) {
-            return find_held(held, last != nullptr ? last->displacement : guess, balance, unloaded && last == nullptr);
-        });
+                                    const BlockGoal& balance, const Circumstances& circumstances) {
+    return find_touching(problem, Aim::equilibrium, balance,
+                         [&](const EquilibriumProblem& held, const Equilibrium* last) {
+                             if (last == nullptr) return find_held(held, guess, balance, circumstances);
+                             return find_held(held, last->displacement, balance,
+                                              {.unloaded = false, .given_loads = circumstances.given_loads});
+                         });
 }
 
 Equilibrium EquilibriumSearch::find_held(EquilibriumProblem problem, Eigen::VectorXd guess, const BlockGoal& balance,
-                                         bool unloaded) {
+                                         const Circumstances& circumstances) {
     Equilibrium found;
     found.displacement = std::move(guess);
     found.summary = open_close_.solve(problem, pattern_, found.displacement,
-                                      {.unloaded = unloaded, .block_tolerance = share_of_solve * balance.share});
+                                      {.unloaded = circumstances.unloaded,
+                                       .given_loads = circumstances.given_loads,
+                                       .block_tolerance = share_of_solve * balance.share});
     found.iterations = found.summary.iterations;
     found.worst_block = found.summary.worst_block;
     if (found.converged()) settle(problem, balance, found);

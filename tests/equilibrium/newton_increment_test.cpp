@@ -157,5 +157,24 @@ TEST(NewtonIncrement, IsNotFoundWhereAPieceHasNoStiffness) {
     EXPECT_FALSE(newton.find(start.point(), TangentKind::symmetric));
 }
 
+// The increment of a damped tangent solves (K + lambda M) dq = -R on the free motions, with and without reuse of a factor.
+TEST(NewtonIncrement, DampingAddsAMassToTheTangent) {
+    for (const bool reuse : {false, true}) {
+        Start start(false, Kinematics::affine);
+        start.body.problem.loads.constraints = Constraints();
+        start.prescribed.setZero(start.q.size());
+        NewtonPoint point = start.point();
+        point.damping = 1e12;
+        point.largest_residual = 1e-9 * start.residual.forces.norm();
+        NewtonIncrement newton(start.linear, {reuse});
+        ASSERT_TRUE(newton.find(point, TangentKind::exact));
+        Eigen::MatrixXd damped = start.tangent();
+        for (int b = 0; b < start.body.system.n_blocks(); ++b)
+            damped.block<6, 6>(6 * b, 6 * b) += point.damping * mass_matrix(start.body.system.blocks[b], 0.0);
+        const Eigen::VectorXd expected = damped.partialPivLu().solve(-start.residual.forces);
+        EXPECT_LT((newton.increment() - expected).norm(), 1e-6 * expected.norm()) << reuse;
+    }
+}
+
 } // namespace
 } // namespace kluft

@@ -24,7 +24,7 @@ struct Posed {
         return pose(work.model, placed, at, work.state.body.displacement);
     }
     [[nodiscard]] Equilibrium find(const BlockGoal& balance) {
-        return work.search.find(problem(), work.state.body.displacement, balance, true);
+        return work.search.find(problem(), work.state.body.displacement, balance, {.unloaded = true});
     }
     Workplace work;
     StepGoal goal;

@@ -24,6 +24,7 @@ struct NewtonPoint {
         prescribed;         ///< change of the unknowns that prescribed displacements ask for; zero: they hold
     double tolerance = 0.0; ///< of |R|/F_ref: near equilibrium a linear solve leaves less
     double largest_residual = std::numeric_limits<double>::infinity(); ///< of a linear solve (N/m)
+    double damping = 0.0; ///< lambda: the tangent is that at q plus lambda M (29c), of affine blocks (Pa/m2)
 };
 
 struct NewtonOptions {

@@ -31,6 +31,8 @@ struct IterationGoal {
     /// The body's contacts carry no force yet and therefore have no stiffness: the first increment takes the touching
     /// ones as closed.
     bool unloaded = false;
+    /// The loads are given, and not the motion of a platen: the iteration goes on with damping where it would give up.
+    bool given_loads = false;
     /// Largest residual of a block over its own force (block_balance.hpp), beside the tolerance for all together.
     double block_tolerance = std::numeric_limits<double>::infinity();
 };
@@ -48,7 +50,6 @@ struct OpenCloseSummary {
     double residual_ratio = 0.0; ///< |R|/F_ref at q
     double force_scale = 0.0;    ///< F_ref (N/m)
     int worst_block = -1;        ///< the block with the largest residual
-    std::vector<int> restless;   ///< blocks with a large part of the residual in the last iterations
     [[nodiscard]] bool converged() const { return termination == Termination::converged; }
 };
 

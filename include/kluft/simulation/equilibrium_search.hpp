@@ -19,6 +19,12 @@
 
 namespace kluft {
 
+/// What a search should know of the body and of its loads.
+struct Circumstances {
+    bool unloaded = false;    ///< contacts carry no force yet (IterationGoal)
+    bool given_loads = false; ///< and not the motion of a platen (IterationGoal)
+};
+
 /// What was found at one load level.
 struct Equilibrium {
     Eigen::VectorXd displacement; ///< size 6 n_blocks (m)
@@ -57,7 +63,7 @@ public:
     /// Solves from `guess`, and again from the result, until the mass-like term is small (docs/theory.md, balance) and the
     /// platens press on all that they hold and are penetrated by nothing (docs/theory.md, platens).
     [[nodiscard]] Equilibrium find(const EquilibriumProblem& problem, const Eigen::VectorXd& guess,
-                                   const BlockGoal& balance, bool unloaded);
+                                   const BlockGoal& balance, const Circumstances& circumstances);
     /// One step of a motion from the problem's start.
     [[nodiscard]] Equilibrium move_on(const EquilibriumProblem& problem, const Eigen::VectorXd& guess,
                                       const BlockGoal& balance, bool unloaded);
@@ -71,7 +77,8 @@ public:
 private:
     template <class Solve>
     Equilibrium find_touching(const EquilibriumProblem& problem, Aim aim, const BlockGoal& balance, Solve solve);
-    Equilibrium find_held(EquilibriumProblem problem, Eigen::VectorXd guess, const BlockGoal& balance, bool unloaded);
+    Equilibrium find_held(EquilibriumProblem problem, Eigen::VectorXd guess, const BlockGoal& balance,
+                          const Circumstances& circumstances);
     Equilibrium move_held(const EquilibriumProblem& problem, Eigen::VectorXd guess, const BlockGoal& balance,
                           bool unloaded);
     void settle(EquilibriumProblem& problem, const BlockGoal& balance, Equilibrium& found);

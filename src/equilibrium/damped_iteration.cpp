@@ -1,0 +1,95 @@
+#include "damped_iteration.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <utility>
+
+namespace kluft {
+
+namespace {
+
+constexpr int max_solves = 100;
+constexpr int patience = 24;               ///< linear solves in which the least norm must halve
+constexpr std::size_t n_compared = 3;      ///< norms: an iterate may have more than the last, but not than all of them
+constexpr double least_damped_fall = 1e-3; ///< of the norm
+constexpr double large_damped_fall = 0.3;  ///< of the norm
+constexpr double first_damping = 1e-2;     ///< E/d2 of it (measured: 1e-3 to 1e-1)
+constexpr double largest_damping = 1e3;    ///< the same: an increment is nothing then
+constexpr double damping_decay = 0.2;      ///< of the damping, where the norm falls; twice where it falls much
+constexpr double damping_growth = 6.0;     ///< where it does not
+constexpr double negligible = 3e-2;        ///< of the tolerance: forces that are not improved locally
+constexpr double local_share = 0.1;        ///< of that, on one group of blocks
+constexpr int max_rounds_of_local = 20;
+constexpr double local_fall = 0.7; ///< of the norm: what a further round must be worth
+
+/// The stiffness of the stiffest material over the square of the spacing (Pa/m2).
+double stiffness_per_mass(const LoadedBody& body) {
+    double modulus = 0.0;
+    for (const ElasticModuli& moduli : *body.moduli) modulus = std::max(modulus, 2.0 * moduli.mu + moduli.lambda);
+    return modulus / (body.system->spacing * body.system->spacing);
+}
+
+} // namespace
+
+/// Rounds of local iterations, as long as the norm of all forces falls by them.
+void DampedIteration::improve_locally(Iterate& at, Eigen::VectorXd& q) {
+    const double enough = negligible * options_.tolerance * at.residual.force_scale;
+    for (int round = 0; round < max_rounds_of_local && at.norm > enough; ++round) {
+        Eigen::VectorXd improved = q;
+        local_.improve(at.free_forces, local_share * enough, improved);
+        Iterate there;
+        evaluate(equations_, improved, seconds_, there);
+        if (there.norm >= at.norm) return;
+        const bool goes_on = there.norm < local_fall * at.norm;
+        q = std::move(improved);
+        at = std::move(there);
+        if (!goes_on) return;
+    }
+}
+
+bool DampedIteration::find(StoppingTest& stopping, int& n_solves, Eigen::VectorXd& q) {
+    const double scale = stiffness_per_mass(equations_.problem.body);
+    Iterate at;
+    evaluate(equations_, q, seconds_, at);
+    improve_locally(at, q);
+    std::array<double, n_compared> norms{};
+    norms.fill(at.norm);
+    std::size_t n_taken = 0;
+    double damping = first_damping * scale;
+    double least = at.norm;
+    int least_at = 0;
+    Eigen::VectorXd best = q;
+    bool found = false;
+    for (int i = 0; i < max_solves && i - least_at <= patience && damping <= largest_damping * scale; ++i) {
+        evaluate(equations_, q, seconds_, at); // the tangent is that of the last residual
+        found = stopping.finds(equations_, q, at);
+        if (found) break;
+        newton_.forget_factor();
+        const NewtonPoint point{equations_.evaluator, equations_.border,           q,      at.residual, at.prescribed,
+                                options_.tolerance,   stopping.largest_residual(), damping};
+        if (!newton_.find(point, options_.tangent)) break;
+        ++n_solves;
+        Eigen::VectorXd next;
+        equations_.evaluator.coordinates().move(q, newton_.increment(), 1.0, next);
+        Iterate there;
+        evaluate(equations_, next, seconds_, there);
+        improve_locally(there, next);
+        if (there.norm >= (1.0 - least_damped_fall) * std::ranges::max(norms)) {
+            damping *= damping_growth;
+            continue;
+        }
+        if (there.norm < at.norm)
+            damping *= there.norm < large_damped_fall * at.norm ? damping_decay * damping_decay : damping_decay;
+        norms[n_taken++ % norms.size()] = there.norm;
+        q = std::move(next);
+        if (there.norm < 0.5 * least) least_at = i;
+        if (there.norm < least) best = q;
+        least = std::min(least, there.norm);
+    }
+    newton_.forget_factor(); // it has the damping in it
+    if (!found) q = std::move(best);
+    return found;
+}
+
+} // namespace kluft

@@ -1,0 +1,53 @@
+// When the open-close iteration ends.
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "iterate.hpp"
+#include "kluft/equilibrium/open_close_solver.hpp"
+
+namespace kluft {
+
+/// Blocks whose part of the forces is larger than a share of their own.
+struct UnbalancedBlocks {
+    std::vector<int> blocks;                                        ///< the worst first
+    double least_allowed = std::numeric_limits<double>::infinity(); ///< part of the forces on any of them (N/m)
+};
+
+/// Judges when the iteration ends, from its norms and step lengths so far.
+class StoppingTest {
+public:
+    StoppingTest(const OpenCloseOptions& options, const IterationGoal& goal, OpenCloseSummary& summary);
+
+    /// True if the iterate q is an equilibrium; the summary says so then.
+    [[nodiscard]] bool finds(const Equations& equations, const Eigen::VectorXd& q, const Iterate& at);
+    /// Judges the iterate q. True if it is the last one; the summary says why.
+    [[nodiscard]] bool ends(const Equations& equations, const Eigen::VectorXd& q, const Iterate& at);
+
+    /// What a linear solve may leave where only single blocks are not balanced (N/m).
+    [[nodiscard]] double largest_residual() const;
+    /// True where root finding has had its chance and the norm does not fall.
+    [[nodiscard]] bool stalls(const Iterate& at) const;
+    /// Notes the step of length s from an iterate.
+    void note_step(const Iterate& from, double s);
+
+private:
+    bool ends_with(Termination termination);
+    [[nodiscard]] bool is_equilibrium(const Iterate& at) const;
+    [[nodiscard]] bool is_relaxed(const EquilibriumProblem& problem, const Eigen::VectorXd& q, const Iterate& at) const;
+
+    OpenCloseSummary& summary_;
+    double tolerance_;
+    double block_tolerance_;
+    double relaxed_share_; ///< of the mass-like forces
+    int max_iterations_;
+    bool relaxes_;
+    double previous_norm_ = -1.0; ///< of the free forces one iteration ago (N/m)
+    int short_steps_ = 0;         ///< in succession
+    UnbalancedBlocks unbalanced_; ///< where the body as a whole meets the tolerance
+};
+
+inline constexpr double short_step = 0.1; ///< of the increment: this way leads nowhere
+
+} // namespace kluft
