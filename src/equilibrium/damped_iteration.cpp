@@ -33,8 +33,9 @@ double stiffness_per_mass(const LoadedBody& body) {
 } // namespace
 
 /// Rounds of local iterations, as long as the norm of all forces falls by them.
-void DampedIteration::improve_locally(Iterate& at, Eigen::VectorXd& q) {
-    const double enough = negligible * options_.tolerance * at.residual.force_scale;
+void DampedIteration::improve_locally(const StoppingTest& stopping, Iterate& at, Eigen::VectorXd& q) {
+    const double enough =
+        std::min(negligible * options_.tolerance * at.residual.force_scale, stopping.largest_residual());
     for (int round = 0; round < max_rounds_of_local && at.norm > enough; ++round) {
         Eigen::VectorXd improved = q;
         local_.improve(at.free_forces, local_share * enough, improved);
@@ -52,7 +53,7 @@ bool DampedIteration::find(StoppingTest& stopping, int& n_solves, Eigen::VectorX
     const double scale = stiffness_per_mass(equations_.problem.body);
     Iterate at;
     evaluate(equations_, q, seconds_, at);
-    improve_locally(at, q);
+    improve_locally(stopping, at, q);
     std::array<double, n_compared> norms{};
     norms.fill(at.norm);
     std::size_t n_taken = 0;
@@ -74,7 +75,7 @@ bool DampedIteration::find(StoppingTest& stopping, int& n_solves, Eigen::VectorX
         equations_.evaluator.coordinates().move(q, newton_.increment(), 1.0, next);
         Iterate there;
         evaluate(equations_, next, seconds_, there);
-        improve_locally(there, next);
+        improve_locally(stopping, there, next);
         if (there.norm >= (1.0 - least_damped_fall) * std::ranges::max(norms)) {
             damping *= damping_growth;
             continue;
@@ -82,6 +83,7 @@ bool DampedIteration::find(StoppingTest& stopping, int& n_solves, Eigen::VectorX
         if (there.norm < at.norm)
             damping *= there.norm < large_damped_fall * at.norm ? damping_decay * damping_decay : damping_decay;
         norms[n_taken++ % norms.size()] = there.norm;
+        if (there.norm < large_damped_fall * least) norms.fill(there.norm); // what is won stays
         q = std::move(next);
         if (there.norm < 0.5 * least) least_at = i;
         if (there.norm < least) best = q;

@@ -22,7 +22,7 @@ public:
     [[nodiscard]] bool find(StoppingTest& stopping, int& n_solves, Eigen::VectorXd& q);
 
 private:
-    void improve_locally(Iterate& at, Eigen::VectorXd& q);
+    void improve_locally(const StoppingTest& stopping, Iterate& at, Eigen::VectorXd& q);
 
     Equations& equations_;
     NewtonIncrement& newton_;
