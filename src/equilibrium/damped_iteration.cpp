@@ -18,10 +18,6 @@ constexpr double first_damping = 1e-2;     ///< E/d2 of it (measured: 1e-3 to 1e
 constexpr double largest_damping = 1e3;    ///< the same: an increment is nothing then
 constexpr double damping_decay = 0.2;      ///< of the damping, where the norm falls; twice where it falls much
 constexpr double damping_growth = 6.0;     ///< where it does not
-constexpr double negligible = 3e-2;        ///< of the tolerance: forces that are not improved locally
-constexpr double local_share = 0.1;        ///< of that, on one group of blocks
-constexpr int max_rounds_of_local = 20;
-constexpr double local_fall = 0.7; ///< of the norm: what a further round must be worth
 
 /// The stiffness of the stiffest material over the square of the spacing (Pa/m2).
 double stiffness_per_mass(const LoadedBody& body) {
@@ -32,28 +28,11 @@ double stiffness_per_mass(const LoadedBody& body) {
 
 } // namespace
 
-/// Rounds of local iterations, as long as the norm of all forces falls by them.
-void DampedIteration::improve_locally(const StoppingTest& stopping, Iterate& at, Eigen::VectorXd& q) {
-    const double enough =
-        std::min(negligible * options_.tolerance * at.residual.force_scale, stopping.largest_residual());
-    for (int round = 0; round < max_rounds_of_local && at.norm > enough; ++round) {
-        Eigen::VectorXd improved = q;
-        local_.improve(at.free_forces, local_share * enough, improved);
-        Iterate there;
-        evaluate(equations_, improved, seconds_, there);
-        if (there.norm >= at.norm) return;
-        const bool goes_on = there.norm < local_fall * at.norm;
-        q = std::move(improved);
-        at = std::move(there);
-        if (!goes_on) return;
-    }
-}
-
 bool DampedIteration::find(StoppingTest& stopping, int& n_solves, Eigen::VectorXd& q) {
     const double scale = stiffness_per_mass(equations_.problem.body);
     Iterate at;
     evaluate(equations_, q, seconds_, at);
-    improve_locally(stopping, at, q);
+    elimination_.improve(stopping.negligible_forces(equations_.problem, q, at), at, q);
     std::array<double, n_compared> norms{};
     norms.fill(at.norm);
     std::size_t n_taken = 0;
@@ -75,7 +54,7 @@ bool DampedIteration::find(StoppingTest& stopping, int& n_solves, Eigen::VectorX
         equations_.evaluator.coordinates().move(q, newton_.increment(), 1.0, next);
         Iterate there;
         evaluate(equations_, next, seconds_, there);
-        improve_locally(stopping, there, next);
+        elimination_.improve(stopping.negligible_forces(equations_.problem, next, there), there, next);
         if (there.norm >= (1.0 - least_damped_fall) * std::ranges::max(norms)) {
             damping *= damping_growth;
             continue;

@@ -12,10 +12,10 @@ namespace kluft {
 
 namespace {
 
-constexpr double chosen_share =
-    0.95; ///< of the norm of all forces, on the blocks that are moved (measured: 0.9 to 0.99)
-constexpr std::size_t max_chosen = 1000; ///< blocks: the cost of a factorization stays below that of the body
-constexpr double local_goal = 0.05;      ///< of the forces at first
+constexpr double chosen_share = 0.9; ///< of the norm of all forces, on the blocks that are moved (measured)
+constexpr double max_chosen = 500.0; ///< blocks
+constexpr double largest_part = 0.1; ///< of all blocks: more are left to a solve of all
+constexpr double local_goal = 0.05;  ///< of the forces at first
 constexpr int max_local_iterations = 40;
 constexpr double least_local_fall = 1e-3;    ///< of the norm, by an increment that is taken
 constexpr double large_local_fall = 0.5;     ///< of the norm: Newton's increment is as good as exact
@@ -116,38 +116,42 @@ private:
     Eigen::VectorXd q_, forces_, increment_;
 };
 
-} // namespace
-
-/// Those that together have most of the forces, and their neighbours; in ascending order.
-std::vector<int> LocalIteration::chosen_blocks(const Eigen::VectorXd& free_forces) const {
-    const int n_blocks = surroundings_.problem().body.system->n_blocks();
+/// The few blocks that together have most of the forces; none where they are not few.
+std::vector<int> loaded_blocks(const Eigen::VectorXd& free_forces, int n_blocks) {
     std::vector<std::pair<double, int>> squares;
+    squares.reserve(n_blocks);
     for (int b = 0; b < n_blocks; ++b)
         squares.emplace_back(free_forces.segment<n_block_unknowns>(n_block_unknowns * b).squaredNorm(), b);
-    std::ranges::sort(squares, std::greater());
-    const double enough = chosen_share * chosen_share * free_forces.squaredNorm();
+    const auto few = static_cast<std::size_t>(std::min(max_chosen, largest_part * n_blocks));
+    const auto end = squares.begin() + static_cast<std::ptrdiff_t>(std::min(few, squares.size()));
+    std::ranges::partial_sort(squares, end, std::greater());
+    double missing = chosen_share * chosen_share * free_forces.head(n_block_unknowns * n_blocks).squaredNorm();
     std::vector<int> chosen;
-    double sum = 0.0;
-    for (const auto& [square, b] : squares) {
-        if (sum >= enough || chosen.size() == max_chosen) break;
-        sum += square;
-        chosen.push_back(b);
+    for (auto at = squares.begin(); at != end && missing > 0.0; ++at) {
+        missing -= at->first;
+        chosen.push_back(at->second);
     }
-    for (std::size_t i = 0, n = chosen.size(); i < n; ++i) {
-        const std::vector<int> neighbours = surroundings_.neighbours(chosen[i]);
-        chosen.insert(chosen.end(), neighbours.begin(), neighbours.end());
-    }
-    std::ranges::sort(chosen);
-    chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
+    if (missing > 0.0) chosen.clear();
     return chosen;
 }
 
-std::vector<std::vector<int>> LocalIteration::connected_groups(const std::vector<int>& blocks) const {
-    std::vector<int> index(surroundings_.problem().body.system->blocks.size(), -1);
+/// With the blocks that they touch, in ascending order.
+std::vector<int> with_neighbours(std::vector<int> blocks, const Surroundings& surroundings) {
+    for (std::size_t i = 0, n = blocks.size(); i < n; ++i) {
+        const std::vector<int> neighbours = surroundings.neighbours(blocks[i]);
+        blocks.insert(blocks.end(), neighbours.begin(), neighbours.end());
+    }
+    std::ranges::sort(blocks);
+    blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
+    return blocks;
+}
+
+std::vector<std::vector<int>> connected_groups(const std::vector<int>& blocks, const Surroundings& surroundings) {
+    std::vector<int> index(surroundings.problem().body.system->blocks.size(), -1);
     for (int i = 0; i < static_cast<int>(blocks.size()); ++i) index[blocks[i]] = i;
     DisjointSets sets(static_cast<int>(blocks.size()));
     for (int i = 0; i < static_cast<int>(blocks.size()); ++i)
-        for (const int other : surroundings_.neighbours(blocks[i]))
+        for (const int other : surroundings.neighbours(blocks[i]))
             if (index[other] >= 0) sets.join(i, index[other]);
     std::vector<std::vector<int>> groups(blocks.size());
     for (int i = 0; i < static_cast<int>(blocks.size()); ++i) groups[sets.root(i)].push_back(blocks[i]);
@@ -155,13 +159,19 @@ std::vector<std::vector<int>> LocalIteration::connected_groups(const std::vector
     return groups;
 }
 
-void LocalIteration::improve(const Eigen::VectorXd& free_forces, double negligible, Eigen::VectorXd& q) const {
-    for (const std::vector<int>& group : connected_groups(chosen_blocks(free_forces))) {
-        const PartOfBody part(surroundings_, group, q);
+} // namespace
+
+bool LocalIteration::improve(const Eigen::VectorXd& free_forces, double negligible, Eigen::VectorXd& q) {
+    const std::vector<int> loaded = loaded_blocks(free_forces, problem_.body.system->n_blocks());
+    if (loaded.empty()) return false;
+    if (!surroundings_) surroundings_.emplace(problem_);
+    for (const std::vector<int>& group : connected_groups(with_neighbours(loaded, *surroundings_), *surroundings_)) {
+        const PartOfBody part(*surroundings_, group, q);
         DampedPart damped(part);
         damped.iterate(negligible);
         part.copy_back(damped.displacement(), q);
     }
+    return true;
 }
 
 } // namespace kluft

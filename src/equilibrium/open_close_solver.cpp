@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "damped_iteration.hpp"
+#include "elimination.hpp"
 #include "iterate.hpp"
 #include "kluft/equilibrium/line_search.hpp"
 #include "stopping_test.hpp"
@@ -60,14 +61,16 @@ OpenCloseSummary OpenCloseSolver::solve(const EquilibriumProblem& problem, const
                                         Eigen::VectorXd& q, const IterationGoal& goal) {
     Equations equations(problem, pattern);
     const Coordinates& coordinates = equations.evaluator.coordinates();
-    Search search(equations, residual_seconds_);
+    Search search(equations, seconds_.residual);
+    Elimination elimination(equations, seconds_);
     OpenCloseSummary summary;
     StoppingTest stopping(options_, goal, summary);
     const bool may_be_damped = goal.given_loads && !coordinates.are_rigid();
     Iterate at;
     LeastForces least;
     for (;;) {
-        evaluate(equations, q, residual_seconds_, at);
+        evaluate(equations, q, seconds_.residual, at);
+        if (elimination.improve(stopping.negligible_forces(problem, q, at), at, q)) stopping.note_elimination();
         if (may_be_damped) least.note(q, at);
         if (stopping.ends(equations, q, at)) return summary;
         const bool first = summary.iterations == 0;
@@ -85,7 +88,7 @@ OpenCloseSummary OpenCloseSolver::solve(const EquilibriumProblem& problem, const
         stopping.note_step(at, s);
         if (may_be_damped && at.held && s < short_step) {
             q = std::move(least.q);
-            DampedIteration damped(equations, newton_, options_, residual_seconds_);
+            DampedIteration damped(equations, elimination, newton_, options_, seconds_.residual);
             if (!damped.find(stopping, summary.iterations, q)) summary.termination = Termination::max_iterations;
             return summary;
         }

@@ -14,6 +14,7 @@ constexpr int iterations_before_halving = 8; ///< then the norm must fall, or it
 constexpr int max_short_steps = 3;           ///< in succession
 constexpr int relaxation_iterations = 6;     ///< of one step: what takes more needs more mass (measured)
 constexpr double block_linear_share = 0.3;   ///< of what is allowed on a block: what a linear solve may leave
+constexpr double negligible = 3e-2;          ///< of the tolerance: forces that are not improved locally
 constexpr double relaxed_share = 0.2;        ///< of the mass-like forces, that a step of relaxation may leave
 constexpr double usual_tolerance = 1e-5;     ///< with a smaller one such a step leaves less, in proportion
 
@@ -81,6 +82,12 @@ bool StoppingTest::ends(const Equations& equations, const Eigen::VectorXd& q, co
 
 double StoppingTest::largest_residual() const { return block_linear_share * unbalanced_.least_allowed; }
 
+double StoppingTest::negligible_forces(const EquilibriumProblem& problem, const Eigen::VectorXd& q,
+                                       const Iterate& at) const {
+    const double in_balance = std::min(negligible * tolerance_ * at.residual.force_scale, largest_residual());
+    return relaxes_ ? std::max(in_balance, 0.5 * relaxed_share_ * viscous_force(problem, q).norm) : in_balance;
+}
+
 bool StoppingTest::stalls(const Iterate& at) const {
     return summary_.iterations > iterations_before_halving && at.norm >= previous_norm_;
 }
@@ -88,6 +95,7 @@ bool StoppingTest::stalls(const Iterate& at) const {
 void StoppingTest::note_step(const Iterate& from, double s) {
     short_steps_ = s < short_step ? short_steps_ + 1 : 0;
     previous_norm_ = from.norm;
+    moved_ = true;
 }
 
 bool StoppingTest::ends_with(Termination termination) {
@@ -100,7 +108,7 @@ bool StoppingTest::is_equilibrium(const Iterate& at) const {
 }
 
 bool StoppingTest::is_relaxed(const EquilibriumProblem& problem, const Eigen::VectorXd& q, const Iterate& at) const {
-    return relaxes_ && at.held && summary_.iterations > 0 && at.norm <= relaxed_share_ * viscous_force(problem, q).norm;
+    return relaxes_ && at.held && moved_ && at.norm <= relaxed_share_ * viscous_force(problem, q).norm;
 }
 
 } // namespace kluft

@@ -27,8 +27,13 @@ public:
 
     /// What a linear solve may leave where only single blocks are not balanced (N/m).
     [[nodiscard]] double largest_residual() const;
+    /// Forces that need not be put right before the next linear solve (N/m).
+    [[nodiscard]] double negligible_forces(const EquilibriumProblem& problem, const Eigen::VectorXd& q,
+                                           const Iterate& at) const;
     /// True where root finding has had its chance and the norm does not fall.
     [[nodiscard]] bool stalls(const Iterate& at) const;
+    /// Notes that blocks have been moved by local iterations.
+    void note_elimination() { moved_ = true; }
     /// Notes the step of length s from an iterate.
     void note_step(const Iterate& from, double s);
 
@@ -45,6 +50,7 @@ private:
     bool relaxes_;
     double previous_norm_ = -1.0; ///< of the free forces one iteration ago (N/m)
     int short_steps_ = 0;         ///< in succession
+    bool moved_ = false;          ///< from the guess
     UnbalancedBlocks unbalanced_; ///< where the body as a whole meets the tolerance
 };
 

@@ -15,7 +15,7 @@ namespace kluft {
 
 namespace {
 
-constexpr int format_version = 9;
+constexpr int format_version = 10;
 constexpr std::string_view format_name = "kluft state";
 
 /// What went wrong inside HDF5; the callers add the file's name.

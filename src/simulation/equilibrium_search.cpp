@@ -225,6 +225,7 @@ void EquilibriumSearch::add_costs(RunCosts& costs) const {
     costs.seconds.update += linear.update_seconds;
     costs.seconds.solution += linear.solve_seconds;
     costs.seconds.assembly += open_close_.assembly_seconds();
+    costs.seconds.local += open_close_.local_seconds();
 }
 
 } // namespace kluft

@@ -2,7 +2,7 @@
 // (docs/theory.md, "Damped iteration").
 #pragma once
 
-#include <vector>
+#include <optional>
 
 #include <Eigen/Core>
 
@@ -13,17 +13,16 @@ namespace kluft {
 /// Moves blocks of one problem, which must outlive it; affine blocks only.
 class LocalIteration {
 public:
-    explicit LocalIteration(const EquilibriumProblem& problem) : surroundings_(problem) {}
+    explicit LocalIteration(const EquilibriumProblem& problem) : problem_(problem) {}
 
     /// Moves the blocks that carry most of the free forces at q, and those that they touch, so that they are left with less.
-    /// What the others are left with may grow. `negligible`: forces that need not be smaller (N/m).
-    void improve(const Eigen::VectorXd& free_forces, double negligible, Eigen::VectorXd& q) const;
+    /// What the others are left with may grow. `negligible`: forces that need not be smaller (N/m). False, and nothing is moved,
+    /// where the forces are not those of a few blocks.
+    [[nodiscard]] bool improve(const Eigen::VectorXd& free_forces, double negligible, Eigen::VectorXd& q);
 
 private:
-    [[nodiscard]] std::vector<int> chosen_blocks(const Eigen::VectorXd& free_forces) const;
-    [[nodiscard]] std::vector<std::vector<int>> connected_groups(const std::vector<int>& blocks) const;
-
-    Surroundings surroundings_;
+    const EquilibriumProblem& problem_;
+    std::optional<Surroundings> surroundings_; ///< found where they are needed
 };
 
 } // namespace kluft

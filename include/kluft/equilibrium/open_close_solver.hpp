@@ -53,6 +53,12 @@ struct OpenCloseSummary {
     [[nodiscard]] bool converged() const { return termination == Termination::converged; }
 };
 
+/// Time spent so far (s).
+struct IterationSeconds {
+    double residual = 0.0; ///< of all blocks
+    double local = 0.0;    ///< in iterations on some
+};
+
 class OpenCloseSolver {
 public:
     OpenCloseSolver(LinearSolver& linear_solver, OpenCloseOptions options)
@@ -70,12 +76,15 @@ public:
     void forget_factor() { newton_.forget_factor(); }
 
     /// Time spent so far in residuals and tangents (s).
-    [[nodiscard]] double assembly_seconds() const { return residual_seconds_ + newton_.assembly_seconds(); }
+    [[nodiscard]] double assembly_seconds() const { return seconds_.residual + newton_.assembly_seconds(); }
+
+    /// Time spent so far in local iterations (s).
+    [[nodiscard]] double local_seconds() const { return seconds_.local; }
 
 private:
     OpenCloseOptions options_;
     NewtonIncrement newton_;
-    double residual_seconds_ = 0.0;
+    IterationSeconds seconds_;
 };
 
 } // namespace kluft

@@ -8,6 +8,7 @@ struct RunSeconds {
     double detection = 0.0;
     double set_up = 0.0;   ///< bonds, pattern look-ups, constant tangent
     double assembly = 0.0; ///< residuals and tangents
+    double local = 0.0;    ///< iterations on the few blocks that carry most of the forces
     double analysis = 0.0;
     double factorization = 0.0;
     double update = 0.0; ///< low-rank changes on top of a factor
@@ -19,7 +20,7 @@ struct RunSeconds {
 /// Of the whole run: what was spent before a resumed state was saved is counted, what was lost with a load step that
 /// was not committed is not.
 struct RunCosts {
-    int open_close_iterations = 0; ///< all linear solves
+    int open_close_iterations = 0; ///< all linear solves of the whole body
     int factorizations = 0;
     int analyses = 0;
     int updates = 0;      ///< linear solves with a factor that was kept
@@ -51,6 +52,7 @@ template <class Seconds, class Visit> void visit_seconds(Seconds& seconds, Visit
     visit("detection", seconds.detection);
     visit("set_up", seconds.set_up);
     visit("assembly", seconds.assembly);
+    visit("local", seconds.local);
     visit("analysis", seconds.analysis);
     visit("factorization", seconds.factorization);
     visit("update", seconds.update);
