@@ -10,6 +10,7 @@ namespace kluft {
 namespace {
 
 constexpr int max_solves = 100;
+constexpr double largest_part = 0.1;       ///< of the blocks: more are not put right by themselves
 constexpr int patience = 24;               ///< linear solves in which the least norm must halve
 constexpr std::size_t n_compared = 3;      ///< norms: an iterate may have more than the last, but not than all of them
 constexpr double least_damped_fall = 1e-3; ///< of the norm
@@ -32,7 +33,7 @@ bool DampedIteration::find(StoppingTest& stopping, int& n_solves, Eigen::VectorX
     const double scale = stiffness_per_mass(equations_.problem.body);
     Iterate at;
     evaluate(equations_, q, seconds_, at);
-    elimination_.improve(stopping.negligible_forces(equations_.problem, q, at), at, q);
+    elimination_.improve(stopping.negligible_forces(equations_.problem, q, at), largest_part, at, q);
     std::array<double, n_compared> norms{};
     norms.fill(at.norm);
     std::size_t n_taken = 0;
@@ -54,7 +55,7 @@ bool DampedIteration::find(StoppingTest& stopping, int& n_solves, Eigen::VectorX
         equations_.evaluator.coordinates().move(q, newton_.increment(), 1.0, next);
         Iterate there;
         evaluate(equations_, next, seconds_, there);
-        elimination_.improve(stopping.negligible_forces(equations_.problem, next, there), there, next);
+        elimination_.improve(stopping.negligible_forces(equations_.problem, next, there), largest_part, there, next);
         if (there.norm >= (1.0 - least_damped_fall) * std::ranges::max(norms)) {
             damping *= damping_growth;
             continue;

@@ -14,7 +14,7 @@ constexpr double local_fall = 0.7;  ///< of the norm: what a further round must 
 
 } // namespace
 
-bool Elimination::improve(double enough, Iterate& at, Eigen::VectorXd& q) {
+bool Elimination::improve(double enough, double largest_part, Iterate& at, Eigen::VectorXd& q) {
     const EquilibriumProblem& problem = equations_.problem;
     if (!at.held || problem.body.placement->contacts.empty() || equations_.evaluator.coordinates().are_rigid())
         return false;
@@ -25,7 +25,7 @@ bool Elimination::improve(double enough, Iterate& at, Eigen::VectorXd& q) {
         {
             const Stopwatch watch(seconds_.local);
             if (!local_) local_.emplace(problem);
-            if (!local_->improve(at.free_forces, local_share * enough, improved)) return moved;
+            if (!local_->improve(at.free_forces, largest_part, local_share * enough, improved)) return moved;
         }
         Iterate there;
         evaluate(equations_, improved, seconds_.residual, there);

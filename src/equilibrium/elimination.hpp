@@ -18,9 +18,9 @@ public:
     Elimination(Equations& equations, IterationSeconds& seconds) : equations_(equations), seconds_(seconds) {}
 
     /// Rounds of local iterations from the iterate `at` of q, as long as the norm of all forces falls by them and is above
-    /// `enough` (N/m). Afterwards `at` is the iterate of the new q, and the tangent of the equations belongs to it. False where
+    /// `enough` (N/m), and not more than a `largest_part` of all blocks carries most of it. Afterwards `at` is the iterate of the new q, and the tangent of the equations belongs to it. False where
     /// nothing has moved.
-    bool improve(double enough, Iterate& at, Eigen::VectorXd& q);
+    bool improve(double enough, double largest_part, Iterate& at, Eigen::VectorXd& q);
 
 private:
     Equations& equations_;

@@ -13,8 +13,7 @@ namespace kluft {
 namespace {
 
 constexpr double chosen_share = 0.9; ///< of the norm of all forces, on the blocks that are moved (measured)
-constexpr double max_chosen = 500.0; ///< blocks
-constexpr double largest_part = 0.1; ///< of all blocks: more are left to a solve of all
+constexpr double max_chosen = 500.0; ///< blocks: more are left to a solve of all
 constexpr double local_goal = 0.05;  ///< of the forces at first
 constexpr int max_local_iterations = 40;
 constexpr double least_local_fall = 1e-3;    ///< of the norm, by an increment that is taken
@@ -117,7 +116,7 @@ private:
 };
 
 /// The few blocks that together have most of the forces; none where they are not few.
-std::vector<int> loaded_blocks(const Eigen::VectorXd& free_forces, int n_blocks) {
+std::vector<int> loaded_blocks(const Eigen::VectorXd& free_forces, int n_blocks, double largest_part) {
     std::vector<std::pair<double, int>> squares;
     squares.reserve(n_blocks);
     for (int b = 0; b < n_blocks; ++b)
@@ -161,8 +160,9 @@ std::vector<std::vector<int>> connected_groups(const std::vector<int>& blocks, c
 
 } // namespace
 
-bool LocalIteration::improve(const Eigen::VectorXd& free_forces, double negligible, Eigen::VectorXd& q) {
-    const std::vector<int> loaded = loaded_blocks(free_forces, problem_.body.system->n_blocks());
+bool LocalIteration::improve(const Eigen::VectorXd& free_forces, double largest_part, double negligible,
+                             Eigen::VectorXd& q) {
+    const std::vector<int> loaded = loaded_blocks(free_forces, problem_.body.system->n_blocks(), largest_part);
     if (loaded.empty()) return false;
     if (!surroundings_) surroundings_.emplace(problem_);
     for (const std::vector<int>& group : connected_groups(with_neighbours(loaded, *surroundings_), *surroundings_)) {

@@ -161,7 +161,7 @@ void EquilibriumSearch::settle(EquilibriumProblem& problem, const BlockGoal& bal
         found.blocks = std::move(blocks);
         found.viscous_share = viscous_share(problem, next, summary.force_scale);
         found.displacement = std::move(next);
-        found.summary = std::move(summary);
+        found.summary = summary;
     }
     found.balanced = is_balanced(found, balance);
     if (found.balanced && lags_behind(problem, found, open_close_.options().tolerance))

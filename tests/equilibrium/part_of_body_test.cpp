@@ -88,7 +88,7 @@ TEST(LocalIteration, PutsRightASinglePushedBlock) {
     const Eigen::VectorXd forces = disturbed.forces(disturbed.q);
     ASSERT_GT(forces.norm(), 1e4);
     Eigen::VectorXd moved = disturbed.q;
-    ASSERT_TRUE(LocalIteration(disturbed.body.problem).improve(forces, 0.0, moved));
+    ASSERT_TRUE(LocalIteration(disturbed.body.problem).improve(forces, 0.2, 0.0, moved));
     EXPECT_LT(disturbed.forces(moved).norm(), 0.1 * forces.norm());
     std::vector<int> near = Surroundings(disturbed.body.problem).neighbours(pushed);
     const std::vector<int> first_ring = near;

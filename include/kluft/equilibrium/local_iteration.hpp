@@ -17,8 +17,9 @@ public:
 
     /// Moves the blocks that carry most of the free forces at q, and those that they touch, so that they are left with less.
     /// What the others are left with may grow. `negligible`: forces that need not be smaller (N/m). False, and nothing is moved,
-    /// where the forces are not those of a few blocks.
-    [[nodiscard]] bool improve(const Eigen::VectorXd& free_forces, double negligible, Eigen::VectorXd& q);
+    /// where more than a `largest_part` of all blocks carries them.
+    [[nodiscard]] bool improve(const Eigen::VectorXd& free_forces, double largest_part, double negligible,
+                               Eigen::VectorXd& q);
 
 private:
     const EquilibriumProblem& problem_;
