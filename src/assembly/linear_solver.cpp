@@ -16,7 +16,7 @@ namespace {
 
 constexpr double max_rank_factor = 3.0; ///< of sqrt(unknowns); the design's figure
 constexpr int max_corrections = 3;      ///< restarts of the refinement, whose recurrence drifts
-constexpr double safe_share = 0.5;      ///< of the goal, for the recurrence
+constexpr double safe_share = 0.97;     ///< of the goal, for the recurrence
 
 double frobenius_norm(const BlockMatrix& matrix) { return std::sqrt(matrix.squared_norm()); }
 

@@ -10,9 +10,10 @@ namespace kluft {
 namespace {
 
 constexpr int max_solves = 100;
-constexpr double largest_part = 0.1;       ///< of the blocks: more are not put right by themselves
-constexpr int patience = 24;               ///< linear solves in which the least norm must halve
-constexpr std::size_t n_compared = 3;      ///< norms: an iterate may have more than the last, but not than all of them
+constexpr double largest_part = 0.1;  ///< of the blocks: more are not put right by themselves
+constexpr std::size_t n_compared = 3; ///< norms: an iterate may have more than the last, but not than all of them
+constexpr double damped_linear_residual =
+    1e-2; ///< of the forces, that a linear solve may leave (measured: 1e-4 is no better)
 constexpr double least_damped_fall = 1e-3; ///< of the norm
 constexpr double large_damped_fall = 0.3;  ///< of the norm
 constexpr double first_damping = 1e-2;     ///< E/d2 of it (measured: 1e-3 to 1e-1)
@@ -29,7 +30,7 @@ double stiffness_per_mass(const LoadedBody& body) {
 
 } // namespace
 
-bool DampedIteration::find(StoppingTest& stopping, int& n_solves, Eigen::VectorXd& q) {
+bool DampedIteration::find(StoppingTest& stopping, int patience, int& n_solves, Eigen::VectorXd& q) {
     const double scale = stiffness_per_mass(equations_.problem.body);
     Iterate at;
     evaluate(equations_, q, seconds_, at);
@@ -44,11 +45,12 @@ bool DampedIteration::find(StoppingTest& stopping, int& n_solves, Eigen::VectorX
     bool found = false;
     for (int i = 0; i < max_solves && i - least_at <= patience && damping <= largest_damping * scale; ++i) {
         evaluate(equations_, q, seconds_, at); // the tangent is that of the last residual
-        found = stopping.finds(equations_, q, at);
+        found = stopping.finds(equations_, q, at) || elimination_.balances(stopping, largest_part, at, q);
         if (found) break;
         newton_.forget_factor();
-        const NewtonPoint point{equations_.evaluator, equations_.border,           q,      at.residual, at.prescribed,
-                                options_.tolerance,   stopping.largest_residual(), damping};
+        const double largest_residual = std::min(stopping.largest_residual(), damped_linear_residual * at.norm);
+        const NewtonPoint point{equations_.evaluator, equations_.border, q,      at.residual, at.prescribed,
+                                options_.tolerance,   largest_residual,  damping};
         if (!newton_.find(point, options_.tangent)) break;
         ++n_solves;
         Eigen::VectorXd next;

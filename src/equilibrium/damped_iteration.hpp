@@ -19,8 +19,8 @@ public:
         : equations_(equations), elimination_(elimination), newton_(newton), options_(options), seconds_(seconds) {}
 
     /// Goes from q, where the prescribed displacements hold, to an equilibrium, which becomes q. False where the forces do not
-    /// fall enough: q is the iterate with the least then. Counts its linear solves in `n_solves`.
-    [[nodiscard]] bool find(StoppingTest& stopping, int& n_solves, Eigen::VectorXd& q);
+    /// fall enough, by a half in `patience` linear solves: q is the iterate with the least then. Counts its linear solves in `n_solves`.
+    [[nodiscard]] bool find(StoppingTest& stopping, int patience, int& n_solves, Eigen::VectorXd& q);
 
 private:
     Equations& equations_;

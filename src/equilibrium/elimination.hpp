@@ -9,6 +9,7 @@
 #include "iterate.hpp"
 #include "kluft/equilibrium/local_iteration.hpp"
 #include "kluft/equilibrium/open_close_solver.hpp"
+#include "stopping_test.hpp"
 
 namespace kluft {
 
@@ -21,8 +22,15 @@ public:
     /// `enough` (N/m), and not more than a `largest_part` of all blocks carries most of it. Afterwards `at` is the iterate of the new q, and the tangent of the equations belongs to it. False where
     /// nothing has moved.
     bool improve(double enough, double largest_part, Iterate& at, Eigen::VectorXd& q);
+    /// Rounds of local iterations on single blocks that are not balanced in an iterate that meets the tolerance for the body
+    /// as a whole, if not more than a `largest_part` of all. True if q is an equilibrium afterwards; else all is as it was.
+    [[nodiscard]] bool balances(StoppingTest& stopping, double largest_part, Iterate& at, Eigen::VectorXd& q);
 
 private:
+    [[nodiscard]] bool has_any(const Iterate& at) const;
+    [[nodiscard]] bool moves_far(const Eigen::VectorXd& from, const Eigen::VectorXd& to) const;
+    [[nodiscard]] LocalIteration& local();
+
     Equations& equations_;
     IterationSeconds& seconds_;
     std::optional<LocalIteration> local_; ///< made where it is needed

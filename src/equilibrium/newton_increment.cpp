@@ -11,8 +11,10 @@ namespace kluft {
 
 namespace {
 
-constexpr double linear_share = 0.3;            ///< of the tolerated residual, that a linear solve may leave
-constexpr double far_linear_residual = 0.05;    ///< of its right side: as many iterations as with less (measured)
+constexpr double linear_share = 0.3;           ///< of the tolerated residual, that a linear solve may leave
+constexpr double usual_linear_residual = 0.05; ///< of its right side: as many iterations as with less (measured)
+constexpr double far_linear_residual = 0.02;   ///< of its right side, far from equilibrium: what touches is found there
+constexpr double far_from_equilibrium = 0.01;  ///< right side over F_ref
 constexpr double largest_linear_residual = 0.1; ///< of its right side, near equilibrium
 constexpr double travel_residual = 1e-8;        ///< of the border's column
 
@@ -33,8 +35,10 @@ void add_damping(const EquilibriumProblem& problem, double damping, BlockMatrix&
 /// The second bound of (31): far from equilibrium a linear solve need not be exact, near it it leaves less than what
 /// the iteration tolerates. `right_side`: its norm (N/m).
 double linear_residual(double right_side, double tolerance, double force_scale) {
+    const bool is_far = right_side > far_from_equilibrium * force_scale;
+    const double share = is_far ? far_linear_residual : usual_linear_residual;
     return std::min(largest_linear_residual * right_side,
-                    std::max(far_linear_residual * right_side, linear_share * tolerance * force_scale));
+                    std::max(share * right_side, linear_share * tolerance * force_scale));
 }
 
 } // namespace

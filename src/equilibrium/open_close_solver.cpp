@@ -16,6 +16,12 @@ namespace {
 constexpr double worthwhile_part =
     0.03; ///< of the blocks: where so few carry most of the forces, they are cheaper than all (measured)
 
+constexpr int patience_from_rest =
+    24;                     ///< of the damped iteration, linear solves: walls under their weight take so many
+constexpr int patience = 6; ///< where loads are not given: what stops is more often the end of a path
+
+constexpr double near_equilibrium = 1e-3; ///< forces over F_ref: less is left over by contacts that chatter
+
 /// Searches along one increment after the other.
 class Search {
 public:
@@ -68,7 +74,7 @@ OpenCloseSummary OpenCloseSolver::solve(const EquilibriumProblem& problem, const
     Elimination elimination(equations, seconds_);
     OpenCloseSummary summary;
     StoppingTest stopping(options_, goal, summary);
-    const bool may_be_damped = goal.given_loads && !coordinates.are_rigid();
+    const bool may_be_damped = goal.aim == Aim::equilibrium && !coordinates.are_rigid();
     Iterate at;
     LeastForces least;
     for (;;) {
@@ -76,7 +82,9 @@ OpenCloseSummary OpenCloseSolver::solve(const EquilibriumProblem& problem, const
         if (elimination.improve(stopping.negligible_forces(problem, q, at), worthwhile_part, at, q))
             stopping.note_elimination();
         if (may_be_damped) least.note(q, at);
-        if (stopping.ends(equations, q, at)) return summary;
+        if (stopping.finds(equations, q, at) || elimination.balances(stopping, worthwhile_part, at, q) ||
+            stopping.ends(problem, q, at))
+            return summary;
         const bool first = summary.iterations == 0;
         const bool touching =
             first && goal.unloaded && !problem.body.placement->contacts.empty(); // a bonded body has its stiffness
@@ -87,13 +95,21 @@ OpenCloseSummary OpenCloseSolver::solve(const EquilibriumProblem& problem, const
             return summary;
         }
         ++summary.iterations;
+        const bool is_too_far = goal.aim == Aim::relaxation && !at.held && !newton_.limited().empty();
+        if (is_too_far) { // loads move blocks beyond the limit (28a) in this pseudo-time step
+            summary.termination = Termination::max_iterations;
+            return summary;
+        }
         const Eigen::VectorXd& increment = newton_.increment();
         const double s = at.held ? search.step_length(q, increment, at, stopping.stalls(at)) : 1.0;
         stopping.note_step(at, s);
-        if (may_be_damped && at.held && s < short_step) {
+        const bool is_near = goal.given_loads || least.norm < near_equilibrium * at.residual.force_scale;
+        if (may_be_damped && is_near && at.held && s < short_step) {
             q = std::move(least.q);
             DampedIteration damped(equations, elimination, newton_, options_, seconds_.residual);
-            if (!damped.find(stopping, summary.iterations, q)) summary.termination = Termination::max_iterations;
+            const int patient = goal.given_loads ? patience_from_rest : patience;
+            if (!damped.find(stopping, patient, summary.iterations, q))
+                summary.termination = Termination::max_iterations;
             return summary;
         }
         coordinates.move(q, increment, s, q);

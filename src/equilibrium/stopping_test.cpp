@@ -73,9 +73,8 @@ bool StoppingTest::finds(const Equations& equations, const Eigen::VectorXd& q, c
     return false;
 }
 
-bool StoppingTest::ends(const Equations& equations, const Eigen::VectorXd& q, const Iterate& at) {
-    if (finds(equations, q, at)) return true;
-    if (is_relaxed(equations.problem, q, at)) return ends_with(Termination::relaxed);
+bool StoppingTest::ends(const EquilibriumProblem& problem, const Eigen::VectorXd& q, const Iterate& at) {
+    if (is_relaxed(problem, q, at)) return ends_with(Termination::relaxed);
     if (summary_.iterations < max_iterations_ && short_steps_ < max_short_steps) return false;
     return ends_with(Termination::max_iterations);
 }

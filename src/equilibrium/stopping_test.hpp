@@ -22,8 +22,10 @@ public:
 
     /// True if the iterate q is an equilibrium; the summary says so then.
     [[nodiscard]] bool finds(const Equations& equations, const Eigen::VectorXd& q, const Iterate& at);
-    /// Judges the iterate q. True if it is the last one; the summary says why.
-    [[nodiscard]] bool ends(const Equations& equations, const Eigen::VectorXd& q, const Iterate& at);
+    /// True if the iterate q, which is none, is the last one all the same; the summary says why.
+    [[nodiscard]] bool ends(const EquilibriumProblem& problem, const Eigen::VectorXd& q, const Iterate& at);
+    /// Of the iterate that was judged last, where the body as a whole meets the tolerance.
+    [[nodiscard]] const UnbalancedBlocks& unbalanced() const { return unbalanced_; }
 
     /// What a linear solve may leave where only single blocks are not balanced (N/m).
     [[nodiscard]] double largest_residual() const;
@@ -51,7 +53,7 @@ private:
     double previous_norm_ = -1.0; ///< of the free forces one iteration ago (N/m)
     int short_steps_ = 0;         ///< in succession
     bool moved_ = false;          ///< from the guess
-    UnbalancedBlocks unbalanced_; ///< where the body as a whole meets the tolerance
+    UnbalancedBlocks unbalanced_;
 };
 
 inline constexpr double short_step = 0.1; ///< of the increment: this way leads nowhere

@@ -25,7 +25,7 @@ PseudoStep solve_load_step(StepInProgress& p, const PlacedState& placed, Motion&
     const double expected = motion.control.elastic_motion + far_from_platen * platen_motion(p, motion.at);
     motion.step = std::max(motion.first, load_step * motion.ordinary);
     for (;;) {
-        PseudoStep next = solve_step(p, placed, motion, 1.0, p.displacement());
+        PseudoStep next = solve_step(p, placed, motion, p.displacement());
         const bool shortest = motion.step < least_load_step * motion.first;
         if (shortest || (next.balanced && moved_by(p, next.moved) <= expected)) return next;
         motion.step *= load_step_cut;

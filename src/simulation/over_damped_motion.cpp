@@ -44,7 +44,8 @@ double better_step(const StepInProgress& p, const Motion& motion, const Equilibr
     return std::min(by_error, motion.control.longest / std::max(moved_by(p, moved), 1e-300));
 }
 
-/// Cuts the pseudo-time step where the first potential crack fails.
+/// Cuts the pseudo-time step where the first potential crack fails, on the straight line between its ends: what its error
+/// allows.
 PseudoStep cut_at_failure(StepInProgress& p, const PlacedState& placed, const Motion& motion, PseudoStep end) {
     const double tolerance = p.goal.cracks.event_tolerance;
     const EventGoal event{.last_without = 1.0 + tolerance, .index = 1.0 + 0.5 * tolerance, .reach = 0.5 * tolerance};
@@ -56,7 +57,10 @@ PseudoStep cut_at_failure(StepInProgress& p, const PlacedState& placed, const Mo
                event, 0.0, std::move(end), [&](const PseudoStep& step) { return index_at(step.moved.displacement); },
                [&] { return index_at(start); },
                [&](double share, double part, const PseudoStep& to) {
-                   return solve_step(p, placed, motion, share, start + part * (to.moved.displacement - start));
+                   PseudoStep cut = to;
+                   cut.load_factor = share;
+                   cut.moved.displacement = start + part * (to.moved.displacement - start);
+                   return cut;
                })
         .found;
 }
@@ -132,14 +136,14 @@ void restart(Motion& motion) {
     motion.way_left = unlimited;
 }
 
-PseudoStep solve_step(StepInProgress& p, const PlacedState& placed, const Motion& motion, double share,
+PseudoStep solve_step(StepInProgress& p, const PlacedState& placed, const Motion& motion,
                       const Eigen::VectorXd& guess) {
     const auto& [model, cracks, solver, loads, search, journal, stop] = p.bench;
     if (stop) throw Interrupted{};
-    const double eta = 1.0 / (share * motion.step);
+    const double eta = 1.0 / motion.step;
     const EquilibriumProblem problem{loaded_body(model, placed.placement, motion.at),
                                      std::vector<double>(model.system.blocks.size(), eta), 0.0, p.displacement()};
-    PseudoStep step{.load_factor = share};
+    PseudoStep step;
     Equilibrium& moved = step.moved;
     moved = search.move_on(problem, guess, p.goal.balance, p.step.end.body.contacts.empty());
     moved.load_factor = motion.at.load_factor;
@@ -189,7 +193,7 @@ void break_there(StepInProgress& p, PlacedState& placed, Motion& motion) {
 
 std::optional<Equilibrium> take_pseudo_step(StepInProgress& p, PlacedState& placed, Motion& motion) {
     touch_anew(p, motion);
-    PseudoStep next = solve_step(p, placed, motion, 1.0, p.displacement() + motion.step * motion.velocity);
+    PseudoStep next = solve_step(p, placed, motion, p.displacement() + motion.step * motion.velocity);
     if (!next.balanced) {
         motion.step *= largest_cut;
         if (motion.step > least_step * motion.first) return std::nullopt;
@@ -206,7 +210,7 @@ std::optional<Equilibrium> take_pseudo_step(StepInProgress& p, PlacedState& plac
     moved.verdict =
         judge_blocks(moved.blocks, motion.last.blocks.left.empty() ? nullptr : &motion.last.blocks, p.goal.balance);
     moved.balanced = moved.verdict.balanced() && moved.viscous_share <= p.goal.balance.share;
-    if (moved.balanced && next.load_factor * motion.step >= motion.ordinary) return std::move(moved);
+    if (moved.balanced && next.load_factor == 1.0 && motion.step >= motion.ordinary) return std::move(moved);
     if (!move_along(p, placed, motion, std::move(next))) return motion.last;
     if (is_falling(p)) {
         fail(p, motion.last, motion.last.viscous_share, FailureKind::falling);

@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
+#include "kluft/equilibrium/left_over.hpp"
 #include "kluft/loading/boundary_geometry.hpp"
 #include "support/pressed_body.hpp"
 
@@ -97,6 +98,37 @@ TEST(OpenCloseSolver, SymmetricTangentLeadsToTheSameEquilibrium) {
         EXPECT_GT(with_symmetric.iterations, with_exact.iterations);
         EXPECT_LT((symmetric - exact).norm(), 1e-7 * exact.norm());
     }
+}
+
+// A block beside the fracture is moved by so little that the body as a whole still meets the tolerance; it and those that it
+// pushes do not. They are put right without a linear solve of all blocks, to the equilibrium that is found without the move.
+TEST(OpenCloseSolver, SingleBlocksAreBalancedByThemselves) {
+    PressedBody body(false, {1, 0}, Kinematics::affine, 0.03);
+    body.problem.loads.pressures.assign(4, 0.0);
+    const BlockPattern pattern = pattern_of(body.problem);
+    LinearSolver linear;
+    linear.analyze(pattern);
+    Eigen::VectorXd q = at_rest(body.system);
+    const OpenCloseSummary first = OpenCloseSolver(linear, {.tolerance = 1e-11, .max_iterations = 40})
+                                       .solve(body.problem, pattern, q, {.unloaded = true});
+    ASSERT_TRUE(first.converged()) << first.residual_ratio << " " << first.iterations;
+    const int moved = body.problem.placement.contacts[body.problem.placement.contacts.size() / 2].block_a;
+    Eigen::VectorXd disturbed = q;
+    disturbed.segment<2>(6 * moved) += Vec2(1e-9, 1e-9);
+    const OpenCloseOptions options{.tolerance = 1e-3};
+    const double block_tolerance = 1e-8;
+    Eigen::VectorXd as_it_is = disturbed;
+    EXPECT_EQ(OpenCloseSolver(linear, options).solve(body.problem, pattern, as_it_is).iterations, 0);
+    EXPECT_EQ(as_it_is, disturbed);
+    const OpenCloseSummary summary =
+        OpenCloseSolver(linear, options).solve(body.problem, pattern, disturbed, {.block_tolerance = block_tolerance});
+    EXPECT_TRUE(summary.converged());
+    EXPECT_EQ(summary.iterations, 0);
+    EXPECT_LT((disturbed - q).cwiseAbs().maxCoeff(), 1e-4 * 1e-9);
+    const BlockBalance balance = block_balance({body.problem.body}, disturbed);
+    for (std::size_t b = 0; b < balance.left.size(); ++b)
+        EXPECT_LT(size_of(balance.left[b]), block_tolerance * balance.forces.around[b] + balance.forces.roundoff[b])
+            << b;
 }
 
 // By hand: the platen's force is the stress times the current width, and what its rows carry is that force.

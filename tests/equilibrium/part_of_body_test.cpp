@@ -102,5 +102,21 @@ TEST(LocalIteration, PutsRightASinglePushedBlock) {
     }
 }
 
+// Blocks at the platen and at the support stay on them, to the last bits of a displacement of 4e-4.
+TEST(LocalIteration, KeepsPrescribedDisplacements) {
+    const Disturbed disturbed;
+    const Constraints& constraints = disturbed.body.problem.loads.constraints;
+    Eigen::VectorXd correction;
+    constraints.correction(disturbed.q, correction);
+    const Eigen::VectorXd held = disturbed.q + correction;
+    std::vector<int> blocks;
+    for (const auto& row : constraints.rows()) blocks.push_back(row.block);
+    Eigen::VectorXd moved = held;
+    LocalIteration(disturbed.body.problem).improve(blocks, 0.0, moved);
+    EXPECT_LT(disturbed.forces(moved).norm(), 0.9 * disturbed.forces(held).norm());
+    constraints.correction(moved, correction);
+    EXPECT_LT(correction.lpNorm<Eigen::Infinity>(), 1e-18);
+}
+
 } // namespace
 } // namespace kluft

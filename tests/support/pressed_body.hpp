@@ -17,9 +17,9 @@ namespace kluft {
 struct PressedBody {
     static constexpr int bond = 0, joint = 1;
 
-    explicit PressedBody(bool travelling, const std::vector<char>& is_bond,
-                         Kinematics kinematics = Kinematics::affine) {
-        GeometrySpec spec = hexagon_spec(0.5, 0.6, 0.1, {0.03, 0.04}, bond);
+    explicit PressedBody(bool travelling, const std::vector<char>& is_bond, Kinematics kinematics = Kinematics::affine,
+                         double spacing = 0.1) {
+        GeometrySpec spec = hexagon_spec(0.5, 0.6, spacing, {0.03, 0.04}, bond);
         cut_scenes::add_trace(spec, {{-0.1, 0.25}, {0.6, 0.4}}, joint);
         system = cut_blocks(spec).system;
         problem.body.kinematics = kinematics;

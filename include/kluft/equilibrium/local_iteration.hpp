@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -20,6 +21,8 @@ public:
     /// where more than a `largest_part` of all blocks carries them.
     [[nodiscard]] bool improve(const Eigen::VectorXd& free_forces, double largest_part, double negligible,
                                Eigen::VectorXd& q);
+    /// Moves these blocks and those that they touch in the same way.
+    void improve(const std::vector<int>& blocks, double negligible, Eigen::VectorXd& q);
 
 private:
     const EquilibriumProblem& problem_;

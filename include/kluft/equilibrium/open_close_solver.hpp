@@ -31,7 +31,7 @@ struct IterationGoal {
     /// The body's contacts carry no force yet and therefore have no stiffness: the first increment takes the touching
     /// ones as closed.
     bool unloaded = false;
-    /// The loads are given, and not the motion of a platen: the iteration goes on with damping where it would give up.
+    /// The loads are given, and not the motion of a platen: where the iteration goes on with damping it has more patience.
     bool given_loads = false;
     /// Largest residual of a block over its own force (block_balance.hpp), beside the tolerance for all together.
     double block_tolerance = std::numeric_limits<double>::infinity();

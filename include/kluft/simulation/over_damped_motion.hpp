@@ -49,15 +49,15 @@ struct Motion {
 /// The forces have changed at once: the motion begins anew.
 void restart(Motion& motion);
 
-/// One implicit Euler step of a pseudo-time step, or of a share of it, which stands in the place of a load factor.
+/// One implicit Euler step, or the part of it up to where a potential crack fails.
 struct PseudoStep {
     Equilibrium moved;
-    double load_factor = 1.0;
-    bool balanced = false; ///< solved
+    double load_factor = 1.0; ///< stands for the part of the pseudo-time step
+    bool balanced = false;    ///< solved
 };
 
 [[nodiscard]] PseudoStep solve_step(StepInProgress& in_progress, const PlacedState& placed, const Motion& motion,
-                                    double share, const Eigen::VectorXd& guess);
+                                    const Eigen::VectorXd& guess);
 
 /// Relative to the motion scale of the block that moves most, from where the step stands.
 [[nodiscard]] double moved_by(const StepInProgress& in_progress, const Equilibrium& moved);
