@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "commands.hpp"
+#include "failure.hpp"
 #include "kluft/core/diagnostics.hpp"
 #include "this_program.hpp"
 
@@ -25,6 +26,7 @@ int number_of_processors() { return static_cast<int>(std::max(std::thread::hardw
 } // namespace
 
 ExitCode calibrate(const CalibrateArguments& arguments) {
+    require_possible_output(arguments.directory);
     namespace fs = std::filesystem;
     const fs::path program = this_program("calibrate");
     const fs::path calibrator = program.parent_path() / "kluft-calibrate";

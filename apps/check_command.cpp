@@ -15,6 +15,7 @@
 #include "kluft/kinematics/affine.hpp"
 #include "kluft/scene/scene_model.hpp"
 #include "kluft/scene/scene_reader.hpp"
+#include "standard_output.hpp"
 
 namespace kluft {
 
@@ -23,47 +24,46 @@ namespace {
 void print_blocks(const Scene& scene, const SceneModel& built) {
     const BlockSystem& system = built.model.system;
     const Vec2 extent = system.upper - system.lower;
-    fmt::print("body         {:.6g} m x {:.6g} m, plane {}\n", extent.x(), extent.y(),
-               scene.plane == Plane::strain ? "strain" : "stress");
-    fmt::print("blocks       {}\n", system.n_blocks());
-    fmt::print("unknowns     {}\n", unknowns_per_block(scene.kinematics) * system.n_blocks());
-    fmt::print("interfaces   {}\n", system.n_interfaces());
+    say("body         {:.6g} m x {:.6g} m, plane {}\n", extent.x(), extent.y(),
+        scene.plane == Plane::strain ? "strain" : "stress");
+    say("blocks       {}\n", system.n_blocks());
+    say("unknowns     {}\n", unknowns_per_block(scene.kinematics) * system.n_blocks());
+    say("interfaces   {}\n", system.n_interfaces());
     for (std::size_t t = 0; t < scene.interface_types.size(); ++t) {
         const auto count = std::ranges::count(system.interfaces, static_cast<int>(t), &Interface::interface_type);
         if (count == 0) continue;
-        fmt::print("  {:<16} {:>7}  {}\n", scene.interface_types[t].name, count,
-                   built.model.bonds[t] ? "potential crack" : "fracture");
+        say("  {:<16} {:>7}  {}\n", scene.interface_types[t].name, count,
+            built.model.bonds[t] ? "potential crack" : "fracture");
     }
 }
 
 void print_cut(const CutReport& cut) {
-    fmt::print("smallest     area {:.4g} m2, edge {:.4g} m, angle {:.4g} deg\n", cut.smallest_area, cut.smallest_edge,
-               cut.smallest_angle * 180.0 / std::numbers::pi);
-    fmt::print("mended       {} slivers merged, {} short edges collapsed, {} ends pruned\n", cut.merged.size(),
-               cut.collapsed_edges, cut.pruned_ends);
+    say("smallest     area {:.4g} m2, edge {:.4g} m, angle {:.4g} deg\n", cut.smallest_area, cut.smallest_edge,
+        cut.smallest_angle * 180.0 / std::numbers::pi);
+    say("mended       {} slivers merged, {} short edges collapsed, {} ends pruned\n", cut.merged.size(),
+        cut.collapsed_edges, cut.pruned_ends);
     constexpr std::size_t most_listed = 10;
     for (std::size_t i = 0; i < std::min(most_listed, cut.merged.size()); ++i) {
-        fmt::print("  merged {:.3g} m2 at ({:.6g}, {:.6g})\n", cut.merged[i].area, cut.merged[i].at.x(),
-                   cut.merged[i].at.y());
+        say("  merged {:.3g} m2 at ({:.6g}, {:.6g})\n", cut.merged[i].area, cut.merged[i].at.x(), cut.merged[i].at.y());
     }
-    if (cut.merged.size() > most_listed) fmt::print("  and {} more\n", cut.merged.size() - most_listed);
+    if (cut.merged.size() > most_listed) say("  and {} more\n", cut.merged.size() - most_listed);
 }
 
 void print_stiffness(const Scene& scene, const Model& model) {
     const double d = model.system.spacing;
     for (std::size_t t = 0; t < scene.interface_types.size(); ++t) {
         const auto& [normal, shear] = model.given_stiffness[t];
-        fmt::print("stiffness    {}: k_n {:.4g} Pa/m, k_s {:.4g} Pa/m, k_n d/E {:.4g}\n", scene.interface_types[t].name,
-                   normal, shear, normal * d / scene.materials.front().youngs_modulus);
+        say("stiffness    {}: k_n {:.4g} Pa/m, k_s {:.4g} Pa/m, k_n d/E {:.4g}\n", scene.interface_types[t].name,
+            normal, shear, normal * d / scene.materials.front().youngs_modulus);
     }
     for (std::size_t t = 0; t < model.laws.size(); ++t) {
         const InterfaceLaw& law = model.laws[t];
         if (t >= scene.interface_types.size() && model.net.kind == NetKind::triangles) break; // of other spacings
         if (law.normal_stiffness == model.given_stiffness[t].normal) continue;
-        fmt::print("             {}{}: k_n {:.4g} Pa/m, k_s {:.4g} Pa/m with the compliance of the rigid blocks\n",
-                   scene.interface_types[model.law_types[t]].name,
-                   t < scene.interface_types.size() ? "" : " of a broken hexagon edge", law.normal_stiffness,
-                   law.shear_stiffness);
+        say("             {}{}: k_n {:.4g} Pa/m, k_s {:.4g} Pa/m with the compliance of the rigid blocks\n",
+            scene.interface_types[model.law_types[t]].name,
+            t < scene.interface_types.size() ? "" : " of a broken hexagon edge", law.normal_stiffness,
+            law.shear_stiffness);
     }
     if (!scene.geometry.tessellation) return;
     const InterfaceLaw& net = model.laws[scene.geometry.tessellation->interface_type];
@@ -72,8 +72,8 @@ void print_stiffness(const Scene& scene, const Model& model) {
         const auto lattice = model.kinematics == Kinematics::rigid
                                  ? rigid_lattice_moduli(stiffness, model.net, model.plane)
                                  : lattice_moduli(model.moduli[m], stiffness, model.net, model.plane);
-        fmt::print("lattice      {}: E {:.4g} Pa, nu {:.4g}\n", scene.materials[m].name, lattice.youngs_modulus,
-                   lattice.poissons_ratio);
+        say("lattice      {}: E {:.4g} Pa, nu {:.4g}\n", scene.materials[m].name, lattice.youngs_modulus,
+            lattice.poissons_ratio);
     }
 }
 
@@ -98,8 +98,8 @@ void print_memory(const Scene& scene, const Model& model) {
     const FactorCost cost = factor_cost(BlockPattern(model.system.n_blocks(), pairs, model.kinematics));
     const bool unsymmetric_factors = scene.solver.tangent == Tangent::unsymmetric && !scene.solver.reuse;
     const double factor = (unsymmetric_factors ? 3.0 : 1.0) * cost.bytes;
-    fmt::print("memory       about {:.3g} MB, of which the factor {:.3g} MB ({:.3g} flops by Cholesky's method)\n",
-               1e-6 * estimated_memory(scene, model, factor), 1e-6 * factor, cost.flops);
+    say("memory       about {:.3g} MB, of which the factor {:.3g} MB ({:.3g} flops by Cholesky's method)\n",
+        1e-6 * estimated_memory(scene, model, factor), 1e-6 * factor, cost.flops);
 }
 
 /// A laterally loaded body under a platen is most often a cylinder.
@@ -114,19 +114,19 @@ bool looks_like_a_triaxial_test(const Scene& scene) {
 ExitCode check(const CheckArguments& arguments) {
     const Scene scene = read_scene(arguments.scene, arguments.overrides);
     const SceneModel built = build_scene_model(scene);
-    fmt::print("scene        {}{}\n", scene.name, scene.title.empty() ? "" : ": " + scene.title);
+    say("scene        {}{}\n", scene.name, scene.title.empty() ? "" : ": " + scene.title);
     print_blocks(scene, built);
     print_cut(built.cut);
     print_stiffness(scene, built.model);
     print_memory(scene, built.model);
-    for (const Stage& stage : scene.loads.stages) fmt::print("stage        {}: {} steps\n", stage.name, stage.steps);
+    for (const Stage& stage : scene.loads.stages) say("stage        {}: {} steps\n", stage.name, stage.steps);
     for (const auto* warnings : {&scene.warnings, &built.model.warnings}) {
-        for (const auto& warning : *warnings) fmt::print("warning: {}\n", warning);
+        for (const auto& warning : *warnings) say("warning: {}\n", warning);
     }
     if (looks_like_a_triaxial_test(scene)) {
-        fmt::print("warning: a triaxial test is run in plane {}; a cylinder has the lateral pressure all around and no "
-                   "plane of the section is free of the others\n",
-                   scene.plane == Plane::strain ? "strain" : "stress");
+        say("warning: a triaxial test is run in plane {}; a cylinder has the lateral pressure all around and no "
+            "plane of the section is free of the others\n",
+            scene.plane == Plane::strain ? "strain" : "stress");
     }
     return ExitCode::done;
 }

@@ -12,8 +12,7 @@ enum class ExitCode {
     missed = 1, ///< a comparison, a validation case or a target missed its tolerance, a case of a study failed
     bad_input = 2,
     no_equilibrium = 3,
-    out_of_resources = 4,
-    interrupted = 130
+    out_of_resources = 4 ///< 128 and more: exit_code_of_stop
 };
 
 /// The name of a run: that of its directory, also of "." and "results/case-3/".

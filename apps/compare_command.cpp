@@ -6,9 +6,11 @@
 #include <fmt/format.h>
 
 #include "commands.hpp"
+#include "failure.hpp"
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/scene/quantity.hpp"
 #include "kluft/studies/comparison.hpp"
+#include "standard_output.hpp"
 
 namespace kluft {
 
@@ -33,6 +35,7 @@ fs::path default_directory(const std::vector<std::string>& directories) {
 } // namespace
 
 ExitCode compare(const CompareArguments& arguments) {
+    require_possible_output(arguments.output);
     const double tolerance = tolerance_of(arguments.tolerance);
     const fs::path directory =
         arguments.output.empty() ? default_directory(arguments.directories) : fs::path(arguments.output);
@@ -44,7 +47,7 @@ ExitCode compare(const CompareArguments& arguments) {
     const FinishedRun b = read_finished_run(arguments.directories.back(), names.back());
     Comparison comparison = compare_runs(a, b, tolerance);
     write_comparison(directory, a, b, comparison);
-    fmt::print("{}{}\n", comparison_text(comparison.table), (directory / "compare.md").string());
+    say("{}{}\n", comparison_text(comparison.table), (directory / "compare.md").string());
     return comparison.table.agree ? ExitCode::done : ExitCode::missed;
 }
 

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "commands.hpp"
+#include "failure.hpp"
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/output/blocks_picture.hpp"
 #include "kluft/output/curve_picture.hpp"
@@ -21,6 +22,7 @@
 #include "kluft/simulation/fingerprint.hpp"
 #include "kluft/simulation/state_fields.hpp"
 #include "kluft/studies/finished_run.hpp"
+#include "standard_output.hpp"
 
 namespace kluft {
 
@@ -40,6 +42,11 @@ RunHeading heading_of(const fs::path& directory) {
     if (!fs::exists(directory / "summary.json")) return {run_name(directory), std::nullopt};
     const RunSummary summary = read_summary(directory / "summary.json");
     return {summary.title, summary.platen_stage};
+}
+
+/// Of a run that has ended.
+bool moves_no_platen(const fs::path& directory) {
+    return fs::exists(directory / "summary.json") && !heading_of(directory).platen_stage;
 }
 
 RunCurve read_curve(const fs::path& directory, const std::string& label) {
@@ -94,7 +101,7 @@ double limit_of(const std::string& text) {
     return *reading.value / mega;
 }
 
-void announce(const fs::path& picture) { fmt::print("{}\n", picture.string()); }
+void announce(const fs::path& picture) { say("{}\n", picture.string()); }
 
 void draw_curve(const DrawArguments& arguments, const std::vector<fs::path>& pictures) {
     const auto labels = run_names(arguments.sources);
@@ -138,7 +145,7 @@ void draw_blocks_of_run(const DrawArguments& arguments, const std::vector<fs::pa
     std::erase_if(history, [&](const StepRecord& record) { return record.step > state.at.step; });
     BlocksPlot plot = plot_of(scene);
     plot.title = arguments.title.empty() ? heading_of(directory).title : arguments.title;
-    plot.after = after_title(history);
+    plot.after = moves_no_platen(directory) ? "after" : after_title(history);
     const FieldRecord fields = fields_of_state(built.model, state);
     for (const auto& picture : pictures) {
         write_blocks(picture, built.model.system, fields, plot);
@@ -155,6 +162,13 @@ std::vector<fs::path> pictures_of(const DrawArguments& arguments, const char* st
 
 void draw_run(const DrawArguments& arguments) {
     const bool one_file = !arguments.picture.empty();
+    if (moves_no_platen(arguments.sources.front())) {
+        if (arguments.curve || !arguments.marks.empty())
+            throw InputError(arguments.sources.front() +
+                             ": expected a run that moves a platen, without which there is no "
+                             "curve of stress over strain, found one that does not");
+        return draw_blocks_of_run(arguments, pictures_of(arguments, "blocks"));
+    }
     const bool curve = arguments.curve || (!arguments.blocks && (!one_file || !arguments.marks.empty()));
     const bool blocks = arguments.blocks || (!arguments.curve && !curve) || (!arguments.curve && !one_file);
     if (curve) draw_curve(arguments, pictures_of(arguments, "curve"));
@@ -184,6 +198,7 @@ void draw_scene(const DrawArguments& arguments) {
 } // namespace
 
 ExitCode draw(const DrawArguments& arguments) {
+    require_possible_output(arguments.picture);
     if (!arguments.picture.empty()) (void)picture_format(arguments.picture);
     const bool several = arguments.sources.size() > 1;
     for (const auto& source : arguments.sources) {

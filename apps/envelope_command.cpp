@@ -9,11 +9,13 @@
 #include <fmt/format.h>
 
 #include "commands.hpp"
+#include "failure.hpp"
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/output/atomic_file.hpp"
 #include "kluft/output/envelope.hpp"
 #include "kluft/scene/quantity.hpp"
 #include "kluft/studies/strength_tests.hpp"
+#include "standard_output.hpp"
 
 namespace kluft {
 
@@ -72,6 +74,7 @@ void add_peaks(const fs::path& source, std::vector<PeakPoint>& peaks) {
 } // namespace
 
 ExitCode envelope(const EnvelopeArguments& arguments) {
+    require_possible_output(arguments.picture);
     std::vector<NamedEnvelope> others;
     for (const auto& text : arguments.others) others.push_back(named_envelope(text));
     std::vector<PeakPoint> peaks;
@@ -84,7 +87,7 @@ ExitCode envelope(const EnvelopeArguments& arguments) {
     write_envelope(picture, arguments.title, peaks, fit, others);
     write_file(beside, envelope_csv(peaks, fit));
     write_file(beside.replace_extension(".json"), envelope_json(peaks, fit));
-    fmt::print("{}{}\n", envelope_text(peaks, fit), picture.string());
+    say("{}{}\n", envelope_text(peaks, fit), picture.string());
     return ExitCode::done;
 }
 

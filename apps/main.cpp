@@ -2,10 +2,9 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <exception>
 #include <functional>
 #include <memory>
-#include <new>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -16,9 +15,11 @@
 
 #include "blas_kernels.hpp"
 #include "commands.hpp"
-#include "kluft/core/diagnostics.hpp"
+#include "failure.hpp"
 #include "kluft/core/nearest_name.hpp"
 #include "kluft/core/version.hpp"
+#include "standard_output.hpp"
+#include "stop_request.hpp"
 
 namespace {
 
@@ -100,6 +101,23 @@ std::string misunderstanding(const CLI::App& app, const std::vector<std::string>
     return unknown.empty() ? title + ": " + error.what() + "; see " + title + " --help" : unknown;
 }
 
+/// The exit code of the program after a command; what it said must have got where it should.
+int finished(ExitCode code) {
+    if (const std::string lost = kluft::lost_output(); !lost.empty()) {
+        std::fprintf(stderr, "%s\n", lost.c_str());
+        if (code == ExitCode::done || code == ExitCode::missed) code = ExitCode::out_of_resources;
+    }
+    if (code == ExitCode::out_of_resources) leave_out_of_resources();
+    return exit_with(code);
+}
+
+int say_help(const CLI::App& app, const CLI::Success& help) {
+    std::ostringstream text;
+    app.exit(help, text, text);
+    kluft::say_text(text.str());
+    return finished(ExitCode::done);
+}
+
 void add_run_command(CLI::App& app, Command& command) {
     auto arguments = std::make_shared<kluft::RunArguments>();
     CLI::App* sub =
@@ -114,7 +132,8 @@ void add_run_command(CLI::App& app, Command& command) {
     sub->add_flag("--quiet", arguments->quiet, "No progress and no closing line");
     sub->add_flag("--resume", arguments->resume, "Go on from the state saved in the directory");
     sub->footer(
-        "Exit codes: 0 done, 2 bad input, 3 no equilibrium, 4 out of disk or memory, 130 interrupted.\n"
+        "Exit codes: 0 done, 2 bad input, 3 no equilibrium, 4 out of disk or memory, 128 + n stopped by signal n (130: "
+        "Ctrl-C).\n"
         "Example: kluft run models/triaxial/case-3-all.yaml --set geometry.tessellation.triangles.spacing=0.05");
     sub->callback([arguments, &command] { command = [arguments] { return kluft::run(*arguments); }; });
 }
@@ -239,7 +258,7 @@ void add_study_command(CLI::App& app, Command& command) {
     sub->add_flag("--quiet", arguments->quiet, "No progress");
     sub->footer("Cases that have ended are not run again; interrupted ones go on from their saved states.\n"
                 "Exit codes: 0 all cases ended, 1 some failed or are missing, 2 bad input, 4 out of disk or memory, "
-                "130 interrupted.\n"
+                "128 + n stopped by signal n (130: Ctrl-C).\n"
                 "Examples:\n"
                 "  kluft study models/studies/steps.yaml --jobs 4\n"
                 "  kluft study step-size models/quickstart.yaml -o results/steps\n"
@@ -262,7 +281,7 @@ void add_calibrate_command(CLI::App& app, Command& command) {
         "Writes calibrated.yaml, a scene; calibration.json; report.html. Runs that have ended are not run again, "
         "so that the same command goes on after Ctrl-C.\n"
         "Exit codes: 0 all targets within their tolerances, 1 some are not, 2 bad input, 4 out of disk or "
-        "memory, 130 interrupted.\n"
+        "memory, 128 + n stopped by signal n (130: Ctrl-C).\n"
         "Example: kluft calibrate models/calibration/intact-rock.yaml -o results/intact-rock");
     sub->callback([arguments, &command] { command = [arguments] { return kluft::calibrate(*arguments); }; });
 }
@@ -282,12 +301,7 @@ void load_unwinder() {
     (void)backtrace(&frame, 1);
 }
 
-} // namespace
-
-int main(int argc, char** argv) {
-    kluft::choose_blas_kernels(argv);
-    mp_set_memory_functions(gmp_allocate, gmp_reallocate, nullptr);
-    load_unwinder();
+int program(int argc, char** argv) {
     CLI::App app{"Kluft: strength of fractured rock by the implicit expanded distinct element method"};
     app.set_version_flag("--version", std::string(kluft::version()));
     app.require_subcommand(1);
@@ -314,23 +328,27 @@ int main(int argc, char** argv) {
     if (const std::string message = unknown_command(app, words); !message.empty()) return bad_input(message);
     try {
         app.parse(argc, argv);
-        const ExitCode code = command();
-        if (code == ExitCode::out_of_resources) leave_out_of_resources();
-        return exit_with(code);
+        return finished(command());
     } catch (const CLI::Success& help) {
-        return app.exit(help);
+        return say_help(app, help);
     } catch (const CLI::ParseError& error) {
         return bad_input(misunderstanding(app, words, error));
-    } catch (const kluft::InputError& error) {
-        return bad_input(error.what());
-    } catch (const kluft::NoEquilibriumError& error) {
-        std::fprintf(stderr, "%s\n", error.what());
-        return exit_with(ExitCode::no_equilibrium);
-    } catch (const kluft::ResourceError& error) {
-        std::fprintf(stderr, "%s\n", error.what());
-        leave_out_of_resources();
-    } catch (const std::bad_alloc&) {
-        std::fprintf(stderr, "out of memory\n");
-        leave_out_of_resources();
+    }
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    try {
+        kluft::open_standard_streams();
+        kluft::leave_writing_to_its_result();
+        kluft::choose_blas_kernels(argv);
+        mp_set_memory_functions(gmp_allocate, gmp_reallocate, nullptr);
+        load_unwinder();
+        return program(argc, argv);
+    } catch (...) {
+        const ExitCode code = kluft::tell_failure();
+        if (code == ExitCode::out_of_resources) leave_out_of_resources();
+        return exit_with(code);
     }
 }

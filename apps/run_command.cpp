@@ -1,17 +1,23 @@
 // kluft run SCENE
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
+#include <new>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "commands.hpp"
+#include "failure.hpp"
 #include "kluft/assembly/blas.hpp"
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/core/memory.hpp"
 #include "kluft/core/version.hpp"
 #include "kluft/kinematics/affine.hpp"
+#include "kluft/output/directory_lock.hpp"
 #include "kluft/output/progress_line.hpp"
 #include "kluft/output/run_log.hpp"
 #include "kluft/output/run_writer.hpp"
@@ -20,11 +26,13 @@
 #include "kluft/reference/explicit_simulation.hpp"
 #include "kluft/scene/scene_model.hpp"
 #include "kluft/scene/scene_reader.hpp"
+#include "kluft/simulation/contact_pressure.hpp"
 #include "kluft/simulation/fingerprint.hpp"
 #include "kluft/simulation/measurements.hpp"
 #include "kluft/simulation/simulation.hpp"
 #include "kluft/simulation/state_fields.hpp"
 #include "kluft/simulation/strength_reduction.hpp"
+#include "standard_output.hpp"
 #include "stop_request.hpp"
 
 namespace kluft {
@@ -47,6 +55,8 @@ public:
     void jump(const JumpRecord& jump) override { writer_.jump(jump); }
     void step(const StepRecord& record, const State& state, const std::function<FieldRecord()>& fields,
               bool last_of_stage) override {
+        for (const double stress : {record.axial_stress, record.lateral_stress})
+            largest_stress_ = std::max(largest_stress_, std::abs(stress));
         writer_.step(record, state, fields, last_of_stage);
     }
     void progress(const Progress& progress) override {
@@ -56,8 +66,12 @@ public:
         if (line_) line_->clear();
     }
 
+    /// Measured on the boundaries (Pa).
+    [[nodiscard]] double largest_stress() const { return largest_stress_; }
+
 private:
     RunWriter& writer_;
+    double largest_stress_ = 0.0;
     std::unique_ptr<ProgressLine> line_;
 };
 
@@ -67,6 +81,7 @@ RunWriterOptions writer_options(const Scene& scene, const Model& model) {
     options.fields_every = scene.output.fields_every;
     options.pictures = scene.output.pictures;
     options.checkpoint_every = scene.output.checkpoint_every;
+    options.checkpoint_seconds = scene.output.checkpoint_seconds;
     options.title = scene.title.empty() ? scene.name : scene.title;
     options.fingerprint = fingerprint(model);
     options.scene_text = scene.text;
@@ -100,7 +115,7 @@ ExitCode exit_code(RunStatus status) {
     case RunStatus::out_of_resources:
         return ExitCode::out_of_resources;
     case RunStatus::interrupted:
-        return ExitCode::interrupted;
+        return exit_code_of_stop();
     }
     return ExitCode::done;
 }
@@ -113,7 +128,7 @@ std::string peak_in_words(const CurveNumbers& numbers) {
 
 std::string closing_line(const RunReport& report, const RunSummary& summary, const fs::path& directory) {
     std::string text = status_name(report.status);
-    if (summary.numbers.peak_stress) {
+    if (summary.platen_stage && summary.numbers.peak_stress) {
         text += fmt::format(": peak axial stress {:.4g} MPa at {:.4g} %{}", 1e-6 * *summary.numbers.peak_stress,
                             100.0 * summary.numbers.peak_strain.value_or(0.0), peak_in_words(summary.numbers));
         if (const int n = summary.numbers.jumps_to_peak; n > 0)
@@ -140,20 +155,38 @@ RunReport integrate(const Model& model, const Scene& scene, State& state, StepOb
     return run_simulation(model, scene.cracks, scene.solver, state, observer, stop_requested);
 }
 
+/// Where memory has run out, what was run is all that counts.
+void warn_of_contacts(const Model& model, const State& state, double largest_stress, RunReport& report) {
+    if (report.status == RunStatus::out_of_resources || report.status == RunStatus::interrupted) return;
+    try {
+        const std::string warning = contact_pressure_warning(model, state, largest_stress);
+        if (!warning.empty()) report.warnings.push_back(warning);
+    } catch (const std::bad_alloc&) {
+        return;
+    }
+}
+
+std::vector<std::string> joined(std::vector<std::string> texts, const std::vector<std::string>& more) {
+    texts.insert(texts.end(), more.begin(), more.end());
+    return texts;
+}
+
 /// The run itself; whatever happens, the last committed state and the tables reach the disk if the disk allows it.
 ExitCode simulate(const Model& model, const Scene& scene, State& state, RunWriter& writer, RunLog& log,
                   const fs::path& directory, double earlier_cpu, bool quiet) {
     RunObserver observer(writer, quiet);
-    const RunReport report = integrate(model, scene, state, observer);
+    RunReport report = integrate(model, scene, state, observer);
     observer.clear();
+    warn_of_contacts(model, state, observer.largest_stress(), report);
     for (const auto& warning : report.warnings) {
         log.warning(warning);
-        if (!quiet) fmt::print(stderr, "warning: {}\n", warning);
+        if (!quiet) tell("warning: {}\n", warning);
     }
     if (!report.diagnosis.empty()) {
         log.error(report.diagnosis);
-        fmt::print(stderr, "{}\n", report.diagnosis);
+        tell("{}\n", report.diagnosis);
     }
+    report.warnings = joined(joined(scene.warnings, model.warnings), report.warnings);
     RunSummary summary;
     try {
         summary = writer.finish({report, unknowns_per_block(model.kinematics) * model.system.n_blocks(),
@@ -166,13 +199,19 @@ ExitCode simulate(const Model& model, const Scene& scene, State& state, RunWrite
     }
     const std::string closing = closing_line(report, summary, directory);
     log.info(closing);
-    if (!quiet) fmt::print("{}\n", closing);
+    if (!quiet) say("{}\n", closing);
+    if (const std::string lost = lost_output(); !lost.empty()) {
+        log.error(lost);
+        writer.give_up(summary, lost);
+        return ExitCode::out_of_resources;
+    }
     return exit_code(report.status);
 }
 
 } // namespace
 
 ExitCode run(const RunArguments& arguments) {
+    require_possible_output(arguments.directory);
     return_large_pieces();
     const Scene scene = read_scene(arguments.scene, arguments.overrides);
     const fs::path directory =
@@ -192,13 +231,17 @@ ExitCode run(const RunArguments& arguments) {
         set_blas_threads(arguments.threads);
     }
 
-    State state = initial_state(model);
     RunWriterOptions options = writer_options(scene, model);
+    std::optional<DirectoryLock> lock;
+    const bool has_something = !arguments.resume || fs::is_directory(directory); // to go on from
+    if (has_something) lock.emplace(directory, "kluft run " + arguments.scene);
+    State state = initial_state(model);
     if (arguments.resume) {
         state = read_state(directory / "state.h5", options.fingerprint);
         options.resumed_step = state.at.step;
     }
     const double earlier_cpu = arguments.resume ? earlier_cpu_s(directory) : 0.0; // before the writer removes it
+    listen_for_stop();
     RunWriter writer(directory, model.system, std::move(options));
     RunLog log(directory / "run.log", arguments.resume);
     log.info(fmt::format("kluft {} runs {}: {} blocks, {} interfaces, {} unknowns", version(), arguments.scene,
@@ -207,10 +250,9 @@ ExitCode run(const RunArguments& arguments) {
     for (const auto* warnings : {&scene.warnings, &model.warnings}) {
         for (const auto& warning : *warnings) {
             log.warning(warning);
-            if (!arguments.quiet) fmt::print(stderr, "warning: {}\n", warning);
+            if (!arguments.quiet) tell("warning: {}\n", warning);
         }
     }
-    listen_for_stop();
     return simulate(model, scene, state, writer, log, directory, earlier_cpu, arguments.quiet);
 }
 

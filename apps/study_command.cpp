@@ -13,15 +13,18 @@
 #include <unistd.h>
 
 #include "commands.hpp"
+#include "failure.hpp"
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/core/nearest_name.hpp"
 #include "kluft/output/atomic_file.hpp"
+#include "kluft/output/directory_lock.hpp"
 #include "kluft/studies/ready_made_studies.hpp"
 #include "kluft/studies/study.hpp"
 #include "kluft/studies/study_emit.hpp"
 #include "kluft/studies/study_report.hpp"
 #include "kluft/studies/study_results.hpp"
 #include "kluft/studies/study_run.hpp"
+#include "standard_output.hpp"
 #include "stop_request.hpp"
 #include "this_program.hpp"
 
@@ -39,13 +42,13 @@ public:
         const auto now = Clock::now();
         const std::chrono::duration<double> pause(terminal_ ? 0.2 : 10.0);
         if (text == shown_ || now - last_ < pause) return;
-        fmt::print(stderr, "{}{}{}", terminal_ ? "\r" : "", cut(text), terminal_ ? "\033[K" : "\n");
+        tell("{}{}{}", terminal_ ? "\r" : "", cut(text), terminal_ ? "\033[K" : "\n");
         std::fflush(stderr);
         shown_ = text;
         last_ = now;
     }
     void clear() {
-        if (terminal_ && !shown_.empty()) fmt::print(stderr, "\r\033[K");
+        if (terminal_ && !shown_.empty()) tell("\r\033[K");
         std::fflush(stderr);
     }
 
@@ -129,19 +132,19 @@ void print_closing(const StudyTable& table) {
     add(CaseStatus::refused, "refused");
     add(CaseStatus::failed, "failed");
     add(CaseStatus::waiting, "not run to the end");
-    fmt::print("{}; table in {}, report in {}\n", text, (table.directory / "study.csv").string(),
-               (table.directory / "study.html").string());
+    say("{}; table in {}, report in {}\n", text, (table.directory / "study.csv").string(),
+        (table.directory / "study.html").string());
     constexpr int most_reasons = 10;
     int n_reasons = 0;
     for (const auto& one : table.cases) {
         if (one.reason.empty() || one.status == CaseStatus::waiting || ++n_reasons > most_reasons) continue;
-        fmt::print(stderr, "{}: {}: {}\n", one.name, case_status_name(one.status), one.reason);
+        tell("{}: {}: {}\n", one.name, case_status_name(one.status), one.reason);
     }
-    if (n_reasons > most_reasons) fmt::print(stderr, "and {} more\n", n_reasons - most_reasons);
+    if (n_reasons > most_reasons) tell("and {} more\n", n_reasons - most_reasons);
 }
 
 ExitCode exit_code(const StudyTable& table) {
-    if (stop_requested) return ExitCode::interrupted;
+    if (stop_requested) return exit_code_of_stop();
     const bool missing = n_with(table, CaseStatus::failed) + n_with(table, CaseStatus::waiting) > 0;
     return missing ? ExitCode::missed : ExitCode::done;
 }
@@ -164,11 +167,13 @@ std::vector<std::string> collect_command(const StudyArguments& arguments, const 
 } // namespace
 
 ExitCode study(const StudyArguments& arguments) {
+    require_possible_output(arguments.directory);
     const StudyPlace place = place_of(arguments);
     const fs::path directory = fs::absolute(place.directory).lexically_normal();
-    std::optional<StudyLock> lock;
+    const std::string holder = "kluft study " + arguments.words.back();
+    std::optional<DirectoryLock> lock;
     if (!place.ready_made.empty()) {
-        if (!arguments.collect) lock.emplace(directory);
+        if (!arguments.collect) lock.emplace(directory, holder);
         write_ready_made(place);
     }
     const ReadStudy read = read_study(place.file, arguments.overrides);
@@ -183,12 +188,12 @@ ExitCode study(const StudyArguments& arguments) {
         print_closing(table);
         return exit_code(table);
     }
-    if (!lock) lock.emplace(directory);
+    if (!lock) lock.emplace(directory, holder);
     const int jobs = arguments.jobs > 0 ? arguments.jobs : default_jobs();
     prepare_study(read, this_program("study"), directory);
     if (!arguments.emit.empty()) {
         const auto next = emit_study(arguments.emit, read, directory, jobs, collect_command(arguments, place));
-        fmt::print("{}", next);
+        say("{}", next);
         return ExitCode::done;
     }
     listen_for_stop();

@@ -1,9 +1,6 @@
 // kluft-calibrate, which `kluft calibrate` starts: what needs Ipopt.
 #include <chrono>
-#include <cstdio>
-#include <exception>
 #include <filesystem>
-#include <new>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,10 +8,13 @@
 #include <fmt/format.h>
 
 #include "commands.hpp"
+#include "failure.hpp"
 #include "kluft/calibration/calibrate.hpp"
 #include "kluft/calibration/calibration_report.hpp"
 #include "kluft/core/diagnostics.hpp"
+#include "kluft/output/directory_lock.hpp"
 #include "kluft/scene/quantity.hpp"
+#include "standard_output.hpp"
 #include "stop_request.hpp"
 
 namespace {
@@ -32,7 +32,7 @@ public:
         constexpr std::chrono::seconds pause{10};
         if (now - last_ < pause) return;
         last_ = now;
-        fmt::print(stderr, "  {}\n", kluft::study_progress_text(progress));
+        kluft::tell("  {}\n", kluft::study_progress_text(progress));
     }
 
 private:
@@ -48,41 +48,37 @@ kluft::ExitCode run(const std::vector<std::string>& words) {
     const bool quiet = words[5] == "quiet";
     const fs::path directory = fs::absolute(words[3]).lexically_normal();
     const kluft::Calibration calibration = kluft::read_calibration(words[2]);
-    const kluft::StudyLock lock(directory);
+    const kluft::DirectoryLock lock(directory, "kluft calibrate " + words[2]);
     kluft::listen_for_stop();
     kluft::CalibrationOptions options;
     options.place = {directory, words[1], static_cast<int>(*jobs), {}};
     RunProgress progress;
     if (!quiet) {
-        options.say = [](const std::string& line) { fmt::print(stderr, "{}\n", line); };
+        options.say = [](const std::string& line) { kluft::tell("{}\n", line); };
         options.place.show = [&](const kluft::StudyProgress& runs) { progress.show(runs); };
     }
     const auto result = kluft::calibrate(calibration, options, kluft::stop_requested);
     if (result.stopped) {
-        fmt::print(stderr, "stopped; the same command goes on from the runs in {}\n", directory.string());
-        return ExitCode::interrupted;
+        kluft::tell("stopped; the same command goes on from the runs in {}\n", directory.string());
+        return kluft::exit_code_of_stop();
     }
     kluft::write_calibration(calibration, result, directory);
-    fmt::print("{}{} and report.html in {}\n", kluft::calibration_text(calibration, result), "calibrated.yaml",
+    kluft::say("{}{} and report.html in {}\n", kluft::calibration_text(calibration, result), "calibrated.yaml",
                directory.string());
     return result.met ? ExitCode::done : ExitCode::missed;
-}
-
-int fails(const char* message, ExitCode code) {
-    std::fprintf(stderr, "%s\n", message);
-    return static_cast<int>(code);
 }
 
 } // namespace
 
 int main(int argc, char** argv) {
     try {
-        return static_cast<int>(run({argv, argv + argc}));
-    } catch (const kluft::InputError& error) {
-        return fails(error.what(), ExitCode::bad_input);
-    } catch (const kluft::ResourceError& error) {
-        return fails(error.what(), ExitCode::out_of_resources);
-    } catch (const std::bad_alloc&) {
-        return fails("out of memory", ExitCode::out_of_resources);
+        kluft::open_standard_streams();
+        kluft::leave_writing_to_its_result();
+        const ExitCode code = run({argv, argv + argc});
+        const std::string lost = kluft::lost_output();
+        if (lost.empty()) return static_cast<int>(code);
+        throw kluft::ResourceError(lost);
+    } catch (...) {
+        return static_cast<int>(kluft::tell_failure());
     }
 }

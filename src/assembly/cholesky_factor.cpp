@@ -1,6 +1,7 @@
 #include "kluft/assembly/cholesky_factor.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <cholmod.h>
 
@@ -144,7 +145,8 @@ bool CholeskyFactor::factorize(Precision precision) {
     cholmod_->allocate_factor();
     cholmod_sparse view = lower_triangle(columns_);
     cholmod_l_factorize(&view, cholmod_->factor, &cholmod_->common);
-    const bool regular = cholmod_->common.status == CHOLMOD_OK && cholmod_->factor->minor == cholmod_->factor->n;
+    const bool regular =
+        cholmod_->common.status == CHOLMOD_OK && cholmod_->factor->minor == cholmod_->factor->n && has_finite_pivots();
     const bool rounded = regular && precision == Precision::single && least_pivot_ratio() >= roundable_pivot_ratio;
     columns_.release();
     cholmod_l_free_work(&cholmod_->common);
@@ -160,6 +162,18 @@ bool CholeskyFactor::factorize(Precision precision) {
         rounded_ = copy_.data();
     }
     return regular;
+}
+
+/// A number that is none in a row of L makes the pivot of that row one too; the BLAS takes it for positive.
+bool CholeskyFactor::has_finite_pivots() const {
+    const auto* values = static_cast<const double*>(cholmod_->factor->x);
+    double sum = 0.0;
+    for (int k = 0; k < n_supernodes(); ++k) {
+        const Supernode s = supernode(k);
+        for (int j = 0; j < s.n_columns; ++j)
+            sum += values[s.first_value + static_cast<std::int64_t>(j) * (s.n_rows + 1)];
+    }
+    return std::isfinite(sum);
 }
 
 /// Of the diagonal entries of K, what elimination has left of them.

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "kluft/core/change_size.hpp"
+
 namespace kluft {
 
 void Gmres::extend_basis(int n) {
@@ -30,9 +32,11 @@ int Gmres::correct(const Operator& matrix, const Operator& precondition, int max
                    const Eigen::VectorXd& r, Eigen::VectorXd& x) {
     const double norm = r.norm();
     if (norm == 0.0) return 0;
-    cosine_.setZero(max_vectors);
-    sine_.setZero(max_vectors);
-    right_side_.setZero(max_vectors + 1);
+    if (!v_.empty() && v_.front().size() != r.size()) release();
+    for (Eigen::VectorXd* const each : {&cosine_, &sine_, &right_side_}) {
+        change_size(*each, max_vectors + 1);
+        each->setZero();
+    }
     right_side_[0] = norm;
     extend_basis(1);
     v_[0] = r / norm;
@@ -58,6 +62,7 @@ int Gmres::correct(const Operator& matrix, const Operator& precondition, int max
         rotate(used);
         ++used;
     }
+    change_size(weights_, used);
     weights_ = right_side_.head(used);
     for (int i = used - 1; i >= 0; --i) {
         for (int j = i + 1; j < used; ++j) weights_[i] -= h_[j][i] * weights_[j];

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "kluft/assembly/blas.hpp"
+#include "kluft/core/change_size.hpp"
 #include "kluft/kinematics/affine.hpp"
 
 namespace kluft {
@@ -63,7 +64,8 @@ bool LowRankUpdate::set(const std::vector<StiffnessChange>& changes) {
         append(changes, rows, first, last);
     }
 
-    d_.setZero(rank_, rank_);
+    change_size(d_, rank_, rank_);
+    d_.setZero();
     changed_ = false;
     Eigen::MatrixXd small = Eigen::MatrixXd::Identity(rank_, rank_); // I + D G
     for (const StiffnessChange& change : changes) {
@@ -78,7 +80,7 @@ bool LowRankUpdate::set(const std::vector<StiffnessChange>& changes) {
         }
     }
     if (!changed_) return true;
-    small_.compute(small);
+    small_ = Eigen::PartialPivLU<Eigen::MatrixXd>(small);
     const auto pivots = small_.matrixLU().diagonal().cwiseAbs();
     return pivots.allFinite() && pivots.minCoeff() > least_pivot_ratio * pivots.maxCoeff();
 }
@@ -135,7 +137,7 @@ void LowRankUpdate::solve_along_path(Batch& batch) {
         solve_lower_triangle(node.n_columns, width, values, node.n_rows, top, length);
         const int n_below = node.n_rows - node.n_columns;
         if (n_below == 0) continue;
-        below_.resize(n_below, width);
+        change_size(below_, n_below, width);
         multiply(n_below, width, node.n_columns, values + node.n_columns, node.n_rows, top, length, below_.data(),
                  n_below);
         for (int i = 0; i < n_below;) { // runs of rows in one supernode
@@ -180,7 +182,8 @@ void LowRankUpdate::extend_gram(const Batch& batch) {
 
 void LowRankUpdate::apply(std::vector<double>& z) {
     if (!changed_) return;
-    t_.resize(rank_);
+    change_size(t_, rank_);
+    change_size(y_, rank_);
     for (const Batch& batch : batches_) {
         const int length = static_cast<int>(batch.w.rows());
         packed_.resize(length);

@@ -1,5 +1,6 @@
 #include "kluft/assembly/lu_factor.hpp"
 
+#include <cmath>
 #include <numeric>
 
 #include <umfpack.h>
@@ -70,7 +71,7 @@ bool LuFactor::factorize() {
     if (u.numeric != nullptr) umfpack_dl_free_numeric(&u.numeric);
     const auto status = umfpack_dl_numeric(starts, rows, values, u.symbolic, &u.numeric, u.control, u.info);
     if (status == UMFPACK_ERROR_out_of_memory) throw ResourceError("out of memory in the factorization");
-    return status == UMFPACK_OK;
+    return status == UMFPACK_OK && std::isfinite(u.info[UMFPACK_RCOND]);
 }
 
 void LuFactor::solve(std::vector<double>& b, std::vector<double>& x) {

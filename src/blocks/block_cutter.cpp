@@ -468,11 +468,7 @@ public:
         system_.vertices.shrink_to_fit();
         system_.interfaces.shrink_to_fit();
         system_.spacing = lattice_spacing(spec_);
-        if (system_.spacing == 0.0) {
-            const double total = std::accumulate(system_.blocks.begin(), system_.blocks.end(), 0.0,
-                                                 [](double sum, const Block& b) { return sum + b.area; });
-            system_.spacing = std::sqrt(total / system_.n_blocks());
-        }
+        if (system_.spacing == 0.0) system_.spacing = std::sqrt(area_of(system_) / system_.n_blocks());
         return std::move(system_);
     }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace kluft {
 
@@ -45,6 +46,11 @@ void compute_block_moments(const std::vector<Vec2>& vertices, Block& block) {
     block.centroid = from + centre;
     block.size = std::sqrt(block.area);
     block.second_moment = second - block.area * (centre * centre.transpose());
+}
+
+double area_of(const BlockSystem& system) {
+    return std::accumulate(system.blocks.begin(), system.blocks.end(), 0.0,
+                           [](double sum, const Block& block) { return sum + block.area; });
 }
 
 double edges_per_triangle_area(const BlockSystem& system) {

@@ -85,9 +85,8 @@ private:
         for (const GivenBlock& block : spec_.blocks) {
             const bool finite = std::ranges::all_of(block.polygon, [](const Vec2& p) { return p.allFinite(); });
             if (block.polygon.size() < 3 || !finite || !(signed_area(block.polygon) > 0.0) || !is_simple(block.polygon))
-                throw InputError(fmt::format("geometry.blocks: expected a simple polygon, counter-clockwise, found the "
-                                             "block '{}'",
-                                             block.name));
+                throw InputError(fmt::format("{}: expected a simple polygon, counter-clockwise, found the block '{}'",
+                                             spec_.places.blocks, block.name));
         }
     }
 
@@ -157,9 +156,8 @@ private:
     [[noreturn]] void refuse(int a, int b, const Vec2& local) const {
         const Vec2 place = system_.origin + local;
         throw InputError(
-            fmt::format("geometry.blocks: expected blocks that do not overlap, found '{}' and '{}' that do, "
-                        "at ({:.10g}, {:.10g})",
-                        name(a), name(b), place.x(), place.y()));
+            fmt::format("{}: expected blocks that do not overlap, found '{}' and '{}' that do, at ({:.10g}, {:.10g})",
+                        spec_.places.blocks, name(a), name(b), place.x(), place.y()));
     }
 
     void add_blocks() {

@@ -121,11 +121,11 @@ std::vector<std::pair<Vec2, Vec2>> hexagon_edges(const HexagonLattice& lattice, 
     const double row = 0.5 * sqrt3 * d;
     const double n_cells = ((covered.upper.y() - covered.lower.y() + 2.0 * reach) / row + 3.0) *
                            ((covered.upper.x() - covered.lower.x() + 2.0 * reach) / d + 3.0);
-    constexpr double most_cells = 5.0e7;
-    if (n_cells > most_cells) {
+    constexpr double most_in_box = 5.0 * most_cells; // of which the body may fill a part
+    if (n_cells > most_in_box) {
         throw InputError(fmt::format("geometry.tessellation.hexagons.spacing: {} m makes {:.2g} hexagons, more than "
                                      "{:.0g} in one scene",
-                                     d, n_cells, most_cells));
+                                     d, n_cells, most_in_box));
     }
     const auto below = [](double x) { return static_cast<std::int64_t>(std::floor(x)); };
     const auto above = [](double x) { return static_cast<std::int64_t>(std::ceil(x)); };

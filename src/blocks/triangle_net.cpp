@@ -496,6 +496,24 @@ std::vector<SegmentGrid::Segment> sides_of(const Polygon& polygon) {
     return sides;
 }
 
+/// Throws InputError where the lines of a graded net ask for too many triangles. Across a line with sides h beside it and
+/// a far away, and c = sqrt(3)/4, their number per metre is 2 int dx/(c (h + growth x)^2) = 2 (1/h - 1/a)/(c growth).
+void check_number_at_lines(const std::vector<Line>& lines, const TriangleSize& size, const TriangleFrame& frame) {
+    double n_triangles = 0.0;
+    for (const Line& line : lines) {
+        const Vec2 a = place_of(line.start);
+        const Vec2 b = place_of(line.end);
+        const double side = size.at(0.5 * (a + b));
+        const double across = 2.0 * (1.0 / side - 1.0 / size.largest()) / (triangle_area(1.0) * size.growth());
+        n_triangles += (b - a).norm() * (1.0 / side + across);
+    }
+    if (n_triangles > most_cells)
+        throw InputError(
+            fmt::format("{}: expected sides that make at most {:.0e} triangles, found some that make about "
+                        "{:.1e} at the lines of the body",
+                        frame.places.grading, most_cells, n_triangles));
+}
+
 } // namespace
 
 double triangle_area(double side) { return 0.25 * std::numbers::sqrt3 * side * side; }
@@ -539,6 +557,7 @@ std::vector<SourceSegment> triangle_edges(const TriangleNet& net, const Triangle
                                           const TriangleFrame& frame) {
     Triangulation triangulation;
     const std::vector<Line> lines = lines_of(frame, triangulation);
+    if (size.is_graded()) check_number_at_lines(lines, size, frame);
     Circles circles(box_of_living_edges(*frame.map), size.largest());
     for (const Line& line : lines) {
         const Vec2 middle_of_line = 0.5 * (place_of(line.start) + place_of(line.end));
@@ -555,10 +574,11 @@ std::vector<SourceSegment> triangle_edges(const TriangleNet& net, const Triangle
 
     Darts darts(part.triangles, size, net.seed);
     const double missing = darts.triangles_asked_for() - static_cast<double>(part.triangles.size());
-    constexpr double most = 5e7;
-    if (missing > most)
-        throw InputError(fmt::format("{}: expected sides that make at most {:.0g} triangles in one scene, found {:.2g}",
-                                     frame.places.grading, most, missing));
+    if (missing > most_cells)
+        throw InputError(
+            fmt::format("{}: expected sides that make at most {:.0e} triangles, found some that make about "
+                        "{:.1e}",
+                        frame.places.grading, most_cells, missing));
     const int count = std::max(0, static_cast<int>(std::lround(0.5 * missing))); // each point adds two triangles
     for (const Vec2& point : scattered_points(count, darts, size, circles)) triangulation.insert(to_cgal(point));
     refine(triangulation, part.holes, frame);

@@ -166,7 +166,7 @@ void check(const VoronoiCells& cells, const Box& box) {
     };
     constexpr double farthest = 1e9;
     constexpr double most_in_a_row = 6e4;
-    constexpr double most_cells = 5e7;
+    constexpr double most_in_box = 5.0 * most_cells; // of which the body may fill a part
     const double d = cells.spacing;
     if (!(d > 0.0) || !std::isfinite(d)) refuse("spacing", fmt::format("expected a length above 0, got {}", d));
     if (cells.relaxation < 0 || cells.relaxation > most_relaxation)
@@ -175,10 +175,10 @@ void check(const VoronoiCells& cells, const Box& box) {
         refuse("offset", fmt::format("expected at most {:.0g} spacings, got ({}, {}) m", farthest, cells.offset.x(),
                                      cells.offset.y()));
     const Vec2 n = (box.upper - box.lower) / side_of_squares(d);
-    if (n.maxCoeff() > most_in_a_row || n.prod() > most_cells)
+    if (n.maxCoeff() > most_in_a_row || n.prod() > most_in_box)
         refuse("spacing", fmt::format("{} m makes {:.2g} by {:.2g} cells, more than {:.0g} in a row or {:.0g} in one "
                                       "scene",
-                                      d, n.x(), n.y(), most_in_a_row, most_cells));
+                                      d, n.x(), n.y(), most_in_a_row, most_in_box));
 }
 
 Window window_on(const VoronoiCells& cells, const Box& box) {

@@ -53,8 +53,12 @@ std::vector<std::string> parts_of(const std::string& path) {
 std::optional<SceneNode> tree_of_scene(const fs::path& scene) {
     SceneSources sources;
     SceneErrors errors(sources);
-    SceneNode tree = build_scene_tree(read_scene_bytes(scene), scene, {}, sources, errors);
-    return errors.empty() ? std::optional(std::move(tree)) : std::nullopt;
+    try {
+        SceneNode tree = build_scene_tree(read_scene_bytes(scene), scene, {}, sources, errors);
+        return errors.empty() ? std::optional(std::move(tree)) : std::nullopt;
+    } catch (const InputError&) {
+        return std::nullopt;
+    }
 }
 
 /// How the scene's reader begins a message about an override.
@@ -453,11 +457,7 @@ private:
 } // namespace
 
 Calibration read_calibration(const fs::path& file) {
-    std::error_code error;
-    if (!fs::is_regular_file(file, error))
-        throw InputError(file.string() + ": expected a calibration file, found " +
-                         (fs::exists(file, error) ? "no regular file" : "no such file"));
-    return read_calibration_text(read_scene_bytes(file), file);
+    return read_calibration_text(read_scene_bytes(file, "a calibration file"), file);
 }
 
 Calibration read_calibration_text(std::string_view text, const fs::path& file) {

@@ -10,6 +10,7 @@
 #include <IpTNLP.hpp>
 
 #include "kluft/core/diagnostics.hpp"
+#include "kluft/core/memory.hpp"
 
 namespace kluft {
 
@@ -161,6 +162,8 @@ LeastSquaresResult minimise_free(const ResidualFunction& function, const Eigen::
         throw std::runtime_error("Ipopt does not know its options");
     const Ipopt::SmartPtr<SumOfSquares> problem = new SumOfSquares(function, start, lower, upper, options);
     const auto status = application->OptimizeTNLP(Ipopt::GetRawPtr(problem));
+    if (status == Ipopt::Insufficient_Memory) throw ResourceError("out of memory"); // Ipopt catches what says so
+    require_memory();
     LeastSquaresResult result = problem->best;
     if (result.x.size() == 0) throw InputError("the start of the calibration cannot be evaluated");
     result.converged =

@@ -117,15 +117,21 @@ fs::path directory_of_run(const Calibration& calibration, const fs::path& direct
 
 int n_copies(const Calibration& calibration) { return std::max(calibration.replicas.count, 1); }
 
-/// Runs all of one scene. False when the user has stopped.
+/// Runs all of one scene. False when the user has stopped. Throws ResourceError where a run failed: what it has until then is not
+/// what the values of the parameters give.
 bool run_scene_of(const Calibration& calibration, const RunPlace& place, std::size_t scene,
                   const std::vector<PlannedRun>& runs, const std::atomic<bool>& stop) {
     const fs::path directory = directory_of_scene(place.directory, scene);
     const ReadStudy read =
         read_study_text(study_text(calibration, scenes_of(calibration)[scene], runs), {}, directory / "study.yaml");
     prepare_study(read, place.program, directory);
-    (void)run_study(read, directory, {place.program, place.jobs, place.show}, stop);
-    return !stop;
+    const StudyTable table = run_study(read, directory, {place.program, place.jobs, place.show}, stop);
+    if (stop) return false;
+    for (const StudyCase& one : table.cases)
+        if (one.status == CaseStatus::failed)
+            throw ResourceError(fmt::format("{}: the run failed ({}); the same command goes on from here",
+                                            (directory / "cases" / one.name).string(), one.reason));
+    return true;
 }
 
 // ---- what a run tells ------------------------------------------------------------------------------------------------

@@ -1,5 +1,6 @@
 #include "kluft/core/memory.hpp"
 
+#include <atomic>
 #include <cstdint>
 #include <cstdlib>
 
@@ -10,9 +11,13 @@
 #include <malloc.h>
 #endif
 
+#include "kluft/core/diagnostics.hpp"
+
 namespace kluft {
 
 namespace {
+
+std::atomic<bool> lacks_memory{false};
 
 /// On the whole pages of a large piece of memory.
 [[maybe_unused]] void advise(void* begin, std::size_t size, int advice) {
@@ -49,6 +54,12 @@ void give_back_pages([[maybe_unused]] void* begin, [[maybe_unused]] std::size_t 
 #ifdef MADV_DONTNEED
     advise(begin, size, MADV_DONTNEED);
 #endif
+}
+
+void note_lack_of_memory() noexcept { lacks_memory = true; }
+bool memory_ran_out() noexcept { return lacks_memory; }
+void require_memory() {
+    if (memory_ran_out()) throw ResourceError("out of memory");
 }
 
 } // namespace kluft

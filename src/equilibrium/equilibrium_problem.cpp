@@ -17,6 +17,11 @@ constexpr double largest_mass_growth = 20.0;
 
 } // namespace
 
+EquilibriumEvaluator::EquilibriumEvaluator(const EquilibriumProblem& problem, const BlockPattern& pattern)
+    : problem_(problem), pattern_(pattern), coordinates_(*problem.body.system, problem.body.kinematics) {
+    area_ = area_of(*problem.body.system);
+}
+
 Mat6 mass_matrix(const Block& block, double least_area) {
     return area_matrix(block, std::clamp(least_area / block.area, 1.0, largest_mass_growth));
 }
@@ -49,7 +54,8 @@ void EquilibriumEvaluator::sum_forces(const Eigen::VectorXd& q, Residual& result
         turned_to_ = q;
         coordinates_.turns().curvatures(*problem_.body.system, body_forces_.forces, curvatures_);
     }
-    result.force_scale = coordinates_.norm_of_magnitudes(body_forces_.magnitudes);
+    result.force_scale = std::max(coordinates_.norm_of_magnitudes(body_forces_.magnitudes),
+                                  negligible_force(problem_.body.carried_stress, area_));
     result.roundoff = 64.0 * std::numeric_limits<double>::epsilon() * body_forces_.stiffest *
                       q.lpNorm<Eigen::Infinity>() * std::sqrt(static_cast<double>(q.size()));
 }

@@ -1,11 +1,13 @@
 #include "kluft/equilibrium/open_close_solver.hpp"
 
+#include <cmath>
 #include <limits>
 #include <utility>
 
 #include "damped_iteration.hpp"
 #include "elimination.hpp"
 #include "iterate.hpp"
+#include "kluft/equilibrium/finite_check.hpp"
 #include "kluft/equilibrium/line_search.hpp"
 #include "stopping_test.hpp"
 
@@ -21,6 +23,19 @@ constexpr int patience_from_rest =
 constexpr int patience = 6; ///< where loads are not given: what stops is more often the end of a path
 
 constexpr double near_equilibrium = 1e-3; ///< forces over F_ref: less is left over by contacts that chatter
+
+bool is_finite(const Iterate& at) {
+    return std::isfinite(at.norm) && std::isfinite(at.residual.force_scale) && std::isfinite(at.residual.roundoff);
+}
+
+/// Such a solve comes to nothing, whatever is left over.
+OpenCloseSummary ended_by(NumberFlaw flaw, OpenCloseSummary summary) {
+    summary.termination = Termination::not_finite;
+    summary.residual_ratio = std::numeric_limits<double>::infinity();
+    summary.worst_block = flaw.block;
+    summary.flaw = std::move(flaw.what);
+    return summary;
+}
 
 /// Searches along one increment after the other.
 class Search {
@@ -79,6 +94,7 @@ OpenCloseSummary OpenCloseSolver::solve(const EquilibriumProblem& problem, const
     LeastForces least;
     for (;;) {
         evaluate(equations, q, seconds_.residual, at);
+        if (!is_finite(at)) return ended_by(flaw_of_forces(problem, q, at.residual.forces), std::move(summary));
         if (elimination.improve(stopping.negligible_forces(problem, q, at), worthwhile_part, at, q))
             stopping.note_elimination();
         if (may_be_damped) least.note(q, at);
@@ -101,6 +117,7 @@ OpenCloseSummary OpenCloseSolver::solve(const EquilibriumProblem& problem, const
             return summary;
         }
         const Eigen::VectorXd& increment = newton_.increment();
+        if (!increment.allFinite()) return ended_by(flaw_of_increment(problem, increment), std::move(summary));
         const double s = at.held ? search.step_length(q, increment, at, stopping.stalls(at)) : 1.0;
         stopping.note_step(at, s);
         const bool is_near = goal.given_loads || least.norm < near_equilibrium * at.residual.force_scale;

@@ -64,7 +64,7 @@ PartOfBody::PartOfBody(const Surroundings& surroundings, const std::vector<int>&
     problem_.body.loads = &loads_;
     problem_.eta.clear();
     start_.resize(n_block_unknowns * static_cast<Eigen::Index>(blocks_.size()));
-    problem_.start = start_;
+    problem_.start = Eigen::VectorXd(start_); // moved: the whole body's is given back after that
     for (std::size_t i = 0; i < blocks_.size(); ++i) {
         const auto here = static_cast<Eigen::Index>(n_block_unknowns * i);
         const Eigen::Index there = n_block_unknowns * static_cast<Eigen::Index>(blocks_[i]);

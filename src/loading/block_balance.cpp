@@ -139,6 +139,14 @@ void keep_below_neighbours(const std::vector<Meeting>& meetings, OwnForces& forc
     }
 }
 
+/// Of a body that has shed its load (27c).
+void raise_to_negligible(const LoadedBody& body, OwnForces& forces) {
+    for (int b = 0; b < body.system->n_blocks(); ++b) {
+        const double negligible = negligible_force(body.carried_stress, body.system->blocks[b].area);
+        if (!forces.loaded[b] && forces.own[b] > 0.0) forces.own[b] = std::max(forces.own[b], negligible);
+    }
+}
+
 OwnForces own_forces(const LoadedBody& body, const Eigen::VectorXd& q, const std::vector<Meeting>& meetings) {
     const auto n = static_cast<std::size_t>(body.system->n_blocks());
     OwnForces result{driving_loads(body, q), {}, std::vector<double>(n, 0.0), std::vector<char>(n, 0)};
@@ -170,10 +178,17 @@ OwnForces own_forces(const LoadedBody& body, const Eigen::VectorXd& q, const std
         if (of_contacts[b] == 0.0) result.own[b] = magnitudes[b];
     }
     keep_below_neighbours(meetings, result);
+    const double largest = n > 0 ? *std::max_element(of_contacts.begin(), of_contacts.end()) : 0.0;
+    if (largest <= negligible_force(body.carried_stress, area_of(*body.system))) raise_to_negligible(body, result);
     result.around = result.own;
+    const auto take = [&](int block,
+                          int other) { // a fixed one carries whatever stands on it, and is disturbed by nothing
+        if (!result.loaded[block] && !body.system->blocks[other].fixed)
+            result.around[block] = std::max(result.around[block], result.own[other]);
+    };
     for (const auto& [a, b] : pairs) {
-        if (!result.loaded[a]) result.around[a] = std::max(result.around[a], result.own[b]);
-        if (!result.loaded[b]) result.around[b] = std::max(result.around[b], result.own[a]);
+        take(a, b);
+        take(b, a);
     }
     return result;
 }

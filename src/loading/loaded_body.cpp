@@ -1,12 +1,15 @@
 #include "kluft/loading/loaded_body.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "kluft/kinematics/affine.hpp"
 
 namespace kluft {
 
 namespace {
+
+constexpr double negligible_stress = 1e-2; ///< of the largest so far
 
 /// Zero for a fixed block, whose weight nothing but its support feels.
 Vec2 weight_of(const LoadedBody& body, int b) {
@@ -93,6 +96,10 @@ private:
 };
 
 } // namespace
+
+double negligible_force(double carried_stress, double area) {
+    return negligible_stress * carried_stress * std::sqrt(area); // (27c)
+}
 
 void body_forces(const LoadedBody& body, const Eigen::VectorXd& q, BodyForces& result) {
     result.forces.setZero(q.size());

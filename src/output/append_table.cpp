@@ -1,14 +1,15 @@
 #include "kluft/output/append_table.hpp"
 
 #include <cerrno>
-#include <charconv>
 #include <utility>
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include "file_descriptor.hpp"
 #include "kluft/core/diagnostics.hpp"
+#include "kluft/core/digest.hpp"
 #include "kluft/output/atomic_file.hpp"
 
 namespace kluft {
@@ -19,31 +20,48 @@ struct AppendTable::File {
     fs::path path;
     FileDescriptor descriptor;
     off_t size;
+    Digest digest;        ///< of the lines
+    bool is_whole = true; ///< false: a part of a row is behind `size`
 
-    explicit File(const fs::path& name)
-        : path(name), descriptor(name, O_WRONLY | O_APPEND), size(::lseek(descriptor.number(), 0, SEEK_END)) {}
+    File(const fs::path& name, Digest lines)
+        : path(name), descriptor(name, O_WRONLY | O_APPEND), size(::lseek(descriptor.number(), 0, SEEK_END)),
+          digest(lines) {}
+
+    void cut_back() {
+        if (::ftruncate(descriptor.number(), size) != 0) throw_system_error(path, "cannot cut", errno);
+        is_whole = true;
+    }
 };
 
 namespace {
 
-int step_of_row(const fs::path& path, std::string_view row) {
-    int step = 0;
-    const auto [end, error] = std::from_chars(row.data(), row.data() + row.size(), step);
-    if (error != std::errc() || end == row.data() + row.size() || *end != ',')
-        throw InputError(path.string() + ": expected a row that begins with a load step, found '" +
-                         std::string(row.substr(0, 40)) + "'");
-    return step;
+Digest digest_of(std::string_view lines) {
+    Digest digest;
+    while (!lines.empty()) {
+        const std::size_t end = lines.find('\n');
+        digest.add(lines.substr(0, end));
+        lines.remove_prefix(end == std::string_view::npos ? lines.size() : end + 1);
+    }
+    return digest;
 }
 
-/// Size of the part of `content` that stays: the header and the rows up to `last_step`.
-std::size_t kept_size(const fs::path& path, std::string_view content, int last_step) {
-    std::size_t begin = content.find('\n') + 1;
-    while (true) {
-        const std::size_t end = content.find('\n', begin);
-        if (end == std::string_view::npos) return begin;
-        if (step_of_row(path, content.substr(begin, end - begin)) > last_step) return begin;
-        begin = end + 1;
-    }
+void require_header(const fs::path& path, std::string_view content, std::string_view header) {
+    const std::string_view first_line = content.substr(0, content.find('\n'));
+    if (first_line != header || content.size() == first_line.size())
+        throw InputError(fmt::format("{}:1: expected the columns '{}', found '{}'", path.string(), header,
+                                     first_line.substr(0, 200)));
+}
+
+/// The digest of the table up to the mark, where it is as it was.
+Digest require_unchanged(const fs::path& path, std::string_view content, const TableMark& mark) {
+    const Digest digest = digest_of(content.substr(0, mark.bytes));
+    if (content.size() < mark.bytes || digest.text() != mark.digest)
+        throw InputError(fmt::format(
+            "{}: expected the {} bytes that it had when the state was saved, found {}; the run cannot be gone on with "
+            "from this state, run it anew without --resume",
+            path.string(), mark.bytes,
+            content.size() < mark.bytes ? fmt::format("{}: rows are missing", content.size()) : "other ones"));
+    return digest;
 }
 
 } // namespace
@@ -54,40 +72,38 @@ AppendTable& AppendTable::operator=(AppendTable&&) noexcept = default;
 AppendTable::~AppendTable() = default;
 
 AppendTable AppendTable::create(const fs::path& path, std::string_view header) {
-    write_file(path, std::string(header) + '\n');
-    return AppendTable(std::make_unique<File>(path));
+    const std::string line = std::string(header) + '\n';
+    write_file(path, line);
+    return AppendTable(std::make_unique<File>(path, digest_of(line)));
 }
 
-AppendTable AppendTable::resume(const fs::path& path, std::string_view header, int last_step) {
-    cut_table(path, header, last_step);
-    return AppendTable(std::make_unique<File>(path));
+AppendTable AppendTable::resume(const fs::path& path, std::string_view header, const TableMark& mark) {
+    const std::string content = read_file(path);
+    require_header(path, content, header);
+    auto file = std::make_unique<File>(path, require_unchanged(path, content, mark));
+    file->size = static_cast<off_t>(mark.bytes);
+    file->cut_back();
+    return AppendTable(std::move(file));
 }
 
 void AppendTable::append(std::string_view row) {
     const std::string line = std::string(row) + '\n';
+    if (!file_->is_whole) file_->cut_back();
+    file_->is_whole = false;
     try {
         file_->descriptor.write(line);
     } catch (...) {
         // Best effort: a reader also ignores an unfinished last line.
-        [[maybe_unused]] const int result = ::ftruncate(file_->descriptor.number(), file_->size);
+        if (::ftruncate(file_->descriptor.number(), file_->size) == 0) file_->is_whole = true;
         throw;
     }
+    file_->is_whole = true;
     file_->size += static_cast<off_t>(line.size());
+    file_->digest.add(row);
 }
 
 void AppendTable::sync() { file_->descriptor.sync(); }
 
-void cut_table(const fs::path& path, std::string_view header, int last_step) {
-    const std::string content = read_file(path);
-    const std::string first_line = content.substr(0, content.find('\n'));
-    if (first_line != header || content.find('\n') == std::string::npos)
-        throw InputError(path.string() + ":1: expected the columns '" + std::string(header) + "', found '" +
-                         first_line.substr(0, 200) + "'");
-    const std::size_t size = kept_size(path, content, last_step);
-    if (size == content.size()) return;
-    FileDescriptor file(path, O_WRONLY);
-    if (::ftruncate(file.number(), static_cast<off_t>(size)) != 0) throw_system_error(path, "cannot cut", errno);
-    file.sync();
-}
+TableMark AppendTable::mark() const { return {static_cast<std::uint64_t>(file_->size), file_->digest.text()}; }
 
 } // namespace kluft

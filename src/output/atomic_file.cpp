@@ -2,14 +2,12 @@
 
 #include <cerrno>
 #include <cstdio>
-#include <fstream>
-#include <iterator>
 #include <system_error>
 
 #include <fcntl.h>
 
 #include "file_descriptor.hpp"
-#include "kluft/core/diagnostics.hpp"
+#include "kluft/core/input_file.hpp"
 
 namespace kluft {
 
@@ -64,13 +62,8 @@ void write_file(const fs::path& path, std::string_view content) {
 }
 
 std::string read_file(const fs::path& path) {
-    std::error_code error;
-    if (fs::is_directory(path, error)) throw InputError(path.string() + ": expected a file, found a directory");
-    std::ifstream file(path, std::ios::binary);
-    if (!file) throw InputError(path.string() + ": cannot read: " + std::generic_category().message(errno));
-    std::string content{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-    if (file.bad()) throw InputError(path.string() + ": cannot read to the end");
-    return content;
+    constexpr std::size_t largest = 8'000'000'000; // of what a run writes
+    return read_input_file(path, "a file", largest);
 }
 
 void make_directory(const fs::path& path) {

@@ -10,6 +10,7 @@
 #include <cairo.h>
 
 #include "kluft/core/diagnostics.hpp"
+#include "kluft/core/memory.hpp"
 
 namespace kluft {
 
@@ -66,6 +67,7 @@ std::string printable(const std::string& text) {
 
 void draw_on(cairo_surface_t* surface, double width, double height, double scale,
              const std::function<void(Canvas&)>& draw) {
+    require_memory(); // the libraries below wait for ever or crash where there is none
     check(cairo_surface_status(surface));
     const Context context(cairo_create(surface));
     cairo_scale(context.get(), scale, scale);

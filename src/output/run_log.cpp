@@ -16,6 +16,11 @@ namespace {
 
 spdlog::sink_ptr open_sink(const std::filesystem::path& path, bool resume) {
     make_directory(path.has_parent_path() ? path.parent_path() : std::filesystem::path("."));
+    std::error_code error;
+    const auto kind = std::filesystem::symlink_status(path, error).type();
+    using std::filesystem::file_type;
+    if (kind == file_type::symlink || kind == file_type::fifo || kind == file_type::socket)
+        remove_file(path); // the file that it leads to is not the run's, and nobody may read at the other end
     try {
         return std::make_shared<spdlog::sinks::basic_file_sink_st>(path.string(), !resume);
     } catch (const spdlog::spdlog_ex& failure) {

@@ -1,12 +1,18 @@
 #include "kluft/output/run_writer.hpp"
 
-#include <deque>
+#include <array>
+#include <chrono>
 #include <exception>
+#include <list>
+#include <new>
+#include <sstream>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "kluft/core/diagnostics.hpp"
+#include "kluft/core/memory.hpp"
 #include "kluft/output/append_table.hpp"
 #include "kluft/output/atomic_file.hpp"
 #include "kluft/output/blocks_picture.hpp"
@@ -19,45 +25,80 @@ namespace kluft {
 
 namespace fs = std::filesystem;
 
+using Rows = std::vector<StepRecord>;
+
 namespace {
 
-/// A table whose rows wait while the disk is full, so that none is missing once there is room again.
-class PatientTable {
+/// A table to which the rows of a load step come together, once the step is committed. They wait while the disk is full, so
+/// that none is missing once there is room again.
+class StepTable {
 public:
-    explicit PatientTable(AppendTable table) : table_(std::move(table)) {}
-    void append(std::string row) {
-        waiting_.push_back(std::move(row));
-        write_waiting();
-    }
-    void sync() {
-        write_waiting();
-        table_.sync();
-    }
-
-private:
-    void write_waiting() {
+    explicit StepTable(AppendTable table) : table_(std::move(table)) {}
+    /// A row of the load step in progress.
+    void add(std::string row) { next_.push_back(std::move(row)); }
+    void commit() noexcept { waiting_.splice(waiting_.end(), next_); }
+    /// The rows of all committed steps.
+    void write() {
         while (!waiting_.empty()) {
             table_.append(waiting_.front());
             waiting_.pop_front();
         }
     }
+    void sync() {
+        write();
+        table_.sync();
+    }
+    [[nodiscard]] TableMark mark() const { return table_.mark(); }
 
+private:
     AppendTable table_;
-    std::deque<std::string> waiting_;
+    std::list<std::string> next_, waiting_;
 };
 
 } // namespace
 
 struct RunWriter::Tables {
-    PatientTable history;
-    PatientTable equilibria;
-    PatientTable cracks;
-    PatientTable jumps;
-    std::optional<PatientTable> histories;
+    StepTable history;
+    StepTable equilibria;
+    StepTable cracks;
+    StepTable jumps;
+    std::optional<StepTable> histories;
     std::optional<FieldSeries> fields;
 };
 
 namespace {
+
+constexpr std::array table_names{"history.csv", "equilibria.csv", "cracks.csv", "jumps.csv", "histories.csv"};
+
+/// Calls visit(name, table) for each table of a run. `tables`: RunWriter::Tables, const or not.
+template <class Tables, class Visit> void visit_tables(Tables& tables, Visit&& visit) {
+    const auto& [history, equilibria, cracks, jumps, histories] = table_names;
+    visit(history, tables.history);
+    visit(equilibria, tables.equilibria);
+    visit(cracks, tables.cracks);
+    visit(jumps, tables.jumps);
+    if (tables.histories) visit(histories, *tables.histories);
+}
+
+/// As they are saved with a state: a line "name bytes digest" for each table.
+template <class Tables> std::string marks_in_words(const Tables& tables) {
+    std::string text;
+    visit_tables(tables, [&](const char* name, const StepTable& table) {
+        const auto [bytes, digest] = table.mark();
+        text += fmt::format("{} {} {}\n", name, bytes, digest);
+    });
+    return text;
+}
+
+/// What a table held when the state was saved.
+TableMark saved_mark(const fs::path& state, const std::string& marks, const std::string& table) {
+    std::istringstream lines(marks);
+    TableMark mark;
+    for (std::string name; lines >> name >> mark.bytes >> mark.digest;)
+        if (name == table) return mark;
+    throw InputError(
+        fmt::format("{}: expected a state of a run with {}, found one of a run without it", state.string(), table));
+}
 
 void remove_results_but_tables_and_state(const fs::path& directory) {
     for (const char* name : {"summary.json", "curve.png", "curve.svg", "blocks.png", "blocks.svg"})
@@ -77,10 +118,25 @@ public:
     void rethrow() const {
         if (error_) std::rethrow_exception(error_);
     }
+    [[nodiscard]] bool any() const { return error_ != nullptr; }
+    [[nodiscard]] std::string message() const {
+        try {
+            rethrow();
+        } catch (const ResourceError& error) {
+            return error.what();
+        } catch (const std::bad_alloc&) {
+            return "out of memory";
+        }
+        return {};
+    }
 
 private:
     std::exception_ptr error_;
 };
+
+double seconds_since(std::chrono::steady_clock::time_point then) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - then).count();
+}
 
 bool is_due(int step, int every) { return every > 0 && step % every == 0; }
 
@@ -89,52 +145,45 @@ bool is_due(int step, int every) { return every > 0 && step % every == 0; }
 void remove_results(const fs::path& directory) {
     remove_results_but_tables_and_state(directory);
     FieldSeries::remove(directory);
-    for (const char* name : {"state.h5", "history.csv", "equilibria.csv", "cracks.csv", "jumps.csv", "histories.csv"})
-        remove_file(directory / name);
+    remove_file(directory / "state.h5");
+    for (const char* name : table_names) remove_file(directory / name);
 }
 
 RunWriter::RunWriter(fs::path directory, const BlockSystem& system, RunWriterOptions options)
     : directory_(std::move(directory)), system_(system), options_(std::move(options)) {
     make_directory(directory_);
-    const fs::path history = directory_ / "history.csv";
-    const fs::path equilibria = directory_ / "equilibria.csv";
-    const fs::path cracks = directory_ / "cracks.csv";
-    const fs::path jumps = directory_ / "jumps.csv";
-    const fs::path histories = directory_ / "histories.csv";
-    const std::string histories_columns = histories_header(options_.history_columns);
     std::string header = history_header();
     if (options_.strength_factor) header += ",strength_factor";
     if (options_.motion) header += ',' + motion_header();
+    const bool has_histories = !options_.history_columns.empty();
+    if (!options_.resumed_step) remove_results(directory_);
+    const fs::path state = directory_ / "state.h5";
+    const std::string marks = options_.resumed_step ? read_state_tables(state) : "";
+    const auto open = [&](const char* name, const std::string& columns) {
+        return StepTable(options_.resumed_step
+                             ? AppendTable::resume(directory_ / name, columns, saved_mark(state, marks, name))
+                             : AppendTable::create(directory_ / name, columns));
+    };
+    const auto& [history, equilibria, cracks, jumps, histories] = table_names;
+    tables_ = std::make_unique<Tables>(Tables{open(history, header),
+                                              open(equilibria, header),
+                                              open(cracks, cracks_header()),
+                                              open(jumps, jumps_header()),
+                                              {},
+                                              {}});
+    if (has_histories) tables_->histories.emplace(open(histories, histories_header(options_.history_columns)));
     if (options_.resumed_step) {
-        const int last = *options_.resumed_step;
-        tables_ = std::make_unique<Tables>(Tables{PatientTable(AppendTable::resume(history, header, last)),
-                                                  PatientTable(AppendTable::resume(equilibria, header, last)),
-                                                  PatientTable(AppendTable::resume(cracks, cracks_header(), last)),
-                                                  PatientTable(AppendTable::resume(jumps, jumps_header(), last)),
-                                                  {},
-                                                  {}});
-        if (!options_.history_columns.empty())
-            tables_->histories.emplace(AppendTable::resume(histories, histories_columns, last));
-        else
-            remove_file(histories);
+        if (!has_histories) remove_file(directory_ / histories);
         remove_results_but_tables_and_state(directory_);
-        history_ = read_history(history);
-        equilibria_ = read_history(equilibria);
-        if (history_.empty() || history_.back().step != last)
-            throw InputError(fmt::format("{}: does not reach the saved load step {}", history.string(), last));
-        if (options_.fields) tables_->fields = FieldSeries::resume(directory_, last);
-    } else {
-        remove_results(directory_);
-        tables_ = std::make_unique<Tables>(Tables{PatientTable(AppendTable::create(history, header)),
-                                                  PatientTable(AppendTable::create(equilibria, header)),
-                                                  PatientTable(AppendTable::create(cracks, cracks_header())),
-                                                  PatientTable(AppendTable::create(jumps, jumps_header())),
-                                                  {},
-                                                  {}});
-        if (!options_.history_columns.empty())
-            tables_->histories.emplace(AppendTable::create(histories, histories_columns));
-        if (options_.fields) tables_->fields = FieldSeries::create(directory_);
+        const Rows rows = read_history(directory_ / history);
+        if (rows.empty() || rows.back().step != *options_.resumed_step)
+            throw InputError(fmt::format("{}: does not reach the saved load step {}", (directory_ / history).string(),
+                                         *options_.resumed_step));
+        last_row_ = rows.back();
     }
+    if (options_.fields)
+        tables_->fields = options_.resumed_step ? FieldSeries::resume(directory_, *options_.resumed_step)
+                                                : FieldSeries::create(directory_);
 }
 
 RunWriter::~RunWriter() = default;
@@ -145,55 +194,57 @@ bool RunWriter::is_known(const StepRecord& record) const {
 
 void RunWriter::equilibrium(const StepRecord& record) {
     if (is_known(record)) return;
-    equilibria_.push_back(record);
-    tables_->equilibria.append(table_row(record));
+    tables_->equilibria.add(table_row(record));
 }
 
-void RunWriter::crack(const CrackRecord& crack) { tables_->cracks.append(table_row(crack)); }
+void RunWriter::crack(const CrackRecord& crack) { tables_->cracks.add(table_row(crack)); }
 
-void RunWriter::jump(const JumpRecord& jump) { tables_->jumps.append(table_row(jump)); }
+void RunWriter::jump(const JumpRecord& jump) { tables_->jumps.add(table_row(jump)); }
 
 void RunWriter::step(const StepRecord& record, const State& state, const std::function<FieldRecord()>& fields,
                      bool last_of_stage) {
     if (is_known(record)) return;
-    history_.push_back(record);
-    tables_->history.append(table_row(record));
-    if (tables_->histories) tables_->histories->append(histories_row(record));
+    tables_->history.add(table_row(record));
+    if (tables_->histories) tables_->histories->add(histories_row(record));
+    last_row_ = record;
+    visit_tables(*tables_, [](const char*, StepTable& table) { table.commit(); }); // all rows of the step, or none
+    visit_tables(*tables_, [](const char*, StepTable& table) { table.write(); });
     if (options_.fields && (record.step == 0 || last_of_stage || is_due(record.step, options_.fields_every)))
         write_fields(record, fields());
-    if (last_of_stage || is_due(record.step, options_.checkpoint_every)) checkpoint(state);
+    const bool long_ago = options_.checkpoint_seconds > 0.0 && seconds_since(saved_) > options_.checkpoint_seconds;
+    if (last_of_stage || long_ago || is_due(record.step, options_.checkpoint_every)) checkpoint(state);
 }
 
 void RunWriter::checkpoint(const State& state) {
-    tables_->history.sync();
-    tables_->equilibria.sync();
-    tables_->cracks.sync();
-    tables_->jumps.sync();
-    if (tables_->histories) tables_->histories->sync();
-    write_state(directory_ / "state.h5", state, options_.fingerprint, options_.scene_text);
+    visit_tables(*tables_, [](const char*, StepTable& table) { table.sync(); });
+    write_state(directory_ / "state.h5", state, options_.fingerprint, options_.scene_text, marks_in_words(*tables_));
+    saved_ = Clock::now();
 }
 
 void RunWriter::write_fields(const StepRecord& record, const FieldRecord& fields) {
     tables_->fields->add(system_, fields, options_.material_names, record);
 }
 
-void RunWriter::write_pictures(const FieldRecord& fields) const {
-    const CurvePlot curve = stress_strain_plot(options_.title, {{"", history_, equilibria_, options_.platen_stage}});
-    const BlocksPlot blocks{options_.title, after_title(history_), 1.0, options_.material_names, {}};
+void RunWriter::write_pictures(const Rows& history, const Rows& equilibria, const FieldRecord& fields) const {
+    const BlocksPlot blocks{
+        options_.title, options_.platen_stage ? after_title(history) : "after", 1.0, options_.material_names, {}};
     const bool svg = system_.n_blocks() <= most_blocks_in_svg;
     FirstError errors;
-    errors.attempt([&] { write_curves(directory_ / "curve.png", curve); });
-    errors.attempt([&] { write_curves(directory_ / "curve.svg", curve); });
+    if (options_.platen_stage) { // otherwise nothing is loaded along an axis, and there is no such curve
+        const CurvePlot curve = stress_strain_plot(options_.title, {{"", history, equilibria, options_.platen_stage}});
+        errors.attempt([&] { write_curves(directory_ / "curve.png", curve); });
+        errors.attempt([&] { write_curves(directory_ / "curve.svg", curve); });
+    }
     errors.attempt([&] { write_blocks(directory_ / "blocks.png", system_, fields, blocks); });
     if (svg) errors.attempt([&] { write_blocks(directory_ / "blocks.svg", system_, fields, blocks); });
     errors.rethrow();
 }
 
-RunSummary RunWriter::summary_of(const RunOutcome& outcome) const {
+RunSummary RunWriter::summary_of(const RunOutcome& outcome, const Rows& history, const Rows& equilibria) const {
     RunSummary summary;
     summary.status = outcome.report.status;
     summary.title = options_.title;
-    summary.numbers = curve_numbers(equilibria_, history_, options_.platen_stage, options_.plane);
+    summary.numbers = curve_numbers(equilibria, history, options_.platen_stage, options_.plane);
     summary.platen_stage = options_.platen_stage;
     summary.blocks = system_.n_blocks();
     summary.interfaces = system_.n_interfaces();
@@ -205,32 +256,54 @@ RunSummary RunWriter::summary_of(const RunOutcome& outcome) const {
     summary.blas_core = outcome.blas_core;
     summary.message = outcome.report.diagnosis.empty() ? outcome.report.remark : outcome.report.diagnosis;
     summary.results = outcome.report.results;
+    summary.warnings = outcome.report.warnings;
     summary.falling = outcome.report.falling;
     summary.motion = outcome.report.motion;
     return summary;
 }
 
+void RunWriter::give_up(RunSummary summary, const std::string& why) const {
+    summary.status = RunStatus::out_of_resources;
+    if (summary.message != why) summary.message = summary.message.empty() ? why : why + "; " + summary.message;
+    const fs::path path = directory_ / "summary.json";
+    try {
+        write_summary(path, summary);
+    } catch (...) {
+        std::error_code ignored;
+        fs::remove(path, ignored); // rather none than one that says something else; and there may be room now
+        FirstError().attempt([&] { write_summary(path, summary); });
+    }
+}
+
 RunSummary RunWriter::finish(const RunOutcome& outcome, const State& state,
                              const std::function<FieldRecord()>& fields) {
-    RunSummary summary = summary_of(outcome);
     FirstError errors;
-    // Out of memory in the middle of a report the rows may end before the state; then the last saved state stays.
-    if (!history_.empty() && history_.back().step == state.at.step) errors.attempt([&] { checkpoint(state); });
+    // Out of memory in the middle of a report the rows end before the state; then the last saved state stays.
+    if (last_row_ && last_row_->step == state.at.step) errors.attempt([&] { checkpoint(state); });
+    Rows history;
+    Rows equilibria;
+    errors.attempt([&] {
+        history = read_history(directory_ / "history.csv");
+        equilibria = read_history(directory_ / "equilibria.csv");
+    });
+    RunSummary summary = summary_of(outcome, history, equilibria);
     errors.attempt([&] { write_summary(directory_ / "summary.json", summary); });
     errors.attempt([&] {
+        if (memory_ran_out()) return; // what libraries draw and write there can be made of the state later
         const bool fields_missing =
-            options_.fields && !history_.empty() &&
-            (tables_->fields->steps().empty() || tables_->fields->steps().back() != history_.back().step);
+            options_.fields && last_row_ &&
+            (tables_->fields->steps().empty() || tables_->fields->steps().back() != last_row_->step);
         if (!fields_missing && !options_.pictures) return;
-        const FieldRecord last = fields();
+        const FieldRecord record = fields();
         FirstError parts;
-        if (fields_missing) parts.attempt([&] { write_fields(history_.back(), last); });
-        if (options_.pictures) parts.attempt([&] { write_pictures(last); });
+        if (fields_missing) parts.attempt([&] { write_fields(*last_row_, record); });
+        if (options_.pictures) parts.attempt([&] { write_pictures(history, equilibria, record); });
         parts.rethrow();
     });
     // The summary was written before the pictures, which may need more memory than there is; now it counts theirs too.
     summary.peak_memory_bytes = peak_memory_bytes();
     errors.attempt([&] { write_summary(directory_ / "summary.json", summary); });
+    if (errors.any()) give_up(summary, errors.message());
     errors.rethrow();
     return summary;
 }

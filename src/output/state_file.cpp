@@ -1,8 +1,10 @@
 #include "kluft/output/state_file.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -15,7 +17,7 @@ namespace kluft {
 
 namespace {
 
-constexpr int format_version = 10;
+constexpr int format_version = 11;
 constexpr std::string_view format_name = "kluft state";
 
 /// What went wrong inside HDF5; the callers add the file's name.
@@ -42,10 +44,12 @@ private:
     herr_t (*close_)(hid_t);
 };
 
-/// HDF5 prints its error stack by default; here every result is looked at instead.
+/// HDF5 prints its error stack by default; here every result is looked at instead. What it closes at the end of the program by
+/// itself is closed here already, but for what a damaged file left half open, of which it would print a line.
 class SilentErrors {
 public:
     SilentErrors() {
+        [[maybe_unused]] static const herr_t closes_nothing = H5dont_atexit();
         H5Eget_auto2(H5E_DEFAULT, &function_, &client_);
         H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
     }
@@ -83,10 +87,19 @@ void write_text(hid_t file, const char* name, std::string_view text) {
     checked(H5Awrite(attribute, type, padded.data()), name);
 }
 
+/// Nothing in a file is larger than the file: what it stores is not compressed.
+void require_room(hid_t file, std::size_t count, std::size_t size_of_one, const char* name) {
+    hsize_t size = 0;
+    checked(H5Fget_filesize(file, &size), name);
+    if (size_of_one == 0 || count > size / size_of_one)
+        throw Hdf5Failure{std::string(name) + " is larger than the file"};
+}
+
 std::string read_text(hid_t file, const char* name) {
     const Identifier attribute(H5Aopen(file, name, H5P_DEFAULT), H5Aclose, std::string("no ") + name);
     const Identifier stored(H5Aget_type(attribute), H5Tclose, name);
     if (H5Tget_class(stored) != H5T_STRING || H5Tis_variable_str(stored) > 0) throw Hdf5Failure{name};
+    require_room(file, H5Tget_size(stored), 1, name);
     std::string text(H5Tget_size(stored), '\0');
     checked(H5Aread(attribute, stored, text.data()), name);
     return text.substr(0, text.find('\0'));
@@ -97,7 +110,15 @@ template <> hid_t memory_type<double>() { return H5T_NATIVE_DOUBLE; }
 template <> hid_t memory_type<int>() { return H5T_NATIVE_INT; }
 template <> hid_t memory_type<std::uint8_t>() { return H5T_NATIVE_UINT8; }
 
+bool holds_none(const double* values, std::size_t size) {
+    return std::any_of(values, values + size, [](double value) { return std::isnan(value); });
+}
+
 template <class Number> void write_array(hid_t file, const char* name, const Number* values, std::size_t size) {
+    if constexpr (std::is_same_v<Number, double>) {
+        if (holds_none(values, size))
+            throw NoEquilibriumError(std::string(name) + " of the state is no number; the state saved before stays");
+    }
     const hsize_t extent = size;
     const Identifier space(H5Screate_simple(1, &extent, nullptr), H5Sclose, name);
     const Identifier creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, name);
@@ -117,8 +138,14 @@ template <class Number> std::vector<Number> read_array(hid_t file, const char* n
     const Identifier space(H5Dget_space(set), H5Sclose, name);
     const hssize_t size = H5Sget_simple_extent_npoints(space);
     if (size < 0) throw Hdf5Failure{name};
+    const Identifier stored(H5Dget_type(set), H5Tclose, name);
+    require_room(file, static_cast<std::size_t>(size), H5Tget_size(stored), name);
+    require_room(file, H5Dget_storage_size(set), 1, name); // HDF5 takes memory for whatever its chunks claim
     std::vector<Number> values(static_cast<std::size_t>(size));
     if (size > 0) checked(H5Dread(set, memory_type<Number>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), name);
+    if constexpr (std::is_same_v<Number, double>) {
+        if (holds_none(values.data(), values.size())) throw Hdf5Failure{std::string(name) + " is no number"};
+    }
     return values;
 }
 
@@ -157,6 +184,21 @@ struct Writer {
         }
         write_array(file, (std::string(name) + "_keys").c_str(), keys.data(), keys.size());
         write_array(file, (std::string(name) + "_histories").c_str(), histories.data(), histories.size());
+    }
+    /// Nine integers and 20 numbers each, without the history, which the load step begins with anyway.
+    void operator()(const char* name, const std::vector<ContactPoint>& v) {
+        std::vector<int> integers;
+        std::vector<double> numbers;
+        for (const ContactPoint& p : v) {
+            integers.insert(integers.end(), {p.block_a, p.block_b, p.law, p.interface, p.key.block_a, p.key.edge_a,
+                                             p.key.block_b, p.key.edge_b, p.key.point});
+            for (const Vec2& x :
+                 {p.xi_a, p.xi_b, p.offset, p.normal, p.tangent, p.piece.xi_a, p.piece.xi_b, p.piece.offset})
+                numbers.insert(numbers.end(), {x.x(), x.y()});
+            numbers.insert(numbers.end(), {p.piece.from, p.piece.to, p.weight, p.along});
+        }
+        write_array(file, (std::string(name) + "_integers").c_str(), integers.data(), integers.size());
+        write_array(file, (std::string(name) + "_numbers").c_str(), numbers.data(), numbers.size());
     }
     /// Five integers and three numbers each.
     void operator()(const char* name, const std::vector<PlatenPoint>& v) {
@@ -218,6 +260,26 @@ struct Reader {
             v[i].history = {histories[2 * i], histories[2 * i + 1]};
         }
     }
+    void operator()(const char* name, std::vector<ContactPoint>& v) {
+        const auto integers = read_array<int>(file, (std::string(name) + "_integers").c_str());
+        const auto numbers = read_array<double>(file, (std::string(name) + "_numbers").c_str());
+        if (integers.size() % 9 != 0 || integers.size() / 9 * 20 != numbers.size()) throw Hdf5Failure{name};
+        v.resize(integers.size() / 9);
+        for (std::size_t i = 0; i < v.size(); ++i) {
+            const int* k = &integers[9 * i];
+            const double* x = &numbers[20 * i];
+            ContactPoint& p = v[i];
+            for (int* to : {&p.block_a, &p.block_b, &p.law, &p.interface, &p.key.block_a, &p.key.edge_a, &p.key.block_b,
+                            &p.key.edge_b, &p.key.point})
+                *to = *k++;
+            for (Vec2* to :
+                 {&p.xi_a, &p.xi_b, &p.offset, &p.normal, &p.tangent, &p.piece.xi_a, &p.piece.xi_b, &p.piece.offset}) {
+                *to = Vec2(x[0], x[1]);
+                x += 2;
+            }
+            for (double* to : {&p.piece.from, &p.piece.to, &p.weight, &p.along}) *to = *x++;
+        }
+    }
     void operator()(const char* name, std::vector<PlatenPoint>& v) {
         const auto keys = read_array<int>(file, (std::string(name) + "_keys").c_str());
         const auto numbers = read_array<double>(file, (std::string(name) + "_numbers").c_str());
@@ -247,13 +309,19 @@ struct Reader {
     void operator()(const char* name, std::vector<int>& v) { v = read_array<int>(file, name); }
 };
 
-std::string file_image(const State& state, const std::string& fingerprint, const std::string& scene) {
+void write_bytes(hid_t file, const char* name, const std::string& text) {
+    write_array(file, name, std::vector<std::uint8_t>(text.begin(), text.end()).data(), text.size());
+}
+
+std::string file_image(const State& state, const std::string& fingerprint, const std::string& scene,
+                       const std::string& tables) {
     const Identifier access = memory_access();
     const Identifier file(H5Fcreate("state", H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose, "no file");
     write_text(file, "format", format_name);
     write_text(file, "fingerprint", fingerprint);
     write_array(file, "format_version", &format_version, 1);
-    write_array(file, "scene", std::vector<std::uint8_t>(scene.begin(), scene.end()).data(), scene.size());
+    write_bytes(file, "scene", scene);
+    write_bytes(file, "tables", tables);
     visit_saved(state, Writer{file});
     checked(H5Fflush(file, H5F_SCOPE_GLOBAL), "not flushed");
     const ssize_t size = H5Fget_file_image(file, nullptr, 0);
@@ -291,13 +359,23 @@ State state_in(hid_t file, const std::string& place, const std::string& expected
     return state;
 }
 
+/// A text that earlier versions did not save.
+std::string read_bytes(const std::filesystem::path& path, const char* name, const std::string& what) {
+    return read_image(path, [&](hid_t file) {
+        if (H5Lexists(file, name, H5P_DEFAULT) <= 0)
+            throw InputError(path.string() + ": holds no " + what + "; it was saved by an earlier version");
+        const auto bytes = read_array<std::uint8_t>(file, name);
+        return std::string(bytes.begin(), bytes.end());
+    });
+}
+
 } // namespace
 
 void write_state(const std::filesystem::path& path, const State& state, const std::string& fingerprint,
-                 const std::string& scene) {
+                 const std::string& scene, const std::string& tables) {
     const SilentErrors silent;
     try {
-        write_file(path, file_image(state, fingerprint, scene));
+        write_file(path, file_image(state, fingerprint, scene, tables));
     } catch (const Hdf5Failure& failure) {
         throw ResourceError(path.string() + ": cannot store the state in memory: " + failure.what);
     }
@@ -307,13 +385,10 @@ State read_state(const std::filesystem::path& path, const std::string& expected_
     return read_image(path, [&](hid_t file) { return state_in(file, path.string(), expected_fingerprint); });
 }
 
-std::string read_state_scene(const std::filesystem::path& path) {
-    return read_image(path, [&](hid_t file) {
-        if (H5Lexists(file, "scene", H5P_DEFAULT) <= 0)
-            throw InputError(path.string() + ": holds no scene; it was saved by an earlier version");
-        const auto bytes = read_array<std::uint8_t>(file, "scene");
-        return std::string(bytes.begin(), bytes.end());
-    });
+std::string read_state_scene(const std::filesystem::path& path) { return read_bytes(path, "scene", "scene"); }
+
+std::string read_state_tables(const std::filesystem::path& path) {
+    return read_bytes(path, "tables", "record of the tables");
 }
 
 } // namespace kluft

@@ -232,6 +232,7 @@ RunSummary summary_in(const Json& json) {
         if (times.contains(name)) seconds = optional_number(times, name).value_or(0.0);
     });
     json.at("message").get_to(summary.message);
+    summary.warnings = json.value("warnings", std::vector<std::string>{}); // an earlier version does not say
     visit_results(summary.results, [&](const char* name, std::optional<double>& result) {
         if (json.contains(name)) result = optional_number(json, name);
     });
@@ -352,6 +353,7 @@ std::string summary_json(const RunSummary& summary) {
     json["version"] = summary.version;
     json["blas_core"] = summary.blas_core;
     json["message"] = summary.message;
+    json["warnings"] = summary.warnings;
     json["seconds"] = Json::object();
     visit_seconds(summary.costs.seconds,
                   [&](const char* name, double seconds) { json["seconds"][name] = json_number(seconds); });

@@ -222,7 +222,8 @@ void FieldSeries::remove(const fs::path& directory) {
     remove_file(directory / "fields.pvd");
     for (const auto& [file, step] : field_files(directory)) remove_file(file);
     std::error_code ignored;
-    fs::remove(directory / "fields", ignored); // only when nothing else is in it
+    const fs::path folder = directory / "fields";                      // a link to where there is more room stays
+    if (!fs::is_symlink(folder, ignored)) fs::remove(folder, ignored); // only when nothing else is in it
 }
 
 void FieldSeries::add(const BlockSystem& system, const FieldRecord& fields,

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "kluft/core/memory.hpp"
 #include "kluft/core/stopwatch.hpp"
 #include "kluft/fracture/crack_check.hpp"
 #include "kluft/loading/block_balance.hpp"
@@ -283,7 +284,7 @@ private:
     [[nodiscard]] std::vector<MovingBlock> moving_blocks(const BlockVerdict& verdict) const {
         std::vector<MovingBlock> moving = verdict.moving;
         if (moving.empty()) moving = fastest_block();
-        return moving_on(model_.system, motion_.displacement() - state_.body.displacement, std::move(moving));
+        return moving_on(model_.system, state_.body.displacement, motion_.displacement(), std::move(moving));
     }
 
     /// Empty where nothing moves.
@@ -325,6 +326,7 @@ private:
 
     void watch_motion() {
         if (stop_) throw Interrupted{};
+        require_memory();
         if (time_steps_ % (10 * watch_interval) == 0 || force_scale_ == 0.0)
             force_scale_ = motion_.evaluate().magnitudes.norm();
         load_rate_ =

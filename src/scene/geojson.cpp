@@ -1,13 +1,15 @@
 #include "kluft/scene/geojson.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <string>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "kluft/core/diagnostics.hpp"
+#include "kluft/core/input_file.hpp"
+#include "kluft/scene/scene_tree.hpp"
 
 namespace kluft {
 
@@ -15,7 +17,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double farthest = 1e9; ///< m from the origin, as of lengths in a scene
+constexpr double farthest = 1e9;                  ///< m from the origin, as of lengths in a scene
+constexpr std::size_t largest_file = 100'000'000; ///< bytes: some million points
 
 /// Where in a file something is said, as the errors name it.
 struct Place {
@@ -34,10 +37,9 @@ struct PlacedGeometry {
 };
 
 json parse_file(const std::filesystem::path& file) {
-    std::ifstream stream(file);
-    if (!stream) throw InputError(fmt::format("{}: the file cannot be opened", file.string()));
+    const std::string text = read_input_file(file, "a GeoJSON file", largest_file);
     try {
-        return json::parse(stream);
+        return json::parse(text);
     } catch (const json::exception& error) {
         throw InputError(fmt::format("{}: not valid JSON: {}", file.string(), error.what()));
     }
@@ -74,6 +76,16 @@ std::vector<PlacedGeometry> geometries_of(const json& root, const std::string& f
     return geometries;
 }
 
+/// A value for a message. Only a short list of values is written out: lists may hold lists to any depth.
+std::string text_of(const json& value) {
+    if (value.is_object()) return "an object";
+    if (!value.is_array()) return in_quotes(value.dump());
+    constexpr std::size_t most_written = 3;
+    const bool is_plain = std::ranges::none_of(value, [](const json& item) { return item.is_structured(); });
+    if (is_plain && value.size() <= most_written) return in_quotes(value.dump());
+    return fmt::format("a list of {}", value.size());
+}
+
 const json& coordinates_of(const json& geometry, const Place& place) {
     const auto coordinates = geometry.find("coordinates");
     if (coordinates == geometry.end() || !coordinates->is_array()) place.fail("expected a list of \"coordinates\"");
@@ -83,10 +95,10 @@ const json& coordinates_of(const json& geometry, const Place& place) {
 Vec2 point_of(const json& position, const Place& place) {
     const bool sound =
         position.is_array() && position.size() >= 2 && position[0].is_number() && position[1].is_number();
-    if (!sound) place.fail(fmt::format("expected a position [x, y], got {}", position.dump()));
+    if (!sound) place.fail(fmt::format("expected a position [x, y], got {}", text_of(position)));
     const Vec2 point(position[0].get<double>(), position[1].get<double>());
     if (!(point.lpNorm<Eigen::Infinity>() <= farthest))
-        place.fail(fmt::format("expected a position within {:g} m, got {}", farthest, position.dump()));
+        place.fail(fmt::format("expected a position within {:g} m, got {}", farthest, text_of(position)));
     return point;
 }
 
@@ -136,7 +148,7 @@ MappedArea read_geojson_area(const std::filesystem::path& file) {
         } else if (type == "MultiPolygon") {
             for (const json& part : coordinates_of(*geometry, place)) areas.push_back(area_of(part, place));
         } else {
-            place.fail(fmt::format("expected a Polygon, got {}", type));
+            place.fail(fmt::format("expected a Polygon, got {}", in_quotes(type)));
         }
     }
     if (areas.size() != 1) {
@@ -155,7 +167,7 @@ std::vector<std::vector<Vec2>> read_geojson_traces(const std::filesystem::path& 
         } else if (type == "MultiLineString") {
             for (const json& part : coordinates_of(*geometry, place)) traces.push_back(trace_of(part, place));
         } else {
-            place.fail(fmt::format("expected a LineString or a MultiLineString, got {}", type));
+            place.fail(fmt::format("expected a LineString or a MultiLineString, got {}", in_quotes(type)));
         }
     }
     if (traces.empty()) throw InputError(fmt::format("{}: no traces", file.string()));

@@ -26,13 +26,31 @@ namespace {
 
 constexpr int most_sides_checked = 2000; ///< of a polygon here; the block cutter checks all
 constexpr int fixed_choice = 1;          ///< of a block's or a set's support
-constexpr double most_cells = 2e7;       ///< beyond what memory holds: the spacing's unit is wrong
 
 /// Where neighbouring points coincide, if anywhere: the second one's index.
 std::optional<std::size_t> repeated_point(const std::vector<Vec2>& points) {
     for (std::size_t i = 1; i < points.size(); ++i)
         if (points[i] == points[i - 1]) return i;
     return std::nullopt;
+}
+
+/// What is wrong with a polygon whose successive points differ; "" if nothing.
+std::string polygon_problem(const Polygon& polygon) {
+    if (const auto crossing = crossing_sides(polygon))
+        return fmt::format("expected a simple polygon, found sides {} and {} (counted from 0) that cross",
+                           crossing->first, crossing->second);
+    if (signed_area(polygon) == 0.0) return "expected a polygon with an area, found none";
+    const bool touches = static_cast<int>(polygon.size()) < most_sides_checked && !is_simple(polygon);
+    return touches ? "expected a simple polygon, found one that touches itself" : "";
+}
+
+void require_simple(const MappedArea& area, const std::filesystem::path& file) {
+    const auto require = [&](const Polygon& ring, const std::string& name) {
+        if (const std::string problem = polygon_problem(ring); !problem.empty())
+            throw InputError(fmt::format("{}: {}: {}", file.string(), name, problem));
+    };
+    require(area.outline, "outline");
+    for (std::size_t i = 0; i < area.holes.size(); ++i) require(area.holes[i], fmt::format("hole {}", i));
 }
 
 bool boxes_meet(const std::vector<Vec2>& a, const std::vector<Vec2>& b) {
@@ -89,6 +107,7 @@ private:
                     fmt::format("expected nothing beside blocks, found {}", found_text(*geometry.value(key))));
         spec_.reference_spacing = geometry.number("reference_spacing");
         spec_.minimum_area = geometry.number("minimum_area");
+        spec_.places.blocks = context_.place(geometry, "blocks");
         const auto sections = geometry.sections("blocks");
         for (const auto& section : sections) read_block(geometry, section);
         if (geometry.has("blocks_interface") || !interfaces_.empty() || sections.size() > 1)
@@ -262,6 +281,7 @@ private:
         spec_.places.domain = fmt::format("{}: {}", context_.place(domain, "file"), file->string());
         try {
             auto area = read_geojson_area(*file);
+            require_simple(area, *file);
             spec_.holes = std::move(area.holes);
             set_outline(area.outline);
         } catch (const InputError& error) {
@@ -281,16 +301,9 @@ private:
         if (!points) return {};
         if (points->size() > 3 && points->front() == points->back()) points->pop_back();
         if (!has_distinct_points(section, key, *points)) return {};
-        if (const auto crossing = crossing_sides(*points, most_sides_checked))
-            context_.fail(section, key,
-                          fmt::format("expected a simple polygon, found sides {} and {} (counted from 0) that cross",
-                                      crossing->first, crossing->second));
-        else if (signed_area(*points) == 0.0)
-            context_.fail(section, key, "expected a polygon with an area, found none");
-        else if (static_cast<int>(points->size()) < most_sides_checked && !is_simple(*points))
-            context_.fail(section, key, "expected a simple polygon, found one that touches itself");
-        else
-            return *points;
+        const std::string problem = polygon_problem(*points);
+        if (problem.empty()) return *points;
+        context_.fail(section, key, problem);
         return {};
     }
 
@@ -351,6 +364,9 @@ private:
         if (!section.node()->is_mapping()) return;
         if (!gives_one_of(section, {"triangles", "hexagons", "voronoi"}, context_)) return;
         Tessellation tessellation;
+        if (section.has("region")) tessellation.region = read_polygon(section, "region");
+        net_area_ = signed_area(spec_.domain);
+        if (tessellation.region) net_area_ = std::min(net_area_, std::abs(signed_area(*tessellation.region)));
         if (section.has("triangles"))
             tessellation.triangles = read_triangles(section.section("triangles"));
         else if (section.has("hexagons"))
@@ -358,7 +374,6 @@ private:
         else
             tessellation.voronoi = read_voronoi(section.section("voronoi"));
         tessellation.interface_type = interface_of(section);
-        if (section.has("region")) tessellation.region = read_polygon(section, "region");
         spec_.tessellation = std::move(tessellation);
     }
 
@@ -392,7 +407,7 @@ private:
         net.relaxation = section.count("relaxation");
         net.seed = static_cast<std::uint64_t>(section.integer("seed"));
         if (section.has("grading")) net.grading = read_grading(section.section("grading"));
-        check_cell_count(section, "spacing", "triangles", triangle_area(1.0), signed_area(spec_.domain));
+        check_cell_count(section, "spacing", "triangles", triangle_area(1.0), net_area_);
         return net;
     }
 
@@ -408,7 +423,7 @@ private:
         grading.region_spacing = section.given_number("region_spacing").value_or(0.0);
         if (!grading.region.empty() && grading.region_spacing > 0.0)
             check_cell_count(section, "region_spacing", "triangles", triangle_area(1.0),
-                             std::min(std::abs(signed_area(grading.region)), signed_area(spec_.domain)));
+                             std::min(std::abs(signed_area(grading.region)), net_area_));
         return grading;
     }
 
@@ -432,8 +447,9 @@ private:
         const double n_cells = area / (unit_area * *spacing * *spacing);
         if (n_cells > most_cells)
             context_.fail(net, key,
-                          fmt::format("expected a spacing in m that fits the domain, found {}, which makes {:.1e} {}",
-                                      found_text(*net.value(key)), n_cells, cells));
+                          fmt::format("expected a spacing in m that makes at most {:.0e} {}, found {}, which makes "
+                                      "about {:.1e}",
+                                      most_cells, cells, found_text(*net.value(key)), n_cells));
     }
 
     void read_region(const SceneSection& section) {
@@ -530,6 +546,7 @@ private:
     ReadingContext& context_;
     GeometrySpec spec_;
     bool is_rectangle_ = false;
+    double net_area_ = 0.0; ///< of the part of the domain that triangles fill (m2)
     bool is_clockwise_ = false;
     int n_sides_ = 0;                      ///< of the given blocks so far
     std::vector<int> first_side_;          ///< per given block

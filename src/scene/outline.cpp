@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <vector>
 
 #include "kluft/core/vector.hpp"
 #include "kluft/geometry/polygon.hpp"
@@ -69,15 +71,24 @@ std::vector<int> sides_facing(const Polygon& polygon, Facing facing) {
     return sides;
 }
 
-std::optional<std::pair<int, int>> crossing_sides(const Polygon& polygon, int most_sides) {
+std::optional<std::pair<int, int>> crossing_sides(const Polygon& polygon) {
     const int n = n_sides_of(polygon);
-    if (n >= most_sides) return std::nullopt;
-    for (int i = 0; i < n; ++i)
-        for (int j = i + 2; j < n; ++j) {
-            if (i == 0 && j == n - 1) continue;
-            if (cross_properly(polygon[i], polygon[i + 1], polygon[j], polygon[(j + 1) % n])) return std::pair{i, j};
+    const auto end_of = [&](int side) -> const Vec2& { return polygon[(side + 1) % n]; };
+    const auto left_of = [&](int side) { return std::min(polygon[side].x(), end_of(side).x()); };
+    const auto right_of = [&](int side) { return std::max(polygon[side].x(), end_of(side).x()); };
+    std::vector<int> from_left(polygon.size());
+    std::iota(from_left.begin(), from_left.end(), 0);
+    std::ranges::stable_sort(from_left, {}, left_of);
+    std::optional<std::pair<int, int>> first;
+    for (auto a = from_left.begin(); a != from_left.end(); ++a) {
+        for (auto b = a + 1; b != from_left.end() && left_of(*b) <= right_of(*a); ++b) {
+            const auto [i, j] = std::minmax(*a, *b);
+            const bool are_neighbours = j == i + 1 || (i == 0 && j == n - 1);
+            if (are_neighbours || (first && *first < std::pair(i, j))) continue;
+            if (cross_properly(polygon[i], end_of(i), polygon[j], end_of(j))) first = std::pair(i, j);
         }
-    return std::nullopt;
+    }
+    return first;
 }
 
 } // namespace kluft

@@ -86,6 +86,8 @@ Dimension dimension_of(Measure measure) {
         return {1, 0, -2, 0};
     case Measure::line_force:
         return {0, 1, -2, 0};
+    case Measure::time:
+        return second;
     case Measure::angle:
         return radian;
     }
@@ -95,8 +97,9 @@ Dimension dimension_of(Measure measure) {
 /// "Pa", or "m2 kg" for what no key measures.
 std::string dimension_name(const Dimension& dimension) {
     if (dimension == none) return "no unit but a plain number";
-    for (const Measure measure : {Measure::length, Measure::stress, Measure::stiffness, Measure::density,
-                                  Measure::velocity, Measure::acceleration, Measure::line_force, Measure::angle})
+    for (const Measure measure :
+         {Measure::length, Measure::stress, Measure::stiffness, Measure::density, Measure::velocity,
+          Measure::acceleration, Measure::line_force, Measure::time, Measure::angle})
         if (dimension_of(measure) == dimension) return std::string(unit_name(measure));
     constexpr std::array<std::string_view, 4> symbols{"m", "kg", "s", "rad"};
     std::string name;
@@ -249,6 +252,8 @@ std::string_view unit_name(Measure measure) {
         return "m/s2";
     case Measure::line_force:
         return "N/m";
+    case Measure::time:
+        return "s";
     case Measure::angle:
         return "deg";
     }

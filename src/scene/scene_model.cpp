@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "kluft/core/diagnostics.hpp"
+#include "kluft/core/memory.hpp"
 #include "kluft/geometry/polygon.hpp"
 
 namespace kluft {
@@ -136,6 +137,7 @@ SceneModel build_scene_model(const Scene& scene) {
     built.cut = std::move(body.report);
     for (const auto& warnings : {lost_fractures(scene.geometry, built.cut), fine_details(scene.geometry, built.cut)})
         built.model.warnings.insert(built.model.warnings.end(), warnings.begin(), warnings.end());
+    require_memory();
     return built;
 }
 

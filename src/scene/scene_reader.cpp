@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "kluft/core/memory.hpp"
 #include "kluft/scene/geometry_reader.hpp"
 #include "kluft/scene/load_reader.hpp"
 #include "kluft/scene/net_check.hpp"
@@ -98,6 +99,7 @@ SolverOptions read_solver_options(const SceneSection& section) {
     options.viscosity = section.number("viscosity");
     options.max_iterations = section.count("max_iterations");
     options.max_unbalanced_steps = section.count("max_unbalanced_steps");
+    options.max_step_solves = section.count("max_step_solves");
     options.tangent = static_cast<Tangent>(section.choice("tangent"));
     options.reuse = section.boolean("reuse");
     options.repeatable = section.boolean("repeatable");
@@ -110,6 +112,7 @@ OutputOptions read_output_options(const SceneSection& section) {
     options.fields_every = section.count("fields_every");
     options.pictures = section.boolean("pictures");
     options.checkpoint_every = section.count("checkpoint_every");
+    options.checkpoint_seconds = section.number("checkpoint_seconds");
     return options;
 }
 
@@ -252,6 +255,7 @@ Scene read_scene_text(std::string_view text, const std::vector<std::string>& ove
     scene.name = file.stem().string();
     scene.warnings = std::move(context.warnings);
     scene.text = write_scene_tree(root, sources);
+    require_memory();
     return scene;
 }
 

@@ -59,7 +59,9 @@ positive.
 ## Text
 
 Names of materials, interfaces and boundaries are made of letters, digits, `_` and `-`. A file is UTF-8 text of at most
-1 MB; large geometry goes into GeoJSON files that the scene names. YAML's anchors, aliases and tags, several documents in
+1 MB with lines that end in LF or CR LF; large geometry goes into GeoJSON files (at most 100 MB) that the scene names. All
+are regular files: pipes and devices are refused. Lengths and coordinates are at most 1e9 m, and a net has at most 2e6
+cells. YAML's anchors, aliases and tags, several documents in
 one file and duplicate keys are refused. JSON is YAML too.
 
 ## Extending and overriding

@@ -797,7 +797,7 @@ std::vector<KeyRule> option_rules() {
          .fallback = "1",
          .doc = "Most load steps between two detections of contacts; in between their points and frames stay. Contacts "
                 "are always detected where a block has moved by 5e-3 of its spacing, after a crack, in jumps, where a "
-                "step is taken again and at the start of a stage or of a resumed run."},
+                "step is taken again and at the start of a stage."},
         {.path = "solver.viscosity",
          .type = KeyType::number,
          .range = not_negative,
@@ -813,6 +813,14 @@ std::vector<KeyRule> option_rules() {
          .range = positive_integer,
          .fallback = "10",
          .doc = "Successive unbalanced steps that end a run."},
+        {.path = "solver.max_step_solves",
+         .type = KeyType::integer,
+         .range = positive_integer,
+         .fallback = "20000",
+         .doc = "Linear solves that one load step may take, broken bonds and motions included; a step that takes more "
+                "ends the "
+                "run without an equilibrium, at its last balanced state, from which it can be resumed with a larger "
+                "number."},
         {.path = "solver.tangent",
          .type = KeyType::choice,
          .choices = {"unsymmetric", "symmetric"},
@@ -874,6 +882,14 @@ std::vector<KeyRule> option_rules() {
          .range = natural,
          .fallback = "0",
          .doc = "Load steps between two states saved; 0: at the end of each stage."},
+        {.path = "output.checkpoint_seconds",
+         .type = KeyType::number,
+         .measure = Measure::time,
+         .range = not_negative,
+         .fallback = "60",
+         .doc =
+             "A state is saved at the end of a load step too where the last one is as old by the clock, so that a run "
+             "that is killed loses no more; 0: never for that reason. Saving changes no result."},
     };
 }
 

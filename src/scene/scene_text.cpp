@@ -1,9 +1,6 @@
 #include "kluft/scene/scene_text.hpp"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 #include <optional>
 #include <system_error>
 #include <utility>
@@ -11,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "kluft/core/diagnostics.hpp"
+#include "kluft/core/input_file.hpp"
 #include "kluft/scene/scene_check.hpp"
 #include "kluft/scene/scene_schema.hpp"
 
@@ -19,7 +17,8 @@ namespace kluft {
 namespace {
 
 constexpr std::size_t largest_scene = 1'000'000; ///< bytes; large geometry goes into files of its own
-constexpr std::size_t longest_chain = 16;        ///< of scenes that extend each other
+constexpr std::string_view hint = "; large geometry goes into GeoJSON files that a scene names";
+constexpr std::size_t longest_chain = 16; ///< of scenes that extend each other
 
 /// Length of the UTF-8 character at `at`; 0 if there is none.
 std::size_t character_length(std::string_view text, std::size_t at) {
@@ -48,13 +47,21 @@ bool is_text(std::string_view text) {
     return true;
 }
 
-void require_scene_text(std::string_view text, const std::filesystem::path& file) {
+/// Where a line ends in a way that YAML's readers do not agree upon; npos where none does.
+std::size_t lone_carriage_return(std::string_view text) {
+    for (std::size_t at = text.find('\r'); at != std::string_view::npos; at = text.find('\r', at + 1))
+        if (at + 1 == text.size() || text[at + 1] != '\n') return at;
+    return std::string_view::npos;
+}
+
+void require_scene_text(std::string_view text, const std::filesystem::path& file, std::string_view what) {
     if (text.size() > largest_scene)
-        throw InputError(fmt::format("{}: expected a scene of at most 1 MB, found more; large geometry goes into "
-                                     "GeoJSON files that the scene names",
-                                     file.string()));
+        throw InputError(fmt::format("{}: expected {} of at most 1 MB, found more{}", file.string(), what, hint));
     if (!is_text(text))
-        throw InputError(fmt::format("{}: expected a scene in UTF-8 text, found a binary file", file.string()));
+        throw InputError(fmt::format("{}: expected {} in UTF-8 text, found a binary file", file.string(), what));
+    if (const std::size_t at = lone_carriage_return(text); at != std::string_view::npos)
+        throw InputError(fmt::format("{}:{}: expected lines that end in LF or CR LF, found one that ends in CR alone",
+                                     file.string(), 1 + std::ranges::count(text.substr(0, at), '\n')));
 }
 
 /// Reads and merges the chain of scenes.
@@ -63,30 +70,41 @@ public:
     SceneChain(SceneSources& sources, SceneErrors& errors) : sources_(sources), errors_(errors) {}
 
     SceneNode build(std::string_view text, const std::filesystem::path& file) {
-        require_scene_text(text, file);
+        require_scene_text(text, file, "a scene");
         const int source = sources_.add_file(file, text);
         SceneNode tree = parse_scene_tree(text, source, {source, 1, 1}, errors_);
         if (tree.kind == SceneNode::Kind::nothing) {
             if (errors_.empty())
                 errors_.add({source, 1, 1}, {}, "expected a mapping that begins with kluft: 1, found an empty file");
-            return tree;
+            errors_.throw_if_any(); // all else would follow from it
         }
         chain_.push_back(std::filesystem::weakly_canonical(file));
         const auto base = base_file(tree, file);
         if (!base) return tree;
-        SceneNode merged = build(read_scene_bytes(*base), *base);
+        SceneNode merged = build(extended_bytes(*base, tree), *base);
         merge_scene_trees(merged, std::move(tree));
         return merged;
     }
 
 private:
-    /// The file that `tree` extends, if it can be read.
+    std::string extended_bytes(const std::filesystem::path& base, const SceneNode& tree) {
+        try {
+            return read_scene_bytes(base);
+        } catch (const InputError& error) {
+            errors_.add(tree.find("extends")->at, "extends", error.what());
+            errors_.throw_if_any();
+            throw;
+        }
+    }
+
+    /// The file that `tree` extends, if there is one.
     std::optional<std::filesystem::path> base_file(const SceneNode& tree, const std::filesystem::path& file) {
         const SceneNode* extends = tree.find("extends");
         if (extends == nullptr || !extends->is_scalar() || extends->text.empty()) return std::nullopt;
         const auto fail = [&](const std::string& found) {
             errors_.add(extends->at, "extends",
                         fmt::format("expected the file of another scene, found {}{}", in_quotes(extends->text), found));
+            errors_.throw_if_any(); // what the other scene gives would be missed
             return std::nullopt;
         };
         const auto base = (file.parent_path() / extends->text).lexically_normal();
@@ -209,20 +227,9 @@ private:
 
 } // namespace
 
-std::string read_scene_bytes(const std::filesystem::path& file) {
-    std::error_code error;
-    const auto status = std::filesystem::status(file, error);
-    if (!std::filesystem::exists(status))
-        throw InputError(fmt::format("{}: expected a scene, found no such file", file.string()));
-    if (!std::filesystem::is_regular_file(status))
-        throw InputError(fmt::format("{}: expected a scene, found no regular file", file.string()));
-    std::ifstream stream(file, std::ios::binary);
-    std::string text(largest_scene + 1, '\0');
-    stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-    if (!stream.is_open() || stream.bad())
-        throw InputError(fmt::format("{}: expected a scene, found a file that cannot be read ({})", file.string(),
-                                     std::strerror(errno)));
-    text.resize(static_cast<std::size_t>(stream.gcount()));
+std::string read_scene_bytes(const std::filesystem::path& file, std::string_view what) {
+    std::string text = read_input_file(file, what, largest_scene, hint);
+    require_scene_text(text, file, what);
     return text;
 }
 

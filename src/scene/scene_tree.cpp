@@ -60,8 +60,8 @@ public:
     void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
         refuse_anchor(mark, anchor);
         SceneNode node = node_at(mark, SceneNode::Kind::nothing);
-        const auto at = static_cast<std::size_t>(std::max(mark.pos, 0));
-        node.removes = at < text_.size() && (text_[at] == '~' || (text_[at] | 0x20) == 'n');
+        node.removes = says_nothing(mark);
+        if (!node.removes) node.at = place_without_value(mark);
         insert(std::move(node));
     }
     void OnAlias(const YAML::Mark& mark, YAML::anchor_t /*anchor*/) override {
@@ -93,6 +93,27 @@ private:
         const int line = std::max(mark.line, 0);
         const int column = std::max(mark.column, 0);
         return {source_, origin_.line + line, line == 0 ? origin_.column + column : column + 1};
+    }
+    /// Whether `null` or `~` is written at a mark.
+    [[nodiscard]] bool says_nothing(const YAML::Mark& mark) const {
+        if (mark.pos < 0 || static_cast<std::size_t>(mark.pos) >= text_.size()) return false;
+        const std::string_view rest = text_.substr(static_cast<std::size_t>(mark.pos));
+        const std::string_view word = rest.substr(0, rest.find_first_of(" \t\r\n,]}#"));
+        return word == "~" || word == "null" || word == "Null" || word == "NULL";
+    }
+    /// Where a value is missing: at its key, or at the dash of a list's item; the mark is at what comes next.
+    [[nodiscard]] TextPosition place_without_value(const YAML::Mark& mark) const {
+        if (open_.empty()) return position(mark);
+        const SceneNode& parent = open_.back();
+        if (parent.is_mapping() && parent.keys.size() > parent.items.size()) return parent.keys.back().at;
+        const auto here = static_cast<std::size_t>(std::max(mark.pos, 1));
+        const auto dash = text_.rfind('-', here - 1);
+        if (!parent.is_list() || dash == std::string_view::npos) return position(mark);
+        const auto line_end = text_.rfind('\n', dash);
+        YAML::Mark at = mark;
+        at.line -= static_cast<int>(std::ranges::count(text_.substr(dash, here - dash), '\n'));
+        at.column = static_cast<int>(line_end == std::string_view::npos ? dash : dash - line_end - 1);
+        return position(at);
     }
     [[nodiscard]] SceneNode node_at(const YAML::Mark& mark, SceneNode::Kind kind) const {
         SceneNode node;

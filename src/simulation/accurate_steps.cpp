@@ -116,7 +116,8 @@ Step take_accurate_step(const StepBench& bench, const State& before) {
         goal.solves_before = solves_before;
         Attempt attempt = try_step(bench, before, goal, control, local.small_step(), again);
         StepControl& reached = attempt.step.end.control;
-        const bool is_last = attempt.step.failure && size <= local.small_step();
+        const bool is_last = attempt.step.failure &&
+                             (size <= local.small_step() || attempt.step.failure->kind == FailureKind::too_many_solves);
         if (is_last || !attempt.error) {
             charge_unjudged(before, reached, attempt.step.end.at.load_factor);
             return with_estimate(bench, before, std::move(attempt.step));

@@ -1,18 +1,22 @@
 #include "kluft/simulation/failure.hpp"
 
 #include <cmath>
+#include <numbers>
 #include <set>
 
 #include <fmt/format.h>
 
 #include "kluft/blocks/block_search.hpp"
 #include "kluft/kinematics/affine.hpp"
+#include "kluft/kinematics/rigid.hpp"
 
 namespace kluft {
 
 namespace {
 
 constexpr double clear_motion = 0.1; ///< of a block in a load step, in spacings of hexagons of its size
+constexpr double clear_turn =
+    0.1; ///< rotation times sqrt(area) over motion: a block turns too, as one that topples does
 
 std::string block_description(const BlockSystem& system, int index) {
     const Block& block = system.blocks[index];
@@ -39,11 +43,20 @@ std::string direction_text(const Vec2& direction) {
 
 } // namespace
 
-std::vector<MovingBlock> moving_on(const BlockSystem& system, const Eigen::VectorXd& moved,
+std::vector<MovingBlock> moving_on(const BlockSystem& system, const Eigen::VectorXd& before, const Eigen::VectorXd& now,
                                    std::vector<MovingBlock> moving) {
     for (MovingBlock& each : moving) {
-        const Vec2 motion = moved.segment<2>(n_block_unknowns * each.block);
-        if (motion.norm() > clear_motion * spacing_of(system.blocks[each.block])) each.direction = motion.normalized();
+        const Block& block = system.blocks[each.block];
+        const int first = n_block_unknowns * each.block;
+        const Vec2 motion = now.segment<2>(first) - before.segment<2>(first);
+        const double length = motion.norm();
+        if (length <= clear_motion * spacing_of(block)) continue;
+        const double turned =
+            std::remainder(rotation_of(now, each.block, block.size) - rotation_of(before, each.block, block.size),
+                           2.0 * std::numbers::pi);
+        const bool turns = std::abs(turned) * std::sqrt(block.area) > clear_turn * length;
+        each.direction = motion / length;
+        each.turn = turns ? (turned > 0.0 ? 1 : -1) : 0;
     }
     return moving;
 }

@@ -1,6 +1,8 @@
 #include "kluft/simulation/load_step.hpp"
 
 #include <algorithm>
+#include <numeric>
+#include <optional>
 #include <utility>
 
 #include "kluft/simulation/breaking.hpp"
@@ -24,10 +26,42 @@ Equilibrium cut_at_failure(StepInProgress& p, const PlacedState& placed, Equilib
         .found;
 }
 
+bool is_event(const StepInProgress& p, const PlacedState& placed, const Equilibrium& found) {
+    return largest_failure_index(p, placed.placement, p.loads_at(found), found.displacement) >= 1.0;
+}
+
+/// Where none was found at the goal: the equilibrium at the first event before it, or the last one without an event that
+/// halving comes to.
+std::optional<Equilibrium> find_before_goal(StepInProgress& p, const PlacedState& placed) {
+    std::optional<Equilibrium> without_event;
+    double without = p.goal.load_factor; // no equilibrium
+    for (int i = 0; i < max_trials_without; ++i) {
+        const double from = without_event ? without_event->load_factor : p.load_factor();
+        const double at = std::midpoint(from, without);
+        Equilibrium found = find_at(p, placed, at, without_event ? without_event->displacement : p.displacement());
+        if (!found.balanced) {
+            without = at;
+            continue;
+        }
+        Equilibrium cut = cut_at_failure(p, placed, found);
+        if (cut.load_factor < found.load_factor || is_event(p, placed, cut)) return cut;
+        without_event = std::move(found);
+    }
+    return without_event;
+}
+
 /// What the search found up to the first event, or after a relaxation; the step fails where there is neither.
 Equilibrium advance(StepInProgress& p, PlacedState& placed) {
     const double target = p.goal.load_factor;
     Equilibrium found = find_at(p, placed, target, predicted(p, target));
+    const bool by_events = p.goal.checks_cracks && p.goal.cracks.update == CrackUpdate::event;
+    if (!found.balanced && by_events && !p.goal.must_rest && !p.is_at_limit) {
+        p.step.smooth = false;
+        if (auto before = find_before_goal(p, placed)) {
+            p.is_at_limit = !is_event(p, placed, *before);
+            return std::move(*before);
+        }
+    }
     if (!found.balanced) {
         p.step.smooth = false;
         found = recover(p, placed, target);
@@ -35,7 +69,6 @@ Equilibrium advance(StepInProgress& p, PlacedState& placed) {
         if (!found.balanced && p.bench.loads.constraints().rows().empty())
             fail(p, found, found.viscous_share, FailureKind::no_equilibrium);
     }
-    const bool by_events = p.goal.checks_cracks && p.goal.cracks.update == CrackUpdate::event;
     if (by_events && found.balanced) found = cut_at_failure(p, placed, std::move(found));
     p.step.smooth = p.step.smooth && found.load_factor == target;
     return found;
@@ -47,15 +80,13 @@ void keep_predictor(StepInProgress& p) {
     p.step.end.memory.rate.resize(0);
 }
 
-} // namespace
-
-// ---- the load step -------------------------------------------------------------------------------------------------
-
-Step take_step(const StepBench& bench, const State& from, const StepGoal& goal) {
-    StepInProgress p = begin_step(bench, from, goal);
+/// By way of every event before it.
+void go_to_goal(StepInProgress& p) {
+    const StepGoal& goal = p.goal;
     const bool by_events = goal.cracks.update == CrackUpdate::event;
-    if (!from.is_settled) settle(p); // where an earlier attempt has failed, at the same load
-    for (bool first = from.is_settled; !p.failed() && (first || p.load_factor() < goal.load_factor); first = false) {
+    if (!p.from.is_settled) settle(p);  // where an earlier attempt has failed, at the same load
+    p.is_at_limit = !p.from.is_settled; // that attempt has searched for events: a resumed run ends where it ended
+    for (bool first = p.from.is_settled; !p.failed() && (first || p.load_factor() < goal.load_factor); first = false) {
         Eigen::VectorXd placed_at = p.displacement();
         PlacedState placed = place_for_load_step(p);  // 1 detect, 2 transfer
         const Equilibrium found = advance(p, placed); // 3 pose, 4 iterate, 5 judge
@@ -63,6 +94,19 @@ Step take_step(const StepBench& bench, const State& from, const StepGoal& goal) 
         let_contacts_follow(p, std::move(placed_at)); // 1 to 5 again at the same load, where blocks have moved far
         if (!p.failed() && goal.checks_cracks && (by_events || p.load_factor() >= goal.load_factor))
             break_bonds(p); // 6 crack, 7 weaken, and back to 1 at the same load
+    }
+}
+
+} // namespace
+
+// ---- the load step -------------------------------------------------------------------------------------------------
+
+Step take_step(const StepBench& bench, const State& from, const StepGoal& goal) {
+    StepInProgress p = begin_step(bench, from, goal);
+    try {
+        go_to_goal(p);
+    } catch (const SolvesSpent& spent) {
+        fail(p, spent);
     }
     keep_predictor(p);
     return finished(std::move(p)); // 8 commit, 9 notify: the caller's

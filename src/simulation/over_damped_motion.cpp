@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "kluft/core/memory.hpp"
 #include "kluft/simulation/breaking.hpp"
 #include "kluft/simulation/mass_term.hpp"
 #include "kluft/simulation/placement.hpp"
@@ -100,6 +101,12 @@ void place_again(StepInProgress& p, PlacedState& placed, Motion& motion) {
     renew(p, placed);
 }
 
+/// Whether the body has shed its load: then no force is left that a slow beginning of a motion could let grow.
+bool carries_nothing(const StepInProgress& p, const Equilibrium& moved) {
+    const double carried_stress = p.loads_at(moved).carried_stress;
+    return moved.summary.force_scale <= negligible_force(carried_stress, area_of(p.bench.model.system));
+}
+
 /// The equilibrium that the motion is about to come to, where an ordinary solve finds it.
 std::optional<Equilibrium> find_end(StepInProgress& p, PlacedState& placed, Motion& motion) {
     const bool is_near = motion.way_left <= motion.allowed(0.0) && motion.step > tries_apart * motion.tried &&
@@ -140,6 +147,7 @@ PseudoStep solve_step(StepInProgress& p, const PlacedState& placed, const Motion
                       const Eigen::VectorXd& guess) {
     const auto& [model, cracks, solver, loads, search, journal, stop] = p.bench;
     if (stop) throw Interrupted{};
+    require_memory();
     const double eta = 1.0 / motion.step;
     const EquilibriumProblem problem{loaded_body(model, placed.placement, motion.at),
                                      std::vector<double>(model.system.blocks.size(), eta), 0.0, p.displacement()};
@@ -148,9 +156,7 @@ PseudoStep solve_step(StepInProgress& p, const PlacedState& placed, const Motion
     moved = search.move_on(problem, guess, p.goal.balance, p.step.end.body.contacts.empty());
     moved.load_factor = motion.at.load_factor;
     moved.strength_factor = motion.at.strength_factor;
-    journal.report().costs.open_close_iterations += moved.iterations;
-    p.step.worst_block = moved.worst_block;
-    journal.progress(p.step.end, p.step.row, motion.at.load_factor, journal.report().costs.open_close_iterations);
+    count_solves(p, moved);
     step.balanced = moved.converged() || moved.summary.termination == Termination::relaxed ||
                     moved.summary.residual_ratio <= solver.tolerance; // a single small block, on the way
     return step;
@@ -210,7 +216,8 @@ std::optional<Equilibrium> take_pseudo_step(StepInProgress& p, PlacedState& plac
     moved.verdict =
         judge_blocks(moved.blocks, motion.last.blocks.left.empty() ? nullptr : &motion.last.blocks, p.goal.balance);
     moved.balanced = moved.verdict.balanced() && moved.viscous_share <= p.goal.balance.share;
-    if (moved.balanced && next.load_factor == 1.0 && motion.step >= motion.ordinary) return std::move(moved);
+    const bool at_rest = motion.step >= motion.ordinary || carries_nothing(p, moved);
+    if (moved.balanced && next.load_factor == 1.0 && at_rest) return std::move(moved);
     if (!move_along(p, placed, motion, std::move(next))) return motion.last;
     if (is_falling(p)) {
         fail(p, motion.last, motion.last.viscous_share, FailureKind::falling);

@@ -62,6 +62,7 @@ LoadedBody loaded_body(const Model& model, const Placement& placement, const Loa
     body.laws = &at.laws;
     body.placement = &placement;
     body.loads = &at.loads;
+    body.carried_stress = at.carried_stress;
     return body;
 }
 

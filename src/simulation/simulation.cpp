@@ -23,7 +23,7 @@ struct MeasuredState {
 MeasuredState measure_state(const StepBench& bench, const State& state, double load_factor) {
     const StepGoal goal;
     StepInProgress p = begin_step(bench, state, goal);
-    PlacedState placed = place(p);
+    PlacedState placed = place_for_load_step(p);
     LoadsAt at = p.loads_at(load_factor);
     Equilibrium standing;
     standing.displacement = state.body.displacement;
@@ -49,8 +49,8 @@ StageLoads begin_stage(const Model& model, const SolverOptions& solver, Equilibr
         state.memory.rate.resize(0);
         state.control.size = 1.0 / stage.steps;
         state.control.lag = 0.0;
+        state.memory.steps_since_detection = 0;
     }
-    state.memory.steps_since_detection = 0;
     const auto& reduction = stage.strength_reduction;
     search.set_tolerance(reduction ? reduction_tolerance(*reduction, solver) : solver.tolerance);
     return enter_stage(model, state);
@@ -108,7 +108,7 @@ RunReport run_simulation(const Model& model, const CrackOptions& cracks, const S
     EquilibriumSearch search(model, solver);
     Journal journal(model, state, observer, solver.accuracy > 0.0 ? 0 : number_of_steps(model), &search);
     RunReport report = report_of(journal, [&] {
-        if (!state.memory.near_pairs.empty()) search.order_for(state.memory.near_pairs);
+        if (state.at.step > 0) search.order_for(state.memory.near_pairs);
         for (bool begins = true;; begins = false) {
             const StageLoads loads = begin_stage(model, solver, search, state);
             const StepBench bench{model, cracks, solver, loads, search, journal, stop};

@@ -275,6 +275,11 @@ LoadsAt loads_at(const Model& model, const StageLoads& stage_loads, const Platen
     return at;
 }
 
+bool has_given_loads(const Model& model, const Loads& loads) {
+    return has_gravity(model) || loads.platen_force.has_value() || !loads.point_loads.empty() ||
+           std::ranges::any_of(loads.pressures, [](double pressure) { return pressure != 0.0; });
+}
+
 void move_loads(const Model& model, const StageLoads& stage_loads, int stage, double load_factor, Loads& loads) {
     loads.pressures = stage_loads.pressures(load_factor);
     loads.platen_force = stage_loads.platen_force(load_factor);

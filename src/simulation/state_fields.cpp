@@ -85,14 +85,20 @@ FieldRecord field_record(const Model& model, const State& state, const LoadedBod
     return fields;
 }
 
-FieldRecord fields_of_state(const Model& model, const State& state) {
+void with_body_of_state(const Model& model, const State& state, const std::function<void(const LoadedBody&)>& use) {
     Placement placement;
     placement.bonds = placed_bonds(model, state.body);
     placement.contacts = detected_contacts(model, state.body).points;
     State copy = state;
     const StageLoads loads = enter_stage(model, copy);
     const LoadsAt at = loads_at(model, loads, hold_of(model, loads, copy.body), state.at.stage, state.at.load_factor);
-    return field_record(model, state, loaded_body(model, placement, at));
+    use(loaded_body(model, placement, at));
+}
+
+FieldRecord fields_of_state(const Model& model, const State& state) {
+    FieldRecord fields;
+    with_body_of_state(model, state, [&](const LoadedBody& body) { fields = field_record(model, state, body); });
+    return fields;
 }
 
 } // namespace kluft

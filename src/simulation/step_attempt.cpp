@@ -199,7 +199,12 @@ Attempt try_step(const StepBench& bench, const State& from, const StepGoal& goal
     StepInProgress p = begin_step(bench, from, goal);
     p.step.end.control = control;
     if (again) p.step.end.memory.steps_since_detection = 0;
-    std::optional<StepError> error = advance(p, small_step);
+    std::optional<StepError> error;
+    try {
+        error = advance(p, small_step);
+    } catch (const SolvesSpent& spent) {
+        fail(p, spent);
+    }
     if (p.failed()) error = without_equilibrium;
     return {finished(std::move(p)), error};
 }

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "kluft/core/memory.hpp"
 #include "kluft/core/stopwatch.hpp"
 #include "kluft/kinematics/rigid.hpp"
 #include "kluft/simulation/mass_term.hpp"
@@ -130,6 +133,7 @@ Eigen::VectorXd predicted(const StepInProgress& p, double load_factor) {
 Equilibrium find_at(StepInProgress& p, const PlacedState& placed, double load_factor, Eigen::VectorXd guess) {
     const auto& [model, cracks, solver, loads, search, journal, stop] = p.bench;
     if (stop) throw Interrupted{};
+    require_memory();
     State& state = p.step.end;
     const LoadsAt at = p.loads_at(load_factor);
     if (model.kinematics == Kinematics::rigid) make_rigid(model.system, guess);
@@ -138,9 +142,7 @@ Equilibrium find_at(StepInProgress& p, const PlacedState& placed, double load_fa
     Equilibrium found = search.find(pose(model, placed, at, p.displacement()), guess, p.goal.balance, circumstances);
     found.load_factor = load_factor;
     found.strength_factor = at.strength_factor;
-    journal.report().costs.open_close_iterations += found.iterations;
-    p.step.worst_block = found.worst_block;
-    journal.progress(state, p.step.row, load_factor, journal.report().costs.open_close_iterations);
+    count_solves(p, found);
     return found;
 }
 
@@ -175,7 +177,7 @@ void reach(StepInProgress& p, PlacedState placed, const Equilibrium& found) {
     step.worst_share = std::max(step.worst_share, found.viscous_share);
     note_stresses(p, loaded_body(p.bench.model, placed.placement, at));
     step.equilibria.push_back(step.row);
-    step.moving = found.verdict.moving;
+    step.moving = moving_on(p, p.displacement(), found.verdict.moving);
     step.in_place = {std::move(placed.placement), std::move(at)};
     if (found.balanced) step.balanced_part.reset();
 }
@@ -199,17 +201,40 @@ Measured measure(const StepInProgress& p, const PlacedState& placed, const Loads
 }
 
 std::vector<MovingBlock> moving_on(const StepInProgress& p, const Eigen::VectorXd& q, std::vector<MovingBlock> moving) {
-    return moving_on(p.bench.model.system, q - p.from.body.displacement, std::move(moving));
+    return moving_on(p.bench.model.system, p.from.body.displacement, q, std::move(moving));
 }
 
 void fail(StepInProgress& p, const Equilibrium& found, double residual_ratio, FailureKind kind) {
-    p.step.failure = Failure{.kind = kind,
+    p.step.failure = Failure{.kind = found.summary.flaw.empty() ? kind : FailureKind::broken_body,
                              .worst_block = found.worst_block,
                              .residual_ratio = residual_ratio,
                              .load_factor = found.load_factor,
                              .strength_factor = found.strength_factor,
                              .nothing_holds = p.bench.loads.constraints().rows().empty(),
-                             .moving = moving_on(p, p.displacement(), found.verdict.moving)};
+                             .moving = moving_on(p, p.displacement(), found.verdict.moving),
+                             .what = found.summary.flaw};
+}
+
+void count_solves(StepInProgress& p, const Equilibrium& found) {
+    RunCosts& costs = p.bench.journal.report().costs;
+    costs.open_close_iterations += found.iterations;
+    p.step.worst_block = found.worst_block;
+    p.bench.journal.progress(p.step.end, p.step.row, found.load_factor, costs.open_close_iterations);
+    if (costs.open_close_iterations - p.goal.solves_before > p.bench.solver.max_step_solves) throw SolvesSpent{found};
+}
+
+void fail(StepInProgress& p, const SolvesSpent& spent) {
+    const Model& model = p.bench.model;
+    fail(p, spent.last, spent.last.summary.residual_ratio, FailureKind::too_many_solves);
+    Failure& failure = *p.step.failure;
+    const std::string where = description(model, Failure{.worst_block = failure.worst_block,
+                                                         .residual_ratio = failure.residual_ratio,
+                                                         .moving = failure.moving,
+                                                         .what = failure.what});
+    const auto n_bonds = p.step.cracks.size();
+    failure.what = fmt::format("{} linear solves, as many as one load step may take (`solver.max_step_solves`){}; {}",
+                               p.bench.solver.max_step_solves,
+                               n_bonds > 0 ? fmt::format(", in which {} bonds broke", n_bonds) : "", where);
 }
 
 void keep_rate(StepInProgress& p) {

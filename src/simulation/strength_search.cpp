@@ -76,7 +76,11 @@ StageEnd find_strength_limit(const StepBench& bench, State& state) {
         return end;
     }
     const auto factor = [&](double load_factor) { return reduction.factor_at(load_factor); };
-    while (factor(failing) - factor(state.at.load_factor) > reduction.tolerance * factor(state.at.load_factor)) {
+    const auto is_open = [&] { // where solves were spent, it is not known whether the body stands
+        return end.failure->kind != FailureKind::too_many_solves &&
+               factor(failing) - factor(state.at.load_factor) > reduction.tolerance * factor(state.at.load_factor);
+    };
+    while (is_open()) {
         const double middle = 0.5 * (state.at.load_factor + failing);
         if (middle == state.at.load_factor || middle == failing) break; // to the last digit
         if (auto failure = try_factor(bench, middle, {.regular = false}, state, end.forces, before)) {
@@ -85,7 +89,7 @@ StageEnd find_strength_limit(const StepBench& bench, State& state) {
         }
     }
     end.step = state.at.step + 1;
-    end.factor_of_safety = factor(state.at.load_factor);
+    if (end.failure->kind != FailureKind::too_many_solves) end.factor_of_safety = factor(state.at.load_factor);
     return end;
 }
 

@@ -1,13 +1,13 @@
 #include "kluft/studies/ready_made_studies.hpp"
 
 #include <algorithm>
-#include <fstream>
 #include <string_view>
 
 #include <fmt/format.h>
 
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/core/nearest_name.hpp"
+#include "kluft/output/atomic_file.hpp"
 #include "kluft/scene/scene_reader.hpp"
 #include "kluft/studies/trade_study.hpp"
 
@@ -56,11 +56,7 @@ std::string ready_made_study(const std::string& name, const fs::path& scene,
     throw InputError("kluft study: expected one of " + listed(ready_made_names()) + ", found '" + name + "'");
 }
 
-bool is_ready_made(const fs::path& file) {
-    std::ifstream stream(file);
-    std::string line;
-    return std::getline(stream, line) && line == first_line;
-}
+bool is_ready_made(const fs::path& file) { return read_file(file).starts_with(std::string(first_line) + '\n'); }
 
 std::string step_size_study(const fs::path& scene, const std::vector<std::string>& overrides) {
     const Scene read = read_scene(scene, overrides);

@@ -37,6 +37,13 @@ std::string make_text(const std::string& text, bool target) {
     return result;
 }
 
+/// For Slurm's patterns of file names: a per cent sign begins a symbol.
+std::string pattern_text(const std::string& path) {
+    std::string result;
+    for (const char c : path) result += c == '%' ? std::string("%%") : std::string(1, c);
+    return result;
+}
+
 /// "#SBATCH --time" from the limit of a case: twice that, for the start and for saving; "" without a limit.
 std::string time_option(const Study& study) {
     if (study.time_limit <= 0.0) return {};
@@ -66,6 +73,10 @@ if is_ended; then
     exit 0
 fi
 mkdir -p "$directory"
+if command -v flock >/dev/null && [[ -e $directory/.lock ]] && ! flock -n -s "$directory/.lock" true; then
+    echo "run-case: $directory: expected no other process that runs this case, found one" >&2
+    exit 1
+fi
 
 child=
 turn_wanted=false
@@ -91,7 +102,9 @@ if [[ -e $directory/state.h5 ]]; then
 else
     run "${words[@]}"
 fi
-if ((code > 128 && code != 130)); then
+stopped=false # by a signal that makes it save its state: HUP, INT, QUIT, USR1, USR2, ALRM, TERM, XCPU
+case $code in 129 | 130 | 131 | 138 | 140 | 142 | 143 | 152) stopped=true ;; esac
+if ((code > 128)) && ! $stopped; then
     outcome="{\"exit_code\": -1, \"signal\": $((code - 128))}"
 else
     outcome="{\"exit_code\": $code}"
@@ -101,7 +114,7 @@ if is_ended; then
     touch "$directory/ended"
     exit 0
 fi
-if $turn_wanted && [[ $code == 130 && -n $SLURM_JOB_ID ]]; then scontrol requeue "$SLURM_JOB_ID"; fi
+if $turn_wanted && $stopped && [[ -n $SLURM_JOB_ID ]]; then scontrol requeue "$SLURM_JOB_ID"; fi
 cat "$directory/messages.txt" >&2
 exit 1
 )script";
@@ -109,20 +122,20 @@ exit 1
 
 std::string slurm_script(const ReadStudy& read, const fs::path& directory, int jobs) {
     return fmt::format(R"(#!/bin/bash
-#SBATCH --job-name={}
+#SBATCH {}
 #SBATCH --array=0-{}%{}
 #SBATCH --ntasks=1
 #SBATCH --cpus-per-task=1
 #SBATCH --requeue
 #SBATCH --open-mode=append
 #SBATCH --signal=B:USR1@120
-#SBATCH --output={}
+#SBATCH {}
 {}# Two minutes before its time limit a job saves its state and asks for another turn; requeued, it goes on from there.
 exec bash {} "$SLURM_ARRAY_TASK_ID"
 )",
-                       shell_line({"kluft-" + read.study.name}), n_lines(read) - 1, jobs,
-                       (directory / "slurm-%a.log").string(), time_option(read.study),
-                       shell_line({directory / "run-case"}));
+                       shell_line({"--job-name=kluft-" + read.study.name}), n_lines(read) - 1, jobs,
+                       shell_line({"--output=" + pattern_text(directory.string()) + "/slurm-%a.log"}),
+                       time_option(read.study), shell_line({directory / "run-case"}));
 }
 
 std::string study_makefile(const ReadStudy& read, const std::vector<std::string>& collect) {
@@ -144,6 +157,7 @@ std::string emit_study(const std::string& format, const ReadStudy& read, const f
     if (std::ranges::find(formats, format) == formats.end())
         throw InputError(fmt::format("--emit: expected one of {}, found '{}'{}", listed(formats), format,
                                      suggestion(format, formats)));
+    for (const auto& word : collect) require_one_line("kluft study --emit", word);
     write_file(directory / "run-case", case_script());
     if (format == "make") {
         write_file(directory / "Makefile", study_makefile(read, collect));

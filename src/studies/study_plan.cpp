@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include "digest.hpp"
+#include "kluft/core/digest.hpp"
 #include "kluft/core/vector.hpp"
 #include "kluft/studies/study.hpp"
 

@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "digest.hpp"
 #include "kluft/core/diagnostics.hpp"
+#include "kluft/core/digest.hpp"
 #include "kluft/core/nearest_name.hpp"
 #include "kluft/output/atomic_file.hpp"
 #include "kluft/scene/quantity.hpp"
@@ -567,8 +567,8 @@ std::string prefix_of(const std::string& assignment) {
 /// Checks and completes the cases of a study; says what is wrong at the study's own lines.
 class CaseCheck {
 public:
-    CaseCheck(const Study& study, SceneErrors& errors)
-        : study_(study), errors_(errors), text_(read_scene_bytes(study.scene)) {}
+    CaseCheck(const Study& study, std::string scene_text, SceneErrors& errors)
+        : study_(study), errors_(errors), text_(std::move(scene_text)) {}
 
     void complete(PlannedCase& one) {
         if (study_.replicas.count > 0 && !add_replica(one)) return;
@@ -704,14 +704,21 @@ void add_overrides(const std::vector<std::string>& overrides, SceneSources& sour
     }
 }
 
+/// What is wrong with the scene's file is said where the study names it.
+std::string bytes_of_scene(const Study& study, const SceneNode& named, SceneErrors& errors) {
+    try {
+        return read_scene_bytes(study.scene);
+    } catch (const InputError& error) {
+        errors.add(named.at, "scene", error.what());
+        errors.throw_if_any();
+        throw;
+    }
+}
+
 } // namespace
 
 ReadStudy read_study(const fs::path& file, const std::vector<std::string>& overrides) {
-    std::error_code error;
-    if (!fs::is_regular_file(file, error))
-        throw InputError(file.string() + ": expected a study file, found " +
-                         (fs::exists(file, error) ? "no regular file" : "no such file"));
-    return read_study_text(read_scene_bytes(file), overrides, file);
+    return read_study_text(read_scene_bytes(file, "a study file"), overrides, file);
 }
 
 ReadStudy read_study_text(std::string_view text, const std::vector<std::string>& overrides, const fs::path& file) {
@@ -730,7 +737,7 @@ ReadStudy read_study_text(std::string_view text, const std::vector<std::string>&
     errors.throw_if_any();
     result.cases = planned_cases(study);
     study.own_settings = own_settings(study);
-    CaseCheck check(study, errors);
+    CaseCheck check(study, bytes_of_scene(study, *root.find("scene"), errors), errors);
     for (auto& one : result.cases) check.complete(one);
     check.throw_if_any();
     if (std::ranges::none_of(result.cases, [](const PlannedCase& one) { return one.refusal.empty(); }))

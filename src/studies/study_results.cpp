@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <csignal>
 #include <cstring>
 #include <map>
 #include <set>
@@ -13,6 +14,7 @@
 
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/output/atomic_file.hpp"
+#include "kluft/output/directory_lock.hpp"
 #include "kluft/output/history_table.hpp"
 #include "kluft/output/progress_line.hpp"
 #include "kluft/output/summary.hpp"
@@ -90,7 +92,9 @@ bool is_described(const fs::path& directory, const PlannedCase& one) {
 
 /// Why a program that left no final summary ended.
 void judge_outcome(const Study& study, const CaseOutcome& outcome, const std::string& message, CaseResult& result) {
-    constexpr int bad_input = 2, out_of_resources = 4, interrupted = 130;
+    constexpr int bad_input = 2, out_of_resources = 4;
+    constexpr int of_signals = 128; // beyond it: stopped by a signal, with the state saved
+    const bool stopped_early = outcome.signal == SIGINT || outcome.signal == SIGTERM; // before there was a state
     const std::string why = message.empty() ? "" : ": " + message;
     result.status = CaseStatus::failed;
     if (outcome.out_of_time) {
@@ -100,7 +104,7 @@ void judge_outcome(const Study& study, const CaseOutcome& outcome, const std::st
         result.reason = message;
     } else if (outcome.exit_code == out_of_resources) {
         result.reason = "out of disk or memory" + why;
-    } else if (outcome.exit_code == interrupted) {
+    } else if (outcome.exit_code > of_signals || stopped_early) {
         result.status = CaseStatus::waiting;
         result.reason = "interrupted";
     } else if (outcome.signal != 0) {
@@ -290,6 +294,9 @@ fs::path case_directory(const fs::path& study_directory, const PlannedCase& one)
 
 void prepare_case(const fs::path& directory, const PlannedCase& one) {
     if (is_described(directory, one)) return;
+    if (is_locked(directory))
+        throw InputError(directory.string() + ": expected no process that writes to it before it is made anew, found "
+                                              "one; try again when that has ended");
     std::error_code error;
     fs::remove_all(directory, error);
     make_directory(directory);

@@ -1,21 +1,17 @@
 #include "kluft/studies/study_run.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
-#include <cstring>
 #include <deque>
 #include <set>
 #include <system_error>
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 #include "child_processes.hpp"
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/output/atomic_file.hpp"
+#include "kluft/output/directory_lock.hpp"
 #include "kluft/output/progress_line.hpp"
 #include "kluft/studies/study_results.hpp"
 
@@ -63,10 +59,14 @@ private:
     }
 
     void start_waiting() {
-        while (!waiting_.empty() && children_.n_running() < static_cast<std::size_t>(options_.jobs)) {
+        for (std::size_t n = waiting_.size(); n > 0 && children_.n_running() < static_cast<std::size_t>(options_.jobs);
+             --n) {
             const std::size_t i = waiting_.front();
             waiting_.pop_front();
-            start(i);
+            if (is_locked(place(i))) // by a run that a killed study has left and that saves its state
+                waiting_.push_back(i);
+            else
+                start(i);
         }
     }
 
@@ -155,22 +155,6 @@ std::string study_progress_text(const StudyProgress& progress) {
     return text;
 }
 
-StudyLock::StudyLock(const fs::path& directory) {
-    make_directory(directory);
-    const fs::path path = directory / ".lock";
-    constexpr mode_t readable = 0644;
-    descriptor_ = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, readable);
-    if (descriptor_ < 0) throw ResourceError(fmt::format("{}: cannot be made: {}", path.string(), strerror(errno)));
-    if (flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
-    const int reason = errno;
-    close(descriptor_);
-    if (reason == EWOULDBLOCK)
-        throw InputError(directory.string() + ": expected a directory that no other study runs in, found one running");
-    throw ResourceError(fmt::format("{}: cannot be locked: {}", path.string(), strerror(reason)));
-}
-
-StudyLock::~StudyLock() { close(descriptor_); }
-
 std::vector<std::string> case_command(const ReadStudy& read, const PlannedCase& one, const fs::path& program,
                                       const fs::path& directory) {
     std::vector<std::string> words{program, "run", read.study.scene, "-o", case_directory(directory, one)};
@@ -195,7 +179,19 @@ std::string shell_line(const std::vector<std::string>& words) {
     return line;
 }
 
+void require_one_line(const std::string& what, const std::string& text) {
+    if (text.find_first_of("\r\n") != std::string::npos)
+        throw InputError(
+            fmt::format("{}: expected one line, as cases.txt and the scripts of schedulers have one for each "
+                        "case, found a line break in {}",
+                        what, shell_line({text})));
+}
+
 void prepare_study(const ReadStudy& read, const fs::path& program, const fs::path& directory) {
+    require_one_line("name of the study", read.study.name);
+    for (const auto& one : read.cases)
+        for (const auto& word : case_command(read, one, program, directory))
+            require_one_line("command of case " + one.name, word);
     std::string lines;
     for (const auto& one : read.cases) {
         if (!one.refusal.empty()) continue;

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -20,6 +21,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "kluft/output/state_file.hpp"
 #include "output/temporary_directory.hpp"
 
 namespace kluft {
@@ -27,6 +29,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using ::testing::AllOf;
+using ::testing::AnyOf;
 using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -48,10 +51,19 @@ std::vector<std::string> lines_of(const std::string& text) {
     return lines;
 }
 
-/// What a child process may use; 0 is no limit.
+enum class Reader {
+    file,    ///< what the program says is kept
+    nobody,  ///< standard output and error lead into a pipe that nobody reads
+    no_room, ///< standard output leads to a full device
+    closed   ///< there is neither
+};
+
+/// What a child process may use, where 0 is no limit, and who reads what it says.
 struct Limits {
     rlim_t file_bytes = 0;
     rlim_t memory_bytes = 0;
+    std::map<std::string, std::string> environment = {};
+    Reader reader = Reader::file;
 };
 
 void limit(int resource, rlim_t most) {
@@ -64,10 +76,23 @@ void send_to_file(int descriptor, const fs::path& path) {
     if (file < 0 || dup2(file, descriptor) < 0) _exit(126);
 }
 
+void send_to(Reader reader) {
+    int ends[2];
+    if (reader == Reader::no_room) send_to_file(STDOUT_FILENO, "/dev/full");
+    if (reader == Reader::closed) {
+        close(STDOUT_FILENO);
+        close(STDERR_FILENO);
+    }
+    if (reader != Reader::nobody) return;
+    if (pipe(ends) != 0 || dup2(ends[1], STDOUT_FILENO) < 0 || dup2(ends[1], STDERR_FILENO) < 0) _exit(126);
+    close(ends[0]);
+    close(ends[1]);
+}
+
 /// The program in a child process, in a working directory of its own.
 class Child {
 public:
-    Child(const fs::path& directory, const Words& words, Limits limits = {})
+    Child(const fs::path& directory, const Words& words, const Limits& limits = {})
         : out_(directory / ".stdout"), err_(directory / ".stderr") {
         Words all{KLUFT_PROGRAM};
         all.insert(all.end(), words.begin(), words.end());
@@ -79,10 +104,11 @@ public:
         if (chdir(directory.c_str()) != 0) _exit(126);
         send_to_file(STDOUT_FILENO, out_);
         send_to_file(STDERR_FILENO, err_);
-        std::signal(SIGXFSZ, SIG_IGN);
+        send_to(limits.reader);
         limit(RLIMIT_FSIZE, limits.file_bytes);
         limit(RLIMIT_AS, limits.memory_bytes);
         setenv("OPENBLAS_NUM_THREADS", "1", 1);
+        for (const auto& [name, value] : limits.environment) setenv(name.c_str(), value.c_str(), 1);
         execv(KLUFT_PROGRAM, arguments.data());
         _exit(126);
     }
@@ -95,7 +121,8 @@ public:
         }
     }
 
-    void interrupt() const { kill(pid_, SIGINT); }
+    void interrupt() const { send(SIGINT); }
+    void send(int signal) const { kill(pid_, signal); }
 
     /// The exit code; 128 and the signal's number when it died of one.
     int wait() {
@@ -121,7 +148,7 @@ struct Result {
 
 class CommandLine : public ::testing::Test {
 protected:
-    Result kluft(const Words& words, Limits limits = {}) const {
+    Result kluft(const Words& words, const Limits& limits = {}) const {
         Child child(directory_.path(), words, limits);
         const int code = child.wait();
         return {code, child.out(), child.err()};
@@ -139,6 +166,13 @@ protected:
     void write(const std::string& name, const std::string& text) const { std::ofstream(path(name)) << text; }
     nlohmann::json summary(const std::string& run) const {
         return nlohmann::json::parse(content_of(path(run) / "summary.json"));
+    }
+
+    /// Waits until the history of a run has a number of lines.
+    void wait_for_rows(const std::string& run, std::size_t n) const {
+        const fs::path history = path(run) / "history.csv";
+        for (int i = 0; i < 3000 && !(fs::exists(history) && lines_of(content_of(history)).size() >= n); ++i)
+            std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
 
     /// A table without its column of times, the last one.
@@ -246,8 +280,37 @@ TEST_F(CommandLine, WordsThatAreMissingOrTooManyAreNamed) {
 TEST_F(CommandLine, FileThatIsMissingIsNamed) {
     expect_refused({"run", "absent.yaml"}, HasSubstr("absent.yaml: expected a scene, found no such file"));
     expect_refused({"check", "absent.yaml"}, HasSubstr("absent.yaml"));
-    expect_refused({"run", "."}, HasSubstr("found no regular file"));
+    expect_refused({"run", "."}, HasSubstr("found a directory"));
     EXPECT_FALSE(fs::exists(path("results")));
+}
+
+TEST_F(CommandLine, NameUnderWhichNothingCanBeIsRefused) {
+    write("tiny.yaml", tiny_scene);
+    const std::string long_name(300, 'a');
+    for (const std::string& name : {long_name, std::string("tiny.yaml/results")}) {
+        expect_refused({"run", "tiny.yaml", "-o", name}, HasSubstr(name));
+        expect_refused({"draw", "tiny.yaml", "-o", name + ".png"}, HasSubstr(name));
+        expect_refused({"study", "step-size", "tiny.yaml", "-o", name}, HasSubstr(name));
+        expect_refused({"calibrate", "tiny.yaml", "-o", name}, HasSubstr(name));
+        expect_refused({"compare", ".", ".", "-o", name}, HasSubstr(name));
+        expect_refused({"envelope", ".", "-o", name + ".png"}, HasSubstr(name));
+        expect_refused({"check", name}, HasSubstr(name));
+    }
+}
+
+TEST_F(CommandLine, FileOfTheGeometryThatIsNoneIsTold) {
+    write("tiny.yaml", tiny_scene);
+    for (const auto* file : {".", "/dev/zero"})
+        expect_refused(
+            {"check", "tiny.yaml", "--set", std::string("geometry.domain={rectangle: null, file: ") + file + "}"},
+            HasSubstr("geometry.domain.file: "));
+}
+
+TEST_F(CommandLine, SceneOfAStudyThatCannotBeReadIsToldWhereTheStudyNamesIt) {
+    write("binary.yaml", std::string("kluft: 1\n\0", 10));
+    write("study.yaml", "title: a study\nscene: binary.yaml\nvary: {stages.0.steps: [1, 2]}\n");
+    expect_refused({"study", "study.yaml"},
+                   AllOf(HasSubstr("study.yaml:2:8: scene: "), HasSubstr("found a binary file")));
 }
 
 TEST_F(CommandLine, CompletionKnowsEverySubcommandAndEveryOption) {
@@ -366,6 +429,39 @@ TEST_F(CommandLine, OverrideOfAnUnknownKeyIsRefusedWithTheNearestKey) {
     expect_refused({"run", "tiny.yaml", "--set", "stages.7.steps=2"}, HasSubstr("index from 0 to 2"));
     expect_refused({"run", "tiny.yaml", "--set", "steps"}, HasSubstr("key.path=value"));
     EXPECT_FALSE(fs::exists(path("results")));
+}
+
+const char* const pressed_scene = R"(kluft: 1
+analysis: {plane: stress}
+materials: {rock: {youngs_modulus: 1 GPa, poissons_ratio: 0.2}}
+interfaces: {joint: {kind: fracture, normal_stiffness: 1e9, shear_stiffness: 1e9, friction_angle: 30}}
+geometry:
+  domain: {rectangle: {width: 4.0, height: 1.5}}
+  fractures: [{trace: [[-1, 0.5], [5, 0.5]], interface: joint}]
+  reference_spacing: 1.0
+boundaries: {bottom: {support: fixed}}
+stages: [{name: weight, pressure: {top: 1 MPa}, steps: 2}]
+)";
+
+TEST_F(CommandLine, RunWithoutAPlatenHasNoCurve) {
+    write("pressed.yaml", pressed_scene);
+    const Result result = kluft({"run", "pressed.yaml", "-o", "r"});
+    EXPECT_EQ(result.code, 0) << result.err;
+    EXPECT_THAT(result.out, Not(HasSubstr("peak axial stress")));
+    EXPECT_TRUE(fs::exists(path("r/blocks.png")));
+    EXPECT_FALSE(fs::exists(path("r/curve.png")));
+    EXPECT_EQ(kluft({"draw", "r"}).code, 0);
+    EXPECT_FALSE(fs::exists(path("r/curve.png")));
+    expect_refused({"draw", "r", "--curve"}, HasSubstr("expected a run that moves a platen"));
+}
+
+TEST_F(CommandLine, WarningsOfARunStandInItsSummary) {
+    write("pressed.yaml", pressed_scene);
+    const std::string outside = "geometry.fractures.1={trace: [[10, 10], [11, 11]], interface: joint}";
+    EXPECT_EQ(kluft({"run", "pressed.yaml", "-o", "r", "--set", outside}).code, 0);
+    const auto warnings = summary("r")["warnings"];
+    ASSERT_GE(warnings.size(), 1U);
+    EXPECT_THAT(warnings[0].get<std::string>(), HasSubstr("lies outside the domain"));
 }
 
 // ---- kluft run -----------------------------------------------------------------------------------------------------
@@ -508,6 +604,11 @@ TEST_F(CommandLine, RunIsRefusedWhereItsDirectoryIsAFile) {
     EXPECT_EQ(content_of(path("tiny.yaml")), tiny_scene);
 }
 
+TEST_F(CommandLine, DirectoryWhoseNameIsTooLongIsRefused) {
+    write("tiny.yaml", tiny_scene);
+    expect_refused({"run", "tiny.yaml", "-o", std::string(300, 'a')}, HasSubstr("File name too long"));
+}
+
 TEST_F(CommandLine, BodyThatSlidesAwayEndsWithExitCode3AndIsNamed) {
     write("slide.yaml", sliding_scene);
     const Result result = kluft({"run", "slide.yaml", "-o", "r"});
@@ -546,7 +647,7 @@ TEST_F(SlowCommandLine, InterruptedRunIsCompleteAndGoesOnAsIfItHadNotBeenInterru
     const auto n_rows = [&] {
         return fs::exists(path("broken/history.csv")) ? lines_of(content_of(path("broken/history.csv"))).size() : 0U;
     };
-    for (int i = 0; i < 3000 && n_rows() < 20; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    wait_for_rows("broken", 20);
     child.interrupt();
     ASSERT_EQ(child.wait(), 130);
     expect_all_files(path("broken"));
@@ -565,6 +666,86 @@ TEST_F(SlowCommandLine, InterruptedRunIsCompleteAndGoesOnAsIfItHadNotBeenInterru
     EXPECT_EQ(summary("broken")["factorizations"], summary("whole")["factorizations"]);
     EXPECT_GT(summary("broken")["seconds"]["factorization"], 0.0);
     expect_all_files(path("broken"));
+}
+
+TEST_F(SlowCommandLine, RunKeepsOthersOutOfItsDirectory) {
+    write("tiny.yaml", tiny_scene);
+    write("study.yaml", "scene: tiny.yaml\nvary: {stages.1.steps: [4]}\n");
+    Child child(directory_.path(), with(long_run, {"-o", "r"}));
+    wait_for_rows("r", 5);
+    const auto named = ContainsRegex("^r: expected .* found process [0-9]+ .*kluft run ");
+    expect_refused({"run", "tiny.yaml", "-o", "r"}, named);
+    expect_refused(with(long_run, {"-o", "r", "--resume"}), named);
+    expect_refused({"study", "study.yaml", "-o", "r"}, ContainsRegex("found process [0-9]+ .*kluft run "));
+    child.interrupt();
+    ASSERT_EQ(child.wait(), 130);
+    EXPECT_GE(lines_of(content_of(path("r/history.csv"))).size(), 5U);
+    Child killed(directory_.path(), with(long_run, {"-o", "r"}));
+    wait_for_rows("r", 5);
+    killed.send(SIGKILL);
+    ASSERT_EQ(killed.wait(), 128 + SIGKILL);
+    EXPECT_EQ(kluft({"run", "tiny.yaml", "-o", "r"}).code, 0); // what it had locked is free
+}
+
+// What a shell says of a process that a signal has ended, but with the state and a summary.
+TEST_F(SlowCommandLine, SignalsInterruptARunAndTheExitCodeNamesThem) {
+    for (const int signal : {SIGHUP, SIGQUIT, SIGTERM, SIGUSR1, SIGUSR2, SIGXCPU, SIGALRM}) {
+        Child child(directory_.path(), with(long_run, {"-o", "r", "--set", "output.pictures=false"}));
+        wait_for_rows("r", 8);
+        child.send(signal);
+        EXPECT_EQ(child.wait(), 128 + signal);
+        EXPECT_EQ(summary("r")["status"], "interrupted") << signal;
+        EXPECT_TRUE(fs::exists(path("r/state.h5")));
+        EXPECT_THAT(read_state_tables(path("r/state.h5")),
+                    HasSubstr(fmt::format("history.csv {} ", fs::file_size(path("r/history.csv")))));
+        fs::remove_all(path("r"));
+    }
+}
+
+TEST_F(SlowCommandLine, SignalsOfWritingEndNothing) {
+    const Words before_the_peak{
+        "-o", "r", "--set", "stages.1.strain.value=0.2 %", "--set", "geometry.tessellation.triangles.spacing=0.012"};
+    Child child(directory_.path(), with(long_run, before_the_peak));
+    wait_for_rows("r", 8);
+    for (const int signal : {SIGPIPE, SIGXFSZ}) child.send(signal);
+    EXPECT_EQ(child.wait(), 0);
+    EXPECT_EQ(summary("r")["status"], "done");
+}
+
+// Killed in the midst of a stage, at whose end a state would be saved by default: the clock has saved one before.
+TEST_F(SlowCommandLine, KilledRunGoesOnFromAStateThatTheClockHasSaved) {
+    ASSERT_EQ(kluft(with(long_run, {"-o", "whole"})).code, 0);
+    const Words words = with(long_run, {"-o", "broken", "--set", "output.checkpoint_seconds=1e-9"});
+    Child child(directory_.path(), words);
+    wait_for_rows("broken", 30);
+    child.send(SIGKILL);
+    ASSERT_EQ(child.wait(), 128 + SIGKILL);
+    std::istringstream saved(read_state_tables(path("broken/state.h5")));
+    std::string name;
+    std::size_t bytes = 0;
+    saved >> name >> bytes;
+    EXPECT_EQ(name, "history.csv");
+    EXPECT_GE(lines_of(content_of(path("broken/history.csv")).substr(0, bytes)).size(), 28U);
+    ASSERT_EQ(kluft(with(words, {"--resume"})).code, 0);
+    for (const char* table_name : {"history.csv", "equilibria.csv"})
+        EXPECT_TRUE(table(std::string("broken/") + table_name) == table(std::string("whole/") + table_name));
+    EXPECT_TRUE(content_of(path("broken/cracks.csv")) == content_of(path("whole/cracks.csv")));
+}
+
+TEST_F(CommandLine, ResumingIsRefusedWhereATableHasLostRows) {
+    write("tiny.yaml", tiny_scene);
+    ASSERT_EQ(kluft({"run", "tiny.yaml", "-o", "r"}).code, 0);
+    for (const std::string name : {"history.csv", "equilibria.csv", "cracks.csv", "jumps.csv"}) {
+        const std::string before = content_of(path("r/" + name));
+        const std::string damaged =
+            before.substr(0, before.rfind('\n', before.size() - 2) + 1); // without the last line
+        write("r/" + name, damaged);
+        expect_refused({"run", "tiny.yaml", "-o", "r", "--resume"},
+                       StartsWith("r/" + name + (damaged.empty() ? ":1: expected the columns" : ": expected the ")));
+        EXPECT_EQ(content_of(path("r/" + name)), damaged);
+        write("r/" + name, before);
+    }
+    EXPECT_EQ(kluft({"run", "tiny.yaml", "-o", "r", "--resume"}).code, 0);
 }
 
 TEST_F(CommandLine, FinishedRunIsResumedWithoutChange) {
@@ -697,6 +878,82 @@ TEST_F(SlowCommandLine, RunGoesOnAfterAFullDiskAndNothingIsLost) {
     EXPECT_TRUE(content_of(path("full/cracks.csv")) == content_of(path("whole/cracks.csv")));
 }
 
+TEST_F(CommandLine, PictureThatDoesNotFitLeavesNothing) {
+    write("tiny.yaml", tiny_scene);
+    const Result full = kluft({"draw", "tiny.yaml", "-o", "tiny.png"}, {.file_bytes = 1000});
+    EXPECT_EQ(full.code, 4);
+    EXPECT_THAT(full.err, HasSubstr("cannot write: File too large"));
+    EXPECT_FALSE(fs::exists(path("tiny.png")));
+    EXPECT_FALSE(fs::exists(path("tiny.png.part")));
+}
+
+// Only the pictures, the last that is written, do not fit.
+TEST_F(CommandLine, SummaryOfARunWithoutRoomForItsPicturesSaysSo) {
+    const Words words =
+        with(long_run, {"-o", "r", "--set", "stages.1.strain.value=0.05 %", "--set", "output.fields=false"});
+    ASSERT_EQ(kluft(words).code, 0);
+    const rlim_t state = fs::file_size(path("r/state.h5"));
+    ASSERT_LT(state + 1000, fs::file_size(path("r/blocks.png")));
+    const Result full = kluft(words, {.file_bytes = state + 1000});
+    EXPECT_EQ(full.code, 4);
+    EXPECT_THAT(full.err, HasSubstr("cannot write: File too large"));
+    EXPECT_EQ(summary("r")["status"], "out_of_resources");
+    EXPECT_THAT(summary("r")["message"].get<std::string>(), HasSubstr("cannot write: File too large"));
+    EXPECT_EQ(kluft(with(words, {"--resume"})).code, 0);
+    EXPECT_EQ(summary("r")["status"], "done");
+}
+
+// ---- standard output -----------------------------------------------------------------------------------------------
+
+/// Commands that say something, by what they say it about.
+std::vector<Words> saying_commands() {
+    return {{"check", "tiny.yaml"},
+            {"run", "tiny.yaml", "-o", "again", "--set", "stages.1.steps=2"},
+            {"draw", "tiny.yaml", "-o", "tiny.png"},
+            {"compare", "r", "r"},
+            {"envelope", "table.csv"},
+            {"study", "study.yaml", "--emit", "make"},
+            {"--help"},
+            {"--version"}};
+}
+
+class StandardOutput : public CommandLine {
+protected:
+    StandardOutput() {
+        write("tiny.yaml", tiny_scene);
+        write("study.yaml", "scene: tiny.yaml\nvary: {stages.1.steps: [4]}\n");
+        write("table.csv", "sigma_3,sigma_1\n0,1e6\n1e6,5e6\n2e6,9e6\n");
+        EXPECT_EQ(kluft({"run", "tiny.yaml", "-o", "r"}).code, 0);
+    }
+};
+
+TEST_F(StandardOutput, ThatDoesNotFitIsExitCode4) {
+    for (const Words& words : saying_commands()) {
+        const Result full = kluft(words, {.reader = Reader::no_room});
+        EXPECT_EQ(full.code, 4) << words[0];
+        EXPECT_THAT(full.err, HasSubstr("standard output: cannot write: No space left on device")) << words[0];
+    }
+    EXPECT_EQ(summary("again")["status"], "out_of_resources");
+    EXPECT_EQ(lines_of(content_of(path("again/history.csv"))).size(), 6U);
+}
+
+TEST_F(StandardOutput, ThatNobodyReadsDoesNotMatter) {
+    for (const Words& words : saying_commands())
+        EXPECT_EQ(kluft(words, {.reader = Reader::nobody}).code, 0) << words[0];
+    EXPECT_EQ(summary("again")["status"], "done");
+    expect_all_files(path("again"));
+}
+
+// The next file that is opened would get the number of a closed stream, and what is said with it.
+TEST_F(StandardOutput, ThatIsClosedIsNotTakenForATable) {
+    for (const Words& words : saying_commands())
+        EXPECT_EQ(kluft(words, {.reader = Reader::closed}).code, 0) << words[0];
+    const std::string history = content_of(path("again/history.csv"));
+    EXPECT_EQ(lines_of(history).size(), 6U);
+    for (const char* name : {"history.csv", "equilibria.csv", "cracks.csv", "jumps.csv"})
+        EXPECT_THAT(content_of(path(std::string("again/") + name)), Not(HasSubstr("stage 1  step"))) << name;
+}
+
 TEST_F(SlowCommandLine, OutOfMemoryEndsWithExitCode4) {
 #ifdef KLUFT_SANITIZED
     GTEST_SKIP() << "the address sanitizer reserves more address space than any limit";
@@ -710,6 +967,59 @@ TEST_F(SlowCommandLine, OutOfMemoryEndsWithExitCode4) {
                                 {.memory_bytes = enough + 16 * megabyte});
     EXPECT_EQ(result.code, 4);
     EXPECT_THAT(result.err, HasSubstr("out of memory"));
+}
+
+/// The program does not start itself again with another count of allocations.
+const std::map<std::string, std::string> one_kernel{{"OPENBLAS_CORETYPE", "Haswell"}};
+
+/// A program in which allocations fail (tests/support/failing_memory.c).
+Limits failing(std::map<std::string, std::string> how) {
+    how["LD_PRELOAD"] = KLUFT_FAILING_MEMORY;
+    how.insert(one_kernel.begin(), one_kernel.end());
+    return {.environment = std::move(how)};
+}
+
+// Allocations all over a run fail, one or all from there on. Either the run ends as it would have, or it says why it ends,
+// leaves whole files, and goes on to the same end.
+TEST_F(SlowCommandLine, RunSurvivesAllocationsThatFailAndNothingIsLost) {
+#ifdef KLUFT_SANITIZED
+    GTEST_SKIP() << "the address sanitizer has an allocator of its own";
+#endif
+    write("tiny.yaml", tiny_scene);
+    const Words words{"run",
+                      "tiny.yaml",
+                      "--quiet",
+                      "--set",
+                      "solver.repeatable=true",
+                      "--set",
+                      "output.fields_every=2",
+                      "--set",
+                      "stages.1.strain.value=0.25 %"};
+    ASSERT_EQ(kluft(with(words, {"-o", "whole"}), failing({{"KLUFT_FAIL_COUNT", path("count")}})).code, 0);
+    const int n = std::stoi(content_of(path("count")));
+    ASSERT_GT(n, 10000);
+    int n_cut_short = 0;
+    for (int i = 0; i < 12; ++i) {
+        const int at = 1 + static_cast<int>((n - 1LL) * i / 11);
+        const std::string run = "r" + std::to_string(at);
+        const Result result =
+            kluft(with(words, {"-o", run}),
+                  failing({{"KLUFT_FAIL_AT", std::to_string(at)}, {"KLUFT_FAIL_FOR", i % 2 == 0 ? "0" : "1"}}));
+        SCOPED_TRACE(run + ": " + result.err);
+        for (const auto& file : fs::recursive_directory_iterator(directory_.path()))
+            EXPECT_NE(file.path().extension(), ".part");
+        if (result.code != 0) {
+            ASSERT_EQ(result.code, 4);
+            EXPECT_EQ(result.err, "out of memory\n");
+            ++n_cut_short;
+            if (!fs::exists(path(run))) continue; // in what stands before the first load step
+            EXPECT_THAT(summary(run)["status"], AnyOf("out_of_resources", "done")); // done: only pictures are missing
+            ASSERT_EQ(kluft(with(words, {"-o", run, "--resume"}), {.environment = one_kernel}).code, 0);
+        }
+        EXPECT_EQ(table(run + "/history.csv"), table("whole/history.csv"));
+        EXPECT_EQ(content_of(path(run + "/cracks.csv")), content_of(path("whole/cracks.csv")));
+    }
+    EXPECT_GT(n_cut_short, 3);
 }
 
 // ---- memory --------------------------------------------------------------------------------------------------------

@@ -1,6 +1,7 @@
 #include "kluft/assembly/linear_solver.hpp"
 #include "support/dense_matrix.hpp"
 
+#include <limits>
 #include <random>
 
 #include <Eigen/Cholesky>
@@ -44,6 +45,24 @@ BlockPattern grid_pattern(int side) {
         }
     }
     return {side * side, pairs};
+}
+
+// Wherever it stands in the matrix, on its diagonal or beside it.
+TEST(LinearSolver, RefusesAMatrixWithANumberThatIsNone) {
+    std::mt19937 generator(11);
+    const BlockPattern pattern = grid_pattern(4);
+    const BlockMatrix whole = random_matrix(pattern, true, generator);
+    LinearSolver solver;
+    solver.analyze(pattern);
+    for (const auto kind : {Factorization::cholesky, Factorization::rounded_cholesky, Factorization::lu}) {
+        for (const auto& [a, b] : {std::pair{0, 0}, {15, 15}, {6, 6}, {0, 1}, {14, 15}, {5, 9}}) {
+            BlockMatrix matrix = whole;
+            matrix.values[pattern.find(a, b)](3, 2) = std::numeric_limits<double>::quiet_NaN();
+            matrix.values[pattern.find(b, a)](2, 3) = std::numeric_limits<double>::quiet_NaN();
+            EXPECT_FALSE(solver.factorize(matrix, kind)) << static_cast<int>(kind) << ": " << a << ", " << b;
+        }
+    }
+    EXPECT_TRUE(solver.factorize(whole, Factorization::cholesky)); // nothing of it stays
 }
 
 // Dense Eigen is the independent twin of both sparse paths.

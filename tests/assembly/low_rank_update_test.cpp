@@ -1,11 +1,19 @@
+#include "kluft/assembly/blas.hpp"
 #include "kluft/assembly/linear_solver.hpp"
 #include "support/dense_matrix.hpp"
 #include "support/hexagon_matrix.hpp"
 
+#include <cstdlib>
+#include <fstream>
+#include <memory>
+#include <new>
 #include <random>
 
 #include <Eigen/LU>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 namespace kluft {
 namespace {
@@ -33,6 +41,14 @@ void add(const StiffnessChange& change, BlockMatrix& matrix) {
     matrix.values[pattern.find(change.block_a, change.block_b)] += change.rows_a.transpose() * c * change.rows_b;
     matrix.values[pattern.find(change.block_b, change.block_a)] += change.rows_b.transpose() * c * change.rows_a;
     matrix.values[pattern.find(change.block_b, change.block_b)] += change.rows_b.transpose() * c * change.rows_b;
+}
+
+/// Address space that the process holds.
+rlim_t held_bytes() {
+    std::ifstream statistics("/proc/self/statm");
+    rlim_t pages = 0;
+    statistics >> pages;
+    return pages * static_cast<rlim_t>(sysconf(_SC_PAGESIZE));
 }
 
 class LowRankUpdateOf : public ::testing::TestWithParam<int> {};
@@ -99,6 +115,47 @@ TEST(LowRankUpdate, RowsWithoutStiffnessTakeNoRank) {
     change.stiffness(2, 2) = 1.0;
     ASSERT_TRUE(solver.update({change}));
     EXPECT_EQ(solver.rank(), 1);
+}
+
+// The limit leaves room for some of what the update takes, a little more each time. A room given back twice would end the
+// process by a signal.
+TEST(LowRankUpdateDeathTest, LackOfMemoryThrowsAndGivesNothingBackTwice) {
+#ifdef KLUFT_SANITIZED
+    GTEST_SKIP() << "the address sanitizer reserves more address space than any limit";
+#endif
+    constexpr int side = 40;
+    const auto pairs = hexagon_pairs(side);
+    const BlockPattern pattern(side * side, pairs);
+    std::mt19937 generator(7);
+    auto solver = std::make_unique<LinearSolver>();
+    solver->analyze(pattern);
+    ASSERT_TRUE(solver->factorize(hexagon_matrix(pattern, generator), Factorization::cholesky));
+    std::vector<StiffnessChange> changes;
+    for (int i = 0; i < 64; ++i) changes.push_back(random_change(i, pairs[(i * 67) % pairs.size()], true, generator));
+    const Eigen::VectorXd b = Eigen::VectorXd::Random(6 * pattern.n_blocks());
+    Eigen::VectorXd x;
+    ASSERT_TRUE(solver->update({changes.begin(), changes.begin() + 16}));
+    solver->solve(b, x);
+    constexpr int lacking = 4, enough = 5;
+    const auto update_within = [&](rlim_t more) {
+        const rlimit limit{held_bytes() + more, held_bytes() + more};
+        set_blas_threads(1); // a new process starts the others anew, with a stack each
+        setrlimit(RLIMIT_AS, &limit);
+        try {
+            if (!solver->update(changes)) std::_Exit(1);
+            solver->solve(b, x);
+        } catch (const std::bad_alloc&) {
+            solver.reset();
+            std::_Exit(lacking);
+        }
+        std::_Exit(enough);
+    };
+    constexpr rlim_t step = 320U << 10U; // the first leaves enough for the stack
+    EXPECT_EXIT(update_within(step), ::testing::ExitedWithCode(lacking), "");
+    for (rlim_t more = 2 * step; more < 24 * step; more += step)
+        EXPECT_EXIT(
+            update_within(more), [](int status) { return WIFEXITED(status) && WEXITSTATUS(status) >= lacking; }, "");
+    EXPECT_EXIT(update_within(1000 * step), ::testing::ExitedWithCode(enough), "");
 }
 
 // A body that the change lets go: the rows are those of the only spring to the ground, so to speak.

@@ -349,6 +349,18 @@ TEST(TriangleNet, RefusesARegionWithoutBodyAndMoreTrianglesThanItCanMake) {
     EXPECT_THROW((void)cut_blocks(triangulated(5.0, 5.0, net)), InputError);
 }
 
+TEST(TriangleNet, CountsTheTrianglesAtItsLinesBeforeItMakesThem) {
+    // A fracture of 3 m across the body, sides h on it that grow by 0.3: 3 m times 1/h + 8/(0.3 sqrt(3)) (1/h - 1/0.5).
+    GeometrySpec spec = triangulated(3.0, 3.0, {.spacing = 0.5, .grading = {.fractures = 1e-9}});
+    spec.fractures.push_back({.points = {{0, 1.6}, {3, 1.6}}, .name = "f"});
+    try {
+        (void)cut_blocks(spec);
+        FAIL() << "accepted";
+    } catch (const InputError& error) {
+        EXPECT_THAT(error.what(), ::testing::HasSubstr("at most 2e+06 triangles, found some that make about 4.9e+10"));
+    }
+}
+
 TEST(TriangleNet, RefusesWhatIsNoNet) {
     const auto refused = [](const TriangleNet& net, const std::string& key) {
         try {

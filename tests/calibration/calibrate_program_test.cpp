@@ -52,12 +52,11 @@ protected:
 
     [[nodiscard]] fs::path path(const std::string& name) const { return directory_ / name; }
 
-    /// The exit code; what is told is in `told`.
-    int run(const std::string& target) {
+    /// The exit code; what is told is in `told`. `before`: shell commands.
+    int run(const std::string& target, const std::string& before = {}) {
         write_text(path("target.yaml"), target);
-        const std::string command = std::string("\"") + KLUFT_PROGRAM + "\" calibrate \"" +
-                                    path("target.yaml").string() + "\" -o \"" + path("out").string() + "\" >\"" +
-                                    path("told").string() + "\" 2>&1";
+        const std::string command = before + "\"" + KLUFT_PROGRAM + "\" calibrate \"" + path("target.yaml").string() +
+                                    "\" -o \"" + path("out").string() + "\" >\"" + path("told").string() + "\" 2>&1";
         const int status = std::system(command.c_str());
         told_ = text_of(path("told"));
         return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
@@ -129,6 +128,15 @@ TEST_F(CalibrateProgram, BadInputEndsWithTwo) {
     EXPECT_EQ(run("kluft_calibration: 1\nscen: scene.yaml\n"), 2);
     EXPECT_THAT(told_, HasSubstr("did you mean 'scene'?"));
     EXPECT_FALSE(fs::exists(path("out") / "calibration.json"));
+}
+
+// No file may grow beyond some tens of kilobytes, which a saved state does.
+TEST_F(CalibrateProgram, StopsWhereARunHasNoRoomAndGoesOnFromThere) {
+    const std::string target = moduli + cohesion + elasticity + peak;
+    EXPECT_EQ(run(target, "ulimit -f 120; "), 4);
+    EXPECT_THAT(told_, AllOf(HasSubstr("the run failed (out of disk or memory"), HasSubstr("File too large")));
+    EXPECT_FALSE(fs::exists(path("out") / "calibrated.yaml"));
+    EXPECT_EQ(run(target), 0) << told_;
 }
 
 TEST_F(CalibrateProgram, GoesOnAfterAStop) {

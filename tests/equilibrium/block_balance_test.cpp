@@ -1,12 +1,14 @@
 // What is left over on blocks and groups, on bodies of two blocks that are posed in code.
 #include "kluft/equilibrium/left_over.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
 #include "kluft/simulation/placement.hpp"
 #include "support/posed_run.hpp"
+#include "support/pressed_body.hpp"
 
 namespace kluft {
 namespace {
@@ -111,6 +113,44 @@ TEST(BlockVerdict, NamesTheWorstFirst) {
     ASSERT_EQ(verdict.moving.size(), 2U);
     EXPECT_EQ(verdict.moving.front().block, 1);
     EXPECT_EQ(verdict.moving.front().direction, Vec2(1, 0));
+}
+
+// The forces of a body that has shed its load are none beside those that it has carried (27c): a hundredth of that stress on
+// the size of a block without loads, and of the body. A body that carries it still is judged as ever, and so is a weight.
+TEST(BlockBalance, OfABodyThatHasShedItsLoadIsByWhatItHasCarried) {
+    PressedBody pressed(false, {1, 0});
+    const BlockSystem& system = pressed.system;
+    const BlockPattern pattern = pattern_of(pressed.problem);
+    Eigen::VectorXd q = at_rest(system);
+    for (Eigen::Index i = 0; i < q.size(); ++i) q[i] += 1e-6 * std::sin(static_cast<double>(i)); // m
+    const auto look = [&](double carried_stress) {
+        pressed.problem.body.carried_stress = carried_stress;
+        Residual residual;
+        EquilibriumEvaluator(pressed.problem, pattern).residual(q, residual);
+        return std::pair(residual.force_scale, own_forces(pressed.problem.body, q));
+    };
+    const auto [scale, own] = look(0.0);
+    const auto [scale_of_little, own_of_little] = look(1.0);
+    EXPECT_EQ(scale_of_little, scale);
+    EXPECT_EQ(own_of_little.own, own.own);
+    const double largest = *std::ranges::max_element(own.own); // the fracture carries more than that of no block
+    const double of_carrying = 0.5 * largest / (0.01 * std::sqrt(area_of(system)));
+    EXPECT_EQ(look(of_carrying).second.own, own.own);
+    constexpr double carried = 1e15; // Pa, far beyond the pressure
+    const auto [scale_of_much, own_of_much] = look(carried);
+    EXPECT_NEAR(scale_of_much, 0.01 * carried * std::sqrt(area_of(system)), 1e-12 * scale_of_much);
+    int n_lowered = 0;
+    for (int b = 0; b < system.n_blocks(); ++b) {
+        if (own.loaded[b]) {
+            EXPECT_EQ(own_of_much.own[b], own.own[b]);
+        } else if (own.own[b] > 0.0) {
+            ++n_lowered;
+            EXPECT_DOUBLE_EQ(own_of_much.own[b], 0.01 * carried * std::sqrt(system.blocks[b].area));
+        } else {
+            EXPECT_EQ(own_of_much.own[b], 0.0); // nothing acts on it
+        }
+    }
+    EXPECT_GT(n_lowered, 0);
 }
 
 } // namespace

@@ -1,8 +1,12 @@
 #include "kluft/equilibrium/open_close_solver.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <string>
 
 #include <Eigen/LU>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "kluft/equilibrium/left_over.hpp"
@@ -202,6 +206,63 @@ TEST(OpenCloseSolver, BodyThatNothingHoldsHasNoEquilibrium) {
     body.problem.loads.constraints = Constraints();
     Eigen::VectorXd q = at_rest(body.system);
     EXPECT_FALSE(solve(body, q).converged());
+}
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+/// A solve that a number that is none ends before its first increment, and that names the place.
+void expect_flaw(const PressedBody& body, Eigen::VectorXd q, const std::string& flaw) {
+    const OpenCloseSummary summary = solve(body, q);
+    EXPECT_EQ(summary.termination, Termination::not_finite) << flaw;
+    EXPECT_EQ(summary.iterations, 0) << flaw;
+    EXPECT_THAT(summary.flaw, ::testing::HasSubstr(flaw));
+    EXPECT_FALSE(summary.residual_ratio <= 1.0) << flaw; // no rule may take it for a small one
+}
+
+TEST(OpenCloseSolver, ADisplacementThatIsNoNumberEndsTheSolveAtOnceAndIsNamed) {
+    const PressedBody body(false, {1, 0});
+    for (const int b : {0, 3, body.system.n_blocks() - 1}) {
+        Eigen::VectorXd q = at_rest(body.system);
+        q[6 * b + 4] = none;
+        expect_flaw(body, q, "the displacement of block " + std::to_string(b) + " at (");
+    }
+}
+
+TEST(OpenCloseSolver, ATractionThatIsNoNumberEndsTheSolveAtOnceAndIsNamed) {
+    const PressedBody whole(false, {1, 0});
+    Eigen::VectorXd q = at_rest(whole.system); // where contacts are closed: an open one has no traction to spoil
+    ASSERT_TRUE(solve(whole, q).converged());
+    const auto expect = [&](auto points_of, auto plant) {
+        for (const std::size_t place : {0U, 5U}) {
+            PressedBody body(false, {1, 0});
+            auto& point = points_of(body.problem.placement).at(place);
+            plant(point);
+            expect_flaw(body, q, "between block " + std::to_string(point.block_a) + " at (");
+            if (point.interface >= 0)
+                expect_flaw(body, q, "the traction on interface " + std::to_string(point.interface));
+        }
+    };
+    const auto contacts = [](Placement & placement) -> auto& { return placement.contacts; };
+    expect(contacts, [](ContactPoint& point) { point.slip_start = none; });
+    expect(contacts, [](ContactPoint& point) { point.history.shear_trial = none; });
+    expect(contacts, [](ContactPoint& point) { point.offset.x() = none; });
+    const auto bonds = [](Placement & placement) -> auto& { return placement.bonds; };
+    expect(bonds, [](Bond& bond) { bond.shear_start[1] = none; });
+    expect(bonds, [](Bond& bond) { bond.slip_start[0] = none; });
+}
+
+TEST(OpenCloseSolver, ALoadThatIsNoNumberEndsTheSolveAtOnceAndIsNamedWithItsBlock) {
+    PressedBody body(false, {1, 0});
+    body.problem.loads.pressures[1] = none;
+    int first = body.system.n_blocks();
+    for (const PressureEdge& edge : body.problem.loads.pressure_edges) first = std::min(first, edge.block);
+    expect_flaw(body, at_rest(body.system), "a force of block " + std::to_string(first) + " at (");
+
+    PressedBody heavy(false, {1, 0});
+    heavy.problem.eta.assign(heavy.system.blocks.size(), 1e3);
+    heavy.problem.start = at_rest(heavy.system);
+    heavy.problem.start[6 * 7] = none;
+    expect_flaw(heavy, at_rest(heavy.system), "a force of block 7 at (");
 }
 
 } // namespace

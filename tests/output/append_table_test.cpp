@@ -14,6 +14,7 @@
 namespace kluft {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using testing::TemporaryDirectory;
 using ::testing::ThrowsMessage;
@@ -29,29 +30,55 @@ TEST(AppendTable, ShowsEachRowAsSoonAsItIsAdded) {
     EXPECT_EQ(read_file(directory / "t.csv"), "step,x\n0,1.5\n1,2.5\n");
 }
 
-TEST(AppendTable, LosesTheRowsAfterTheSavedStepWhenARunIsResumed) {
-    const TemporaryDirectory directory;
-    write_file(directory / "t.csv", "step,x\n0,a\n1,b\n2,c\n2,d\n3,e\n10,f\n11,unfinish");
-    auto table = AppendTable::resume(directory / "t.csv", "step,x", 2);
-    table.append("3,again");
-    EXPECT_EQ(read_file(directory / "t.csv"), "step,x\n0,a\n1,b\n2,c\n2,d\n3,again\n");
+/// "step,x\n0,a\n1,b\n", its mark, and a row and a part of one behind it.
+TableMark table_with_more(const std::filesystem::path& path) {
+    auto table = AppendTable::create(path, "step,x");
+    table.append("0,a");
+    table.append("1,b");
+    const TableMark mark = table.mark();
+    table.append("2,c");
+    std::ofstream(path, std::ios::app) << "3,unfinish";
+    return mark;
 }
 
-TEST(AppendTable, LosesAnUnfinishedLastLineWhenARunIsResumed) {
+TEST(AppendTable, LosesTheRowsAfterTheSavedOnesWhenARunIsResumed) {
     const TemporaryDirectory directory;
-    write_file(directory / "t.csv", "step,x\n0,a\n1,bb");
-    cut_table(directory / "t.csv", "step,x", 5);
-    EXPECT_EQ(read_file(directory / "t.csv"), "step,x\n0,a\n");
+    const TableMark mark = table_with_more(directory / "t.csv");
+    EXPECT_EQ(mark.bytes, std::string("step,x\n0,a\n1,b\n").size());
+    auto table = AppendTable::resume(directory / "t.csv", "step,x", mark);
+    EXPECT_EQ(table.mark(), mark);
+    table.append("2,again");
+    EXPECT_EQ(read_file(directory / "t.csv"), "step,x\n0,a\n1,b\n2,again\n");
+    EXPECT_NO_THROW((void)AppendTable::resume(directory / "t.csv", "step,x", table.mark()));
+}
+
+TEST(AppendTable, IsNotResumedWhereSavedRowsAreMissingOrOtherOnes) {
+    const TemporaryDirectory directory;
+    const auto path = directory / "t.csv";
+    const TableMark mark = table_with_more(path);
+    const auto is_refused = [&](const std::string& why) {
+        EXPECT_THAT([&] { (void)AppendTable::resume(path, "step,x", mark); },
+                    ThrowsMessage<InputError>(AllOf(HasSubstr("t.csv: expected the 15 bytes"), HasSubstr(why))));
+    };
+    for (const char* cut : {"step,x\n", "step,x\n0,a\n", "step,x\n0,a\n1,b"}) {
+        write_file(path, cut);
+        is_refused("rows are missing");
+        EXPECT_EQ(read_file(path), cut); // nothing is touched
+    }
+    for (const char* other : {"step,x\n0,a\n1,c\n", "step,x\n0,a\n2,c\n3,d\n", "step,x\n0,a\n0,a\n1,b\n"}) {
+        write_file(path, other);
+        is_refused("other ones");
+        EXPECT_EQ(read_file(path), other);
+    }
 }
 
 TEST(AppendTable, IsNotResumedWithOtherColumnsOrWithoutAFile) {
     const TemporaryDirectory directory;
+    const TableMark mark = table_with_more(directory / "t.csv");
     write_file(directory / "t.csv", "step,y\n0,a\n");
-    EXPECT_THAT([&] { (void)AppendTable::resume(directory / "t.csv", "step,x", 2); },
+    EXPECT_THAT([&] { (void)AppendTable::resume(directory / "t.csv", "step,x", mark); },
                 ThrowsMessage<InputError>(HasSubstr("found 'step,y'")));
-    EXPECT_THROW((void)AppendTable::resume(directory / "absent.csv", "step,x", 2), InputError);
-    write_file(directory / "bad.csv", "step,x\nzero,a\n");
-    EXPECT_THROW((void)AppendTable::resume(directory / "bad.csv", "step,x", 2), InputError);
+    EXPECT_THROW((void)AppendTable::resume(directory / "absent.csv", "step,x", mark), InputError);
 }
 
 TEST(AppendTable, TakesBackARowThatDoesNotFitOnTheDisk) {

@@ -103,7 +103,7 @@ TEST(AtomicFile, IsRemovedTogetherWithAnUnfinishedOne) {
 TEST(AtomicFile, CannotBeReadWhenMissing) {
     const TemporaryDirectory directory;
     EXPECT_THAT([&] { (void)read_file(directory / "absent"); },
-                ThrowsMessage<InputError>(AllOf(HasSubstr("absent"), HasSubstr("No such file"))));
+                ThrowsMessage<InputError>(AllOf(HasSubstr("absent"), HasSubstr("no such file"))));
     EXPECT_THROW((void)read_file(directory.path()), InputError);
 }
 

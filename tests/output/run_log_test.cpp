@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/output/atomic_file.hpp"
@@ -32,6 +33,29 @@ TEST(RunLog, GoesOnBehindTheOldLinesWhenARunIsResumed) {
     EXPECT_THAT(read_file(directory / "run.log"), HasSubstr("first"));
     RunLog(directory / "run.log").info("third");
     EXPECT_THAT(read_file(directory / "run.log"), ::testing::Not(HasSubstr("first")));
+}
+
+TEST(RunLog, DoesNotWriteToTheFileThatALinkLeadsTo) {
+    const TemporaryDirectory directory;
+    write_file(directory / "foreign", "mine\n");
+    for (const bool resume : {false, true}) {
+        std::filesystem::create_symlink("foreign", directory / "run.log");
+        RunLog(directory / "run.log", resume).info("a line");
+        EXPECT_EQ(read_file(directory / "foreign"), "mine\n");
+        EXPECT_THAT(read_file(directory / "run.log"), HasSubstr("a line"));
+        std::filesystem::remove(directory / "run.log");
+    }
+}
+
+// A pipe of that name, at whose other end nobody reads, would stop the run for ever.
+TEST(RunLog, TakesThePlaceOfAPipe) {
+    const TemporaryDirectory directory;
+    for (const bool resume : {false, true}) {
+        ASSERT_EQ(mkfifo((directory / "run.log").c_str(), 0600), 0);
+        RunLog(directory / "run.log", resume).info("a line");
+        EXPECT_THAT(read_file(directory / "run.log"), HasSubstr("a line"));
+        std::filesystem::remove(directory / "run.log");
+    }
 }
 
 TEST(RunLog, SaysWhenItCannotBeOpened) {

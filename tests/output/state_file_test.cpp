@@ -1,6 +1,10 @@
 #include "kluft/output/state_file.hpp"
 
+#include <cstdint>
+#include <functional>
 #include <limits>
+#include <tuple>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -35,6 +39,14 @@ State state_of(int n_blocks) {
     state.jumps = 3;
     state.memory.rate = 3.0 * state.body.displacement;
     state.memory.near_pairs = {{0, 3}, {2, 1}};
+    ContactPoint kept{.block_a = 3, .block_b = 2, .weight = 0.3, .along = 0.7, .law = 1, .interface = 4};
+    kept.xi_b = {0.1, -0.2};
+    kept.normal = {0.6, 0.8};
+    kept.piece = {{1, 2}, {3, 4}, {5, 6}, 7, 8};
+    kept.key = {1, 2, 3, 4, 5};
+    state.memory.kept_points = {kept};
+    state.memory.steps_since_detection = 2;
+    state.memory.detected_at = 0.5 * state.body.displacement;
     state.control = {0.01, 2.0, 0.5, 1e-3, 2e-3, 3e-3, 2, {2, 0}};
     state.stresses = {1.2e6, 1.5e6, 1e6, 1, 1.4e6};
     state.is_settled = false;
@@ -67,6 +79,18 @@ void expect_same(const State& a, const State& b) {
     EXPECT_EQ(a.jumps, b.jumps);
     EXPECT_EQ(a.memory.rate, b.memory.rate);
     EXPECT_EQ(a.memory.near_pairs, b.memory.near_pairs);
+    EXPECT_EQ(a.memory.steps_since_detection, b.memory.steps_since_detection);
+    EXPECT_EQ(a.memory.detected_at, b.memory.detected_at);
+    ASSERT_EQ(a.memory.kept_points.size(), b.memory.kept_points.size());
+    for (std::size_t i = 0; i < a.memory.kept_points.size(); ++i) {
+        const ContactPoint& p = a.memory.kept_points[i];
+        const ContactPoint& r = b.memory.kept_points[i];
+        EXPECT_EQ(std::tie(p.block_a, p.block_b, p.weight, p.along, p.law, p.interface, p.xi_a, p.xi_b, p.offset,
+                           p.normal, p.tangent, p.piece.xi_a, p.piece.xi_b, p.piece.offset, p.piece.from, p.piece.to),
+                  std::tie(r.block_a, r.block_b, r.weight, r.along, r.law, r.interface, r.xi_a, r.xi_b, r.offset,
+                           r.normal, r.tangent, r.piece.xi_a, r.piece.xi_b, r.piece.offset, r.piece.from, r.piece.to));
+        EXPECT_EQ(p.key, r.key);
+    }
     EXPECT_EQ(a.costs.open_close_iterations, b.costs.open_close_iterations);
     EXPECT_EQ(a.costs.factorizations, b.costs.factorizations);
     EXPECT_EQ(a.costs.analyses, b.costs.analyses);
@@ -80,6 +104,30 @@ void expect_same(const State& a, const State& b) {
     EXPECT_EQ(a.costs.elapsed_s, b.costs.elapsed_s);
     EXPECT_EQ(a.costs.seconds.detection, b.costs.seconds.detection);
     EXPECT_EQ(a.costs.seconds.observers, b.costs.seconds.observers);
+}
+
+// Each array of numbers in its turn, at its end.
+TEST(StateFile, ANumberThatIsNoneIsRefusedAndTheStateSavedBeforeStays) {
+    const TemporaryDirectory directory;
+    const State good = state_of(3);
+    write_state(directory / "state.h5", good, "scene 1");
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    const std::vector<std::function<void(State&)>> plants{
+        [](State& state) { state.body.displacement[17] = none; },
+        [](State& state) { state.stage_start.displacement[17] = none; },
+        [](State& state) { state.strain_zero[0] = none; },
+        [](State& state) { state.memory.rate[3] = none; },
+        [](State& state) { state.body.bond_shear.back() = none; },
+        [](State& state) { state.body.contacts[1].history.shear_trial = none; },
+        [](State& state) { state.body.contacts[0].history.dilation = none; },
+        [](State& state) { state.stage_start.boundary_pressure[2] = none; },
+        [](State& state) { state.at.load_factor = none; }};
+    for (const auto& plant : plants) {
+        State state = good;
+        plant(state);
+        EXPECT_THROW(write_state(directory / "state.h5", state, "scene 1"), NoEquilibriumError);
+        expect_same(read_state(directory / "state.h5", "scene 1"), good);
+    }
 }
 
 TEST(StateFile, IsReadBackBitForBit) {
@@ -96,6 +144,9 @@ TEST(StateFile, CarriesTheTextOfItsScene) {
     const std::string text = "kluft: 1\ntitle: \"Kl\u00fcfte\"\n" + std::string(100000, '#') + "\n";
     write_state(directory / "state.h5", state_of(2), "scene 1", text);
     EXPECT_EQ(read_state_scene(directory / "state.h5"), text);
+    EXPECT_EQ(read_state_tables(directory / "state.h5"), "");
+    write_state(directory / "state.h5", state_of(2), "scene 1", text, "history.csv 12");
+    EXPECT_EQ(read_state_tables(directory / "state.h5"), "history.csv 12");
     write_state(directory / "state.h5", state_of(2), "scene 1");
     EXPECT_EQ(read_state_scene(directory / "state.h5"), "");
     EXPECT_THROW((void)read_state_scene(directory / "absent.h5"), InputError);
@@ -140,6 +191,45 @@ TEST(StateFile, IsRefusedWhenABitOfTheNumbersIsWrong) {
     write_file(directory / "state.h5", bytes);
     EXPECT_THAT([&] { (void)read_state(directory / "state.h5", "scene"); },
                 ThrowsMessage<InputError>(HasSubstr("displacement")));
+}
+
+// The extent of an array of 7919 numbers is looked up in the file and made larger than the file, or than any memory.
+TEST(StateFile, IsRefusedWhenItClaimsToHoldMoreThanItsBytes) {
+    const TemporaryDirectory directory;
+    State state = state_of(2);
+    state.body.bond_shear.assign(7919, 1.0);
+    write_state(directory / "state.h5", state, "scene");
+    const std::string whole = read_file(directory / "state.h5");
+    const auto bytes_of = [](std::uint64_t extent) {
+        return std::string(reinterpret_cast<const char*>(&extent), sizeof extent);
+    };
+    for (const std::uint64_t extent : {std::uint64_t{1} << 20U, std::uint64_t{1} << 33U, std::uint64_t{1} << 61U}) {
+        std::string bytes = whole;
+        std::size_t n_found = 0;
+        for (std::size_t at = bytes.find(bytes_of(7919)); at != std::string::npos; at = bytes.find(bytes_of(7919)))
+            n_found += bytes.replace(at, sizeof extent, bytes_of(extent)).empty() ? 0 : 1;
+        ASSERT_GT(n_found, 0U);
+        write_file(directory / "state.h5", bytes);
+        EXPECT_THAT([&] { (void)read_state(directory / "state.h5", "scene"); },
+                    ThrowsMessage<InputError>(HasSubstr("larger than the file")));
+    }
+}
+
+// The bytes of a chunk of 7919 numbers with its checksum: HDF5 would take 4 GB for it.
+TEST(StateFile, IsRefusedWhenAChunkClaimsMoreThanTheFilesBytes) {
+    const TemporaryDirectory directory;
+    State state = state_of(2);
+    state.body.bond_shear.assign(7919, 1.0);
+    write_state(directory / "state.h5", state, "scene");
+    const auto bytes_of = [](std::uint64_t size) { // no filter is left out: the upper half is zero
+        return std::string(reinterpret_cast<const char*>(&size), sizeof size);
+    };
+    std::string bytes = read_file(directory / "state.h5");
+    const std::size_t at = bytes.find(bytes_of(7919 * sizeof(double) + 4));
+    ASSERT_NE(at, std::string::npos);
+    write_file(directory / "state.h5", bytes.replace(at, 8, bytes_of(0xFC000000U)));
+    EXPECT_THAT([&] { (void)read_state(directory / "state.h5", "scene"); },
+                ThrowsMessage<InputError>(HasSubstr("bond_shear is larger than the file")));
 }
 
 TEST(StateFile, IsRefusedWhenItIsSomethingElse) {

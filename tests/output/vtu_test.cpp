@@ -191,6 +191,14 @@ TEST(FieldSeries, GoesOnFromASavedStepWithoutTheLaterFiles) {
     EXPECT_THAT(read_file(directory / "fields.pvd"), ::testing::Not(HasSubstr("000015")));
 }
 
+TEST(FieldSeries, KeepsALinkToWhereThereIsMoreRoom) {
+    const TemporaryDirectory directory;
+    std::filesystem::create_directory(directory / "elsewhere");
+    std::filesystem::create_symlink("elsewhere", directory / "fields");
+    (void)FieldSeries::create(directory.path());
+    EXPECT_TRUE(std::filesystem::is_symlink(directory / "fields"));
+}
+
 TEST(FieldSeries, ReplacesAnEarlierRunButNotOtherPeoplesFiles) {
     const TemporaryDirectory directory;
     make_directory(directory / "fields");

@@ -57,6 +57,23 @@ TEST_F(GeoJson, AnAreaHasItsOutlineAndHolesWithoutTheRepeatedPoint) {
     }
 }
 
+TEST_F(GeoJson, ListsInListsToAnyDepthAreRefusedInFewWords) {
+    constexpr std::size_t depth = 300'000;
+    const std::string deep = std::string(depth, '[') + std::string(depth, ']');
+    for (const std::string& position : {deep, "[" + deep + ", 1]", "[1, {\"a\": " + deep + "}]"}) {
+        const auto file = written(R"({"type": "LineString", "coordinates": [)" + position + "]}");
+        const std::string message = message_of([&] { return read_geojson_traces(file); });
+        EXPECT_NE(message.find("expected a position [x, y], got a list of "), std::string::npos);
+        EXPECT_LT(message.size(), 500U);
+    }
+}
+
+TEST_F(GeoJson, ADirectoryIsNoFile) {
+    const std::filesystem::path directory = testing::TempDir();
+    EXPECT_NE(message_of([&] { return read_geojson_area(directory); }).find("found a directory"), std::string::npos);
+    EXPECT_NE(message_of([&] { return read_geojson_traces(directory); }).find("found a directory"), std::string::npos);
+}
+
 TEST_F(GeoJson, AMultiPolygonOfOnePartIsAnArea) {
     const std::string text = R"({"type": "MultiPolygon", "coordinates": [[)" + ring + "]]}";
     EXPECT_EQ(read_geojson_area(written(text)).outline.size(), 4U);

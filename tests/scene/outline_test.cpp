@@ -59,8 +59,14 @@ TEST(Outline, SidesAtExactly45DegreesFaceTopOrBottom) {
 
 TEST(Outline, CrossingSidesAreFound) {
     const Polygon bow_tie{{0.0, 0.0}, {1.0, 1.0}, {1.0, 0.0}, {0.0, 1.0}};
-    EXPECT_EQ(crossing_sides(bow_tie, 10), (std::pair{0, 2}));
-    EXPECT_FALSE(crossing_sides(square, 10));
+    EXPECT_EQ(crossing_sides(bow_tie), (std::pair{0, 2}));
+    EXPECT_FALSE(crossing_sides(square));
+    Polygon circle;
+    for (int i = 0; i < 5000; ++i)
+        circle.emplace_back(std::cos(0.0004 * std::numbers::pi * i), std::sin(0.0004 * std::numbers::pi * i));
+    EXPECT_FALSE(crossing_sides(circle));
+    std::swap(circle[1000], circle[1001]);
+    EXPECT_EQ(crossing_sides(circle), (std::pair{999, 1001}));
 }
 
 } // namespace

@@ -111,7 +111,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{
             "solver=3",
             "solver: expected a mapping of tolerance, balance, accuracy, detection_every, viscosity, max_iterations, "
-            "max_unbalanced_steps, tangent, reuse, repeatable, found '3'"},
+            "max_unbalanced_steps, max_step_solves, tangent, reuse, repeatable, found '3'"},
         Refusal{"materials.rock.density={a: 1}",
                 "materials.rock.density: expected a number >= 0 in kg/m3, found a mapping"},
         Refusal{"solver.repeatable=yes", "solver.repeatable: expected true or false, found 'yes'"},
@@ -263,11 +263,50 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"geometry.regions.0.polygon=[[0, 0], [1, 1], [2, 2]]",
                 "geometry.regions.0.polygon: expected a polygon with an area, found none"},
         Refusal{"geometry.tessellation.hexagons.spacing=0.2 mm",
-                "geometry.tessellation.hexagons.spacing: expected a spacing in m that fits the domain, found '0.2 "
-                "mm', which makes 2.3e+08 hexagons"},
+                "geometry.tessellation.hexagons.spacing: expected a spacing in m that makes at most 2e+06 "
+                "hexagons, found '0.2 mm', which makes about 2.3e+08"},
         Refusal{"geometry.tessellation={hexagons: null, voronoi: {spacing: 0.2 mm}}",
-                "geometry.tessellation.voronoi.spacing: expected a spacing in m that fits the domain, found '0.2 mm', "
-                "which makes 2.3e+08 cells"}));
+                "geometry.tessellation.voronoi.spacing: expected a spacing in m that makes at most 2e+06 cells, "
+                "found '0.2 mm', which makes about 2.3e+08"},
+        Refusal{"geometry.tessellation.hexagons.spacing=1.2 mm", // 8 m2 by sqrt(3)/2 d2
+                "geometry.tessellation.hexagons.spacing: expected a spacing in m that makes at most 2e+06 "
+                "hexagons, found '1.2 mm', which makes about 6.4e+06"}));
+
+TEST(SceneErrors, TrianglesAreCountedWhereTheNetIs) {
+    const std::vector<std::string> fine{"geometry.tessellation.hexagons=null",
+                                        "geometry.tessellation.triangles={spacing: 1.3 mm}"};
+    EXPECT_THAT(errors_with({fine[0], fine[1], "geometry.tessellation.region=null"}),
+                ElementsAre(HasSubstr("which makes about 1.1e+07"))); // 8 m2 by sqrt(3)/4 a2
+    EXPECT_THAT(errors_with({fine[0], fine[1], "geometry.tessellation.region=[[1, 0], [2, 0], [2, 1], [1, 1]]"}),
+                IsEmpty()); // 1.4e6 of them
+}
+
+TEST(SceneErrors, MissingValueIsToldAtItsKey) {
+    const auto errors = errors_in("kluft: 1\n"
+                                  "materials:\n"
+                                  "  rock:\n"
+                                  "    youngs_modulus: # to be measured\n"
+                                  "    density:\n"
+                                  "\n"
+                                  "    poissons_ratio: 0.25\n"
+                                  "geometry: {domain: {rectangle: {width:, height: 2}}}\n"
+                                  "stages:\n"
+                                  "  -\n"
+                                  "  - {strain: {boundary: top, value: 0.01}}\n"
+                                  "output:\n");
+    EXPECT_THAT(errors,
+                ElementsAre(StartsWith("scene.yaml:4:5: materials.rock.youngs_modulus: expected a number > 0 in "
+                                       "Pa, found nothing\n      youngs_modulus: # to be"),
+                            StartsWith("scene.yaml:5:5: materials.rock.density: "),
+                            StartsWith("scene.yaml:8:33: geometry.domain.rectangle.width: "),
+                            StartsWith("scene.yaml:10:3: stages.0: "), StartsWith("scene.yaml:12:1: output: ")));
+}
+
+TEST(SceneErrors, KeyWithoutAValueRemovesNothingWhateverFollows) {
+    // `name`, `normal_stiffness` and the like begin as `null` does.
+    EXPECT_THAT(errors_in(std::string(test::short_scene) + "title:\nnumber: 3\n"),
+                testing::Contains(HasSubstr("title: expected text, found nothing")));
+}
 
 TEST(SceneErrors, NetIsOfOneKind) {
     EXPECT_THAT(
@@ -288,7 +327,7 @@ TEST(SceneErrors, TrianglesHaveTheirKeysTogether) {
                                                "which follow them, found none")));
     EXPECT_THAT(errors_with({"geometry.tessellation.hexagons=null", "geometry.tessellation.triangles={spacing: 1e-7}"}),
                 ElementsAre(testing::HasSubstr("geometry.tessellation.triangles.spacing: expected a spacing in m that "
-                                               "fits the domain, found '1e-7', which makes ")));
+                                               "makes at most 2e+06 triangles, found '1e-7', which makes about ")));
 }
 
 TEST(SceneErrors, OneOfSeveralMaterialsMustBeNamed) {

@@ -72,7 +72,7 @@ TEST(SceneModel, BlamesANetThatIsCoarserThanTheBody) {
 TEST(SceneModel, NamesTheSpacingThatMakesTooManyTriangles) {
     const std::string grading = "geometry.tessellation.triangles.grading";
     EXPECT_THAT(refusal_of({grading + ".region=[[0, 0], [1, 0], [1, 1], [0, 1]]", grading + ".region_spacing=1e-6"}),
-                AllOf(HasSubstr("--set " + grading + ".region_spacing=1e-6"), HasSubstr("2.3e+12 triangles")));
+                AllOf(HasSubstr("--set " + grading + ".region_spacing=1e-6"), HasSubstr("about 2.3e+12")));
 }
 
 } // namespace

@@ -180,6 +180,7 @@ TEST(SceneReader, ReadsOptions) {
     EXPECT_EQ(scene.output.fields_every, 10);
     EXPECT_FALSE(scene.output.pictures);
     EXPECT_EQ(scene.output.checkpoint_every, 5);
+    EXPECT_EQ(scene.output.checkpoint_seconds, 90.0);
 }
 
 /// The defaults of the table of keys are those of the option structs.
@@ -206,6 +207,7 @@ TEST(SceneReader, LeavesDefaultsWhereTheSceneSaysNothing) {
     EXPECT_EQ(scene.output.fields_every, output.fields_every);
     EXPECT_EQ(scene.output.pictures, output.pictures);
     EXPECT_EQ(scene.output.checkpoint_every, output.checkpoint_every);
+    EXPECT_EQ(scene.output.checkpoint_seconds, output.checkpoint_seconds);
     const GeometrySpec spec;
     EXPECT_EQ(scene.geometry.minimum_area, spec.minimum_area);
     EXPECT_EQ(scene.geometry.reference_spacing, spec.reference_spacing);

@@ -63,7 +63,7 @@ stages:
 cracks: {criterion: interface_traction, update: all, every: 2, event_tolerance: 1e-3}
 solver: {tolerance: 1e-6, balance: 1e-4, viscosity: 0.1, max_iterations: 30, max_unbalanced_steps: 4,
          tangent: symmetric, repeatable: true}
-output: {fields: false, fields_every: 10, pictures: false, checkpoint_every: 5}
+output: {fields: false, fields_every: 10, pictures: false, checkpoint_every: 5, checkpoint_seconds: 90 s}
 )";
 
 /// The shortest scene: a block between platens.

@@ -53,7 +53,7 @@ TEST_F(SceneFiles, ASceneIsNamedAfterItsFile) {
 
 TEST_F(SceneFiles, MissingFilesAndDirectoriesAreBadInput) {
     EXPECT_THAT(errors("none.yaml"), ElementsAre(file("none.yaml") + ": expected a scene, found no such file"));
-    EXPECT_THAT(errors("."), ElementsAre(HasSubstr(": expected a scene, found no regular file")));
+    EXPECT_THAT(errors("."), ElementsAre(HasSubstr(": expected a scene, found a directory")));
 }
 
 TEST_F(SceneFiles, EmptyBinaryAndLargeFilesAreBadInput) {
@@ -70,6 +70,31 @@ TEST_F(SceneFiles, EmptyBinaryAndLargeFilesAreBadInput) {
                 ElementsAre(file("binary.yaml") + ": expected a scene in UTF-8 text, found a binary file"));
     EXPECT_THAT(errors("latin1.yaml"), ElementsAre(HasSubstr("expected a scene in UTF-8 text")));
     EXPECT_THAT(errors("large.yaml"), ElementsAre(HasSubstr("expected a scene of at most 1 MB, found more")));
+}
+
+TEST_F(SceneFiles, LinesThatEndInACarriageReturnAloneAreToldAtTheFirst) {
+    write("old.yaml", "kluft: 1\r\ntitle: a\rgeometry: {}\r");
+    EXPECT_THAT(errors("old.yaml"),
+                ElementsAre(file("old.yaml") + ":2: expected lines that end in LF or CR LF, found one that ends in CR "
+                                               "alone"));
+}
+
+TEST_F(SceneFiles, CrossingOutlineOfAMapIsAllThatIsTold) {
+    write("map.geojson", R"({"type": "Polygon", "coordinates": [[[0, 0], [1, 2], [1, 0], [0, 2], [0, 0]]]})");
+    write("scene.yaml", std::string(test::short_scene) + "extends: more.yaml\n");
+    write("more.yaml", "boundaries: {bottom: {support: smooth}}\n");
+    EXPECT_THAT(errors("scene.yaml", {"geometry.domain={rectangle: null, file: map.geojson}"}),
+                ElementsAre(AllOf(HasSubstr("geometry.domain.file: "),
+                                  HasSubstr("outline: expected a simple polygon, found sides 0 and 2 (counted from 0) "
+                                            "that cross"))));
+}
+
+TEST_F(SceneFiles, ExtendedSceneThatCannotBeReadIsAllThatIsTold) {
+    write("derived.yaml", "kluft: 1\nextends: absent.yaml\nmaterials: {}\ncolour: red\n");
+    EXPECT_THAT(errors("derived.yaml"), ElementsAre(HasSubstr("derived.yaml:2:10: extends: expected the file")));
+    write("base.yaml", "materials: {rock: [1, 2\n");
+    write("of-broken.yaml", "kluft: 1\nextends: base.yaml\n");
+    EXPECT_THAT(errors("of-broken.yaml"), ElementsAre(HasSubstr("base.yaml:2:1: expected valid YAML")));
 }
 
 TEST_F(SceneFiles, ExtendingMergesMappingsAndReplacesListsAndValues) {

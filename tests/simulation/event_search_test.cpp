@@ -1,5 +1,6 @@
 #include "kluft/simulation/event_search.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -53,6 +54,29 @@ TEST(EventSearch, EnclosesAJumpByTheLeastWidth) {
     EXPECT_GE(cut.found.load_factor, 0.3);
     EXPECT_LE(cut.found.load_factor, 0.3 + 1e-4);
     EXPECT_LE(cut.width, 1e-4);
+}
+
+// f = 4 x reaches one at 0.25, and between 0.4 and 1 nothing is found: the end, where f is 4, is not taken for the event.
+TEST(EventSearch, GoesOnAtSmallerLoadsWhereNothingIsFoundInBetween) {
+    const auto cut = first_event(
+        accurate, 0.0, Point{1.0}, [](const Point& at) { return std::min(2.0, 4.0 * at.load_factor); },
+        [] { return 0.0; },
+        [](double load_factor, double, const Point&) {
+            return Point{load_factor, load_factor < 0.4};
+        });
+    EXPECT_NEAR(cut.found.load_factor, 0.25, 1e-3 / 4.0);
+}
+
+// f = 2 x reaches one at 0.5, where nothing is found from 0.45 on: the load step ends before it.
+TEST(EventSearch, EndsBeforeAnEventThatLiesWhereNothingIsFound) {
+    const auto cut = first_event(
+        accurate, 0.0, Point{1.0}, [](const Point& at) { return 2.0 * at.load_factor; }, [] { return 0.0; },
+        [](double load_factor, double, const Point&) {
+            return Point{load_factor, load_factor < 0.45};
+        });
+    EXPECT_LT(cut.found.load_factor, 0.45);
+    EXPECT_GT(cut.found.load_factor, 0.2);
+    EXPECT_TRUE(cut.found.balanced);
 }
 
 TEST(EventSearch, KeepsTheLastEventKnownWhereNothingIsFoundInBetween) {

@@ -2,7 +2,13 @@
 #include "kluft/simulation/load_step.hpp"
 
 #include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "kluft/simulation/breaking.hpp"
@@ -14,6 +20,7 @@ namespace {
 using posed::same;
 using posed::tensile_strength;
 using posed::Workplace;
+using ::testing::HasSubstr;
 
 TEST(LoadStep, DroppedStepLeavesTheStateBitForBit) {
     Workplace work(posed::two_bonded_blocks(4e6));
@@ -57,6 +64,60 @@ TEST(LoadStep, StepPastTheStrengthStopsAtTheEventAndKeepsWhatStood) {
     EXPECT_GE(-step.cracks.front().p3, tensile_strength);
     EXPECT_LE(-step.cracks.front().p3, 1.02 * tensile_strength);
     EXPECT_NEAR(step.equilibria.front().load_factor, tensile_strength / 4e6, 0.02 * tensile_strength / 4e6);
+}
+
+// Beyond the strength the upper block moves on, for more solves than are allowed: what it would come to is not known, and
+// what stood is kept.
+TEST(LoadStep, StepWithoutAnEndStopsAtItsBoundOfSolvesAndKeepsWhatStood) {
+    SolverOptions options = Workplace::tight();
+    options.max_step_solves = 5;
+    Workplace work(posed::two_bonded_blocks(4e6), options);
+    const Step step = work.take(1.0);
+    ASSERT_TRUE(step.failure.has_value());
+    EXPECT_EQ(step.failure->kind, FailureKind::too_many_solves);
+    EXPECT_FALSE(step.failure->may_be_collapse());
+    EXPECT_THAT(step.failure->what, HasSubstr("solver.max_step_solves"));
+    for (const StepRecord& row : step.equilibria) EXPECT_TRUE(row.balanced);
+    EXPECT_LE(step.row.load_factor, 1.02 * tensile_strength / 4e6);
+}
+
+// Planted in each array that the forces follow from: the first solve tells its place, no equilibrium is kept, and a run ends
+// there with what stood before.
+TEST(LoadStep, NumberThatIsNoneEndsTheStepInItsFirstSolveWithItsPlace) {
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    const std::vector<std::pair<std::string, std::function<void(State&)>>> plants{
+        {"the displacement of block 1 at (0.5, 1.5)", [](State& state) { state.body.displacement[7] = none; }},
+        {"the traction on interface 0 between block 0 at (0.5, 0.5) and block 1 at (0.5, 1.5)",
+         [](State& state) { state.body.bond_shear[1] = none; }},
+        {"a force of block 1 at (0.5, 1.5)", [](State& state) { state.stage_start.boundary_pressure[2] = none; }},
+    };
+    for (const auto& [place, plant] : plants) {
+        SCOPED_TRACE(place);
+        Workplace work(posed::two_bonded_blocks(4e6, 40));
+        work.state = work.take(0.05).end;
+        plant(work.state);
+        work.enter(); // the loads are counted from the state
+        const int solves_before = work.journal.report().costs.open_close_iterations;
+        const Step step = work.take(0.1);
+        ASSERT_TRUE(step.failure.has_value());
+        EXPECT_EQ(step.failure->kind, FailureKind::broken_body);
+        EXPECT_THAT(step.failure->what, HasSubstr(place + " is no finite number"));
+        EXPECT_TRUE(step.equilibria.empty());
+        EXPECT_EQ(work.journal.report().costs.open_close_iterations, solves_before);
+    }
+}
+
+// A guess only: what it spoils is searched for again from the last equilibrium.
+TEST(LoadStep, PredictorThatIsNoNumberLeavesTheAnswerAsItIs) {
+    Workplace work(posed::two_bonded_blocks(4e6, 40));
+    work.state = work.take(0.05).end;
+    work.state.memory.rate = Eigen::VectorXd::Constant(12, std::numeric_limits<double>::quiet_NaN());
+    const Step spoilt = work.take(0.1);
+    work.state.memory.rate.resize(0);
+    const Step step = work.take(0.1);
+    ASSERT_FALSE(spoilt.failure.has_value());
+    const Eigen::VectorXd& q = step.end.body.displacement;
+    EXPECT_LT((spoilt.end.body.displacement - q).norm(), 1e-8 * q.norm());
 }
 
 TEST(LoadStep, FailedStepIsCommittedUpToItsLastBalancedEquilibrium) {

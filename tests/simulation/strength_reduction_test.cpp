@@ -49,6 +49,14 @@ TEST(StrengthReduction, BlockOnASlopeHasTheRatioOfTheTangentsAsFactorOfSafety) {
     }
 }
 
+// Whether the block stands is not known where the solves of a trial are spent: no factor then, which would be too small.
+TEST(StrengthReduction, TrialWhoseSolvesAreSpentIsNoLimit) {
+    const auto run = run_scene(block_on_slope(20.0, "{to: 4, tolerance: 1e-6}"), {"solver.max_step_solves=5"});
+    EXPECT_EQ(run.report.status, RunStatus::no_equilibrium);
+    EXPECT_FALSE(run.report.results.factor_of_safety);
+    EXPECT_NE(run.report.diagnosis.find("solver.max_step_solves"), std::string::npos) << run.report.diagnosis;
+}
+
 // A specimen that only pressures hold has a factor of safety too: uniaxial compression s fails where
 // s = 2 (c/F) cos(phi_F)/(1 - sin(phi_F)) with tan(phi_F) = tan(phi)/F.
 TEST(StrengthReduction, BodyHeldByPressuresAloneHasAFactorOfSafety) {

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <sstream>
 #include <thread>
 
@@ -15,6 +16,7 @@
 #include <sys/wait.h>
 
 #include "kluft/core/diagnostics.hpp"
+#include "kluft/output/directory_lock.hpp"
 #include "kluft/studies/ready_made_studies.hpp"
 #include "kluft/studies/study_emit.hpp"
 #include "kluft/studies/study_results.hpp"
@@ -32,6 +34,7 @@ using ::testing::IsEmpty;
 using ::testing::Not;
 using ::testing::SizeIs;
 using testing::TemporaryDirectory;
+using ::testing::ThrowsMessage;
 
 // Six blocks, two stages, cracks: runs in a tenth of a second.
 const char* const tiny_scene = R"(kluft: 1
@@ -189,9 +192,19 @@ TEST_F(StudyRuns, InterruptedStudyStopsItsCasesAndLeavesATable) {
     EXPECT_THAT(lines_of(content_of(results_ / "study.csv")), SizeIs(3));
 }
 
-TEST_F(StudyRuns, TwoStudiesInOneDirectoryAreRefused) {
-    const StudyLock first(results_);
-    EXPECT_THROW(StudyLock{results_}, InputError);
+// As a run does that a killed study has left and that still saves its state.
+TEST_F(StudyRuns, CaseThatAnotherProcessRunsIsWaitedFor) {
+    const ReadStudy study = read(steps("10, 20"));
+    prepare_study(study, directory_ / "program", results_);
+    std::optional<DirectoryLock> earlier(std::in_place, case_directory(results_, study.cases[0]), "kluft run");
+    std::jthread saving([&] {
+        while (!fs::exists(results_ / "cases/steps=20/outcome.json")) std::this_thread::yield();
+        EXPECT_THAT(starts(), ElementsAre("20 --quiet"));
+        earlier.reset();
+    });
+    const StudyTable table = run_study(study, results_, {directory_ / "program", 2, {}}, stop_);
+    EXPECT_THAT(statuses_of(table), ElementsAre(CaseStatus::done, CaseStatus::done));
+    EXPECT_THAT(starts(), ElementsAre("10 --quiet"));
 }
 
 TEST_F(StudyRuns, ClosedFormAndOtherRunsAreReferencesToo) {
@@ -282,6 +295,30 @@ TEST_F(StudyRuns, JobArrayHasOneJobForEachLineOfCommands) {
     EXPECT_THROW((void)emit_study("pbs", study, results_, 3, {}), InputError);
 }
 
+// Slurm takes a line "#SBATCH" apart at its spaces, as a shell does, and replaces what begins with a per cent sign.
+TEST_F(StudyRuns, JobArrayQuotesItsPlace) {
+    const ReadStudy study = read(steps("10, 20"));
+    const fs::path odd = directory_ / "it's 50 %";
+    prepare_study(study, "/opt/kluft", odd);
+    (void)emit_study("slurm", study, odd, 3, {"collect"});
+    const std::string script = content_of(odd / "study.slurm");
+    EXPECT_THAT(script,
+                HasSubstr("\n#SBATCH '--output=" + directory_.path().string() + "/it'\\''s 50 %%/slurm-%a.log'\n"));
+    EXPECT_THAT(script, HasSubstr("\n#SBATCH --job-name=kluft-study\n"));
+}
+
+TEST_F(StudyRuns, LineBreaksInNamesAreRefused) {
+    const auto is_refused = ThrowsMessage<InputError>(HasSubstr("found a line break"));
+    const ReadStudy study = read(steps("10, 20"));
+    EXPECT_THAT([&] { prepare_study(study, "/opt/kluft", directory_ / "two\nlines"); }, is_refused);
+    EXPECT_FALSE(fs::exists(directory_ / "two\nlines"));
+    ReadStudy named = study;
+    named.study.name = "study\ntouch file";
+    EXPECT_THAT([&] { prepare_study(named, "/opt/kluft", results_); }, is_refused);
+    prepare_study(study, "/opt/kluft", results_);
+    EXPECT_THAT([&] { (void)emit_study("make", study, results_, 1, {"collect", "two\nlines.yaml"}); }, is_refused);
+}
+
 // ---- ready-made studies and the command ----------------------------------------------------------------------------
 
 TEST_F(StudyRuns, StepSizeStudyTakesTheLastStageThatMovesAPlaten) {
@@ -303,7 +340,7 @@ TEST_F(StudyRuns, ReadyMadeStudyReplacesItsLikeOnly) {
     EXPECT_EQ(exit_code_of(in + "step-size scene.yaml -o made --emit make >said 2>&1"), 0);
     EXPECT_EQ(exit_code_of(in + "step-size scene.yaml -o made --emit make >said 2>&1"), 0);
     const std::string made = content_of(directory_ / "made" / "study.yaml");
-    const StudyLock lock(directory_ / "made");
+    const DirectoryLock lock(directory_ / "made", "kluft study step-size");
     EXPECT_EQ(exit_code_of(in + "step-size scene.yaml -o made --set title=Other --emit make >said 2>&1"), 2);
     EXPECT_EQ(content_of(directory_ / "made" / "study.yaml"), made);
 }

@@ -18,7 +18,7 @@ def theory(slope, aspect):
 
 
 def found_mode(run):
-    """By what is left over on the block where no equilibrium is found: a force alone, or a moment with it."""
+    """How the block moves where no equilibrium is found: along its base alone, or turning too."""
     falling = run.summary["falling_blocks"]
     if not falling:
         return "at rest"

@@ -69,6 +69,7 @@ public:
 private:
     struct Cholmod;
     std::unique_ptr<Cholmod> cholmod_;
+    [[nodiscard]] bool has_finite_pivots() const;
     [[nodiscard]] double least_pivot_ratio();
 
     BlockColumns columns_;

@@ -104,6 +104,9 @@ struct BlockSystem {
 /// own (m).
 [[nodiscard]] double motion_scale(const BlockSystem& system, const Block& block);
 
+/// Of all blocks (m2).
+[[nodiscard]] double area_of(const BlockSystem& system);
+
 /// Length of the net's edges between triangles per area of triangles, in units of 1/d with the d of each edge: 2 sqrt(3) of
 /// equilateral ones without end.
 [[nodiscard]] double edges_per_triangle_area(const BlockSystem& system);

@@ -21,6 +21,10 @@ struct FractureTrace {
     std::string place{}; ///< where the scene gives it, as messages begin; empty: its index is told
 };
 
+/// Cells of a net at most: with more the memory of a run, some 8 kB per block and the factor, is beyond that of a large
+/// computer, and most often a spacing has a wrong unit.
+constexpr double most_cells = 2e6;
+
 /// A net of regular hexagons. `spacing` is the distance of centres, which is also the distance across flats (m).
 /// With rotation 0 the flats are vertical: centres at offset + spacing (i + j/2, j sqrt(3)/2).
 struct HexagonLattice {
@@ -106,6 +110,7 @@ struct BoundarySides {
 /// Where the scene gives its parts: file, line and key, as messages begin, or the keys alone.
 struct GeometryPlaces {
     std::string domain = "geometry.domain";
+    std::string blocks = "geometry.blocks";
     std::string net = "geometry.tessellation.triangles";
     std::string spacing = "geometry.tessellation.triangles.spacing";
     std::string grading = "geometry.tessellation.triangles.grading";

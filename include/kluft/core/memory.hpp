@@ -21,4 +21,11 @@ void prefer_huge_pages(void* begin, std::size_t size);
 /// they are written again. Does nothing where the system has no call for it.
 void give_back_pages(void* begin, std::size_t size);
 
+/// To be called by an allocator of the program that has not found memory where it should be.
+void note_lack_of_memory() noexcept;
+/// Whether it has been called: what still works then lives on a reserve and has to end soon.
+[[nodiscard]] bool memory_ran_out() noexcept;
+/// Throws ResourceError if memory ran out.
+void require_memory();
+
 } // namespace kluft

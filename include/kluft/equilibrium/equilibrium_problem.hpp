@@ -36,8 +36,7 @@ struct Residual {
 class EquilibriumEvaluator {
 public:
     /// `pattern` must contain every pair of the problem's points.
-    EquilibriumEvaluator(const EquilibriumProblem& problem, const BlockPattern& pattern)
-        : problem_(problem), pattern_(pattern), coordinates_(*problem.body.system, problem.body.kinematics) {}
+    EquilibriumEvaluator(const EquilibriumProblem& problem, const BlockPattern& pattern);
 
     [[nodiscard]] const EquilibriumProblem& problem() const { return problem_; }
     /// Of the problem; what they reduce is seen from the q of the last residual.
@@ -59,6 +58,7 @@ private:
     const EquilibriumProblem& problem_;
     const BlockPattern& pattern_;
     Coordinates coordinates_;
+    double area_ = 0.0; ///< of the body (m2)
     BodyForces body_forces_;
     Eigen::VectorXd turned_to_;      ///< of rigid blocks: the q of the last residual
     std::vector<double> curvatures_; ///< stiffness against w from the forces at that q, per block

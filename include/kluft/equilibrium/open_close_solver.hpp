@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -41,7 +42,8 @@ enum class Termination {
     converged,      ///< q is an equilibrium
     relaxed,        ///< q is near enough to one for a relaxation
     max_iterations, ///< q is the last iterate, no equilibrium
-    singular        ///< the stiffness could not be factorized: nothing holds a part of the body
+    singular,       ///< the stiffness could not be factorized: nothing holds a part of the body
+    not_finite      ///< a displacement, a force or an increment is no finite number
 };
 
 struct OpenCloseSummary {
@@ -50,6 +52,7 @@ struct OpenCloseSummary {
     double residual_ratio = 0.0; ///< |R|/F_ref at q
     double force_scale = 0.0;    ///< F_ref (N/m)
     int worst_block = -1;        ///< the block with the largest residual
+    std::string flaw;            ///< what is no finite number, and where; "" otherwise
     [[nodiscard]] bool converged() const { return termination == Termination::converged; }
 };
 

@@ -54,7 +54,11 @@ struct LoadedBody {
     const std::vector<InterfaceLaw>* laws = nullptr;
     const Placement* placement = nullptr;
     const Loads* loads = nullptr;
+    /// The largest axial stress in the run so far, of a body that only moved platens load (Pa); 0 of others.
+    double carried_stress = 0.0;
 };
+/// What counts as no force on a part of the body of `area` (m2), beside those that it has carried (N/m). Source: (27c).
+[[nodiscard]] double negligible_force(double carried_stress, double area);
 
 struct BodyForces {
     Eigen::VectorXd forces;     ///< internal + interface - external, size 6 n_blocks (N/m)

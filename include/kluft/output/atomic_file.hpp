@@ -13,7 +13,7 @@ namespace kluft {
 /// Throws ResourceError (file and the system's reason) and leaves the old file as it was.
 void write_file(const std::filesystem::path& path, std::string_view content);
 
-/// The bytes of a file. Throws InputError when it cannot be read.
+/// The bytes of a regular file of at most 8 GB. Throws InputError when it cannot be read.
 [[nodiscard]] std::string read_file(const std::filesystem::path& path);
 
 /// Makes the directory and its parents. Throws ResourceError.

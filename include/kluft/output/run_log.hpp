@@ -10,7 +10,8 @@ namespace kluft {
 /// Each line reaches the file at once. A log that can no longer be written does not end a run.
 class RunLog {
 public:
-    /// Opens `path`; a resumed run goes on behind the old lines. Throws ResourceError when it cannot be opened.
+    /// Opens `path`; a resumed run goes on behind the old lines. A symbolic link of that name is replaced by a new log.
+    /// Throws ResourceError when it cannot be opened.
     explicit RunLog(const std::filesystem::path& path, bool resume = false);
     RunLog(RunLog&&) noexcept;
     RunLog& operator=(RunLog&&) noexcept;

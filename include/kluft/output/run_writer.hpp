@@ -1,6 +1,7 @@
 // Everything that a run leaves in its directory.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -19,10 +20,11 @@
 namespace kluft {
 
 struct RunWriterOptions {
-    bool fields = true;       ///< fields.pvd and fields/*.vtu
-    int fields_every = 0;     ///< load steps between two of them; 0: only step 0 and the end of each stage
-    bool pictures = true;     ///< curve.png, curve.svg, blocks.png, blocks.svg
-    int checkpoint_every = 0; ///< load steps between two state.h5; 0: at the end of each stage and of the run
+    bool fields = true;              ///< fields.pvd and fields/*.vtu
+    int fields_every = 0;            ///< load steps between two of them; 0: only step 0 and the end of each stage
+    bool pictures = true;            ///< curve.png, curve.svg, blocks.png, blocks.svg
+    int checkpoint_every = 0;        ///< load steps between two state.h5; 0: at the end of each stage and of the run
+    double checkpoint_seconds = 0.0; ///< after so much time by the clock a state is saved too; 0: not for that reason
     std::string title;
     std::string fingerprint;         ///< of the scene, kept in state.h5
     std::string scene_text;          ///< kept in state.h5 too, so that the run can be drawn again
@@ -44,22 +46,24 @@ struct RunOutcome {
     std::string blas_core; ///< as in the summary
 };
 
-/// Writes history.csv, equilibria.csv, cracks.csv and histories.csv row by row, field files, state.h5 at checkpoints, and at the end
-/// summary.json and the pictures. The tables hold whole rows at any moment, every other file appears whole.
+/// Writes history.csv, equilibria.csv, cracks.csv, jumps.csv and histories.csv load step by load step, field files, state.h5
+/// at checkpoints, and at the end summary.json and the pictures. The tables hold whole rows at any moment, every other file
+/// appears whole. No state is saved before all rows of its load step are on the disk.
 ///
 /// A new run first removes what an earlier one left in the directory (run.log excepted), so that results never mix;
 /// foreign files stay. A resumed run keeps the rows and field files up to the saved step and goes on from there.
 class RunWriter : public StepObserver {
 public:
     /// `system` must outlive the writer. Throws ResourceError; InputError when the tables of a run to resume are
-    /// missing or do not reach the saved step.
+    /// missing, or are not up to the saved step what they were when it was saved.
     RunWriter(std::filesystem::path directory, const BlockSystem& system, RunWriterOptions options);
     ~RunWriter() override;
 
-    /// These throw ResourceError.
+    /// These rows wait for the load step that they belong to.
     void equilibrium(const StepRecord& record) override;
     void crack(const CrackRecord& crack) override;
     void jump(const JumpRecord& jump) override;
+    /// Throws ResourceError; what could not be written then is written by `checkpoint`, if there is room.
     void step(const StepRecord& record, const State& state, const std::function<FieldRecord()>& fields,
               bool last_of_stage) override;
 
@@ -67,24 +71,30 @@ public:
     void checkpoint(const State& state);
 
     /// Ends the run, however it ended: last state, field files of the last step, summary, pictures. `fields` computes
-    /// the fields of `state`. Tries everything, also after a part failed; then throws the first ResourceError.
+    /// the fields of `state`. Tries everything, also after a part failed; then gives up and throws the first ResourceError.
     RunSummary finish(const RunOutcome& outcome, const State& state, const std::function<FieldRecord()>& fields);
+
+    /// Makes the summary say that disk or memory ran out at the end, and why.
+    void give_up(RunSummary summary, const std::string& why) const;
 
 private:
     struct Tables;
+    using Clock = std::chrono::steady_clock;
 
     /// Whether the tables of a resumed run have the row already.
     [[nodiscard]] bool is_known(const StepRecord& record) const;
-    void write_pictures(const FieldRecord& fields) const;
+    void write_pictures(const std::vector<StepRecord>& history, const std::vector<StepRecord>& equilibria,
+                        const FieldRecord& fields) const;
     void write_fields(const StepRecord& record, const FieldRecord& fields);
-    [[nodiscard]] RunSummary summary_of(const RunOutcome& outcome) const;
+    [[nodiscard]] RunSummary summary_of(const RunOutcome& outcome, const std::vector<StepRecord>& history,
+                                        const std::vector<StepRecord>& equilibria) const;
 
     std::filesystem::path directory_;
     const BlockSystem& system_;
     RunWriterOptions options_;
     std::unique_ptr<Tables> tables_;
-    std::vector<StepRecord> history_;
-    std::vector<StepRecord> equilibria_;
+    std::optional<StepRecord> last_row_;     ///< of history.csv; the others are on the disk only
+    Clock::time_point saved_ = Clock::now(); ///< when the last state was
 };
 
 /// Removes every file that a run writes, except run.log. Throws ResourceError.

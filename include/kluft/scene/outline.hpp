@@ -25,8 +25,8 @@ enum class Facing { left, right, top, bottom };
 /// counts as top or bottom, so that every side of non-zero length faces one way only.
 [[nodiscard]] std::vector<int> sides_facing(const Polygon& polygon, Facing facing);
 
-/// Two sides that cross each other or touch where they should not, if the polygon has fewer than `most_sides` sides.
-/// Plain floating-point arithmetic: clear cases only; the block cutter decides exactly.
-[[nodiscard]] std::optional<std::pair<int, int>> crossing_sides(const Polygon& polygon, int most_sides);
+/// The first two sides that cross each other. Plain floating-point arithmetic: clear cases only; the block cutter decides
+/// exactly.
+[[nodiscard]] std::optional<std::pair<int, int>> crossing_sides(const Polygon& polygon);
 
 } // namespace kluft

@@ -8,10 +8,10 @@
 namespace kluft {
 
 /// What a number of a scene measures.
-enum class Measure { fraction, length, stress, stiffness, density, velocity, acceleration, line_force, angle };
+enum class Measure { fraction, length, stress, stiffness, density, velocity, acceleration, line_force, time, angle };
 
 /// The unit of a plain number: "", "m", "Pa", "Pa/m", "kg/m3", "m/s", "m/s2",
-/// "N/m" (a force per metre of thickness), "deg".
+/// "N/m" (a force per metre of thickness), "s", "deg".
 [[nodiscard]] std::string_view unit_name(Measure measure);
 
 /// A decimal number, all of `text`: 25, -0.5, .5, 1e-3. Nothing for 012, 0x1f, 1_000, nan, inf and what a double cannot

@@ -10,8 +10,9 @@
 
 namespace kluft {
 
-/// A scene's bytes: at most 1 MB of text. Throws InputError for what is missing, no file, too large or binary.
-[[nodiscard]] std::string read_scene_bytes(const std::filesystem::path& file);
+/// The bytes of a scene or of another file of keys, which `what` names as in "a scene": at most 1 MB of text. Throws
+/// InputError for what is missing, no file, too large or binary.
+[[nodiscard]] std::string read_scene_bytes(const std::filesystem::path& file, std::string_view what = "a scene");
 
 /// Parses a scene's text, merges it over what it extends (whose file names are relative to its own) and applies
 /// overrides. What is wrong goes to `errors`; missing or binary files throw InputError at once.

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <optional>
 #include <utility>
 
 #include "kluft/core/bracket.hpp"
@@ -27,6 +29,7 @@ template <class Equilibrium> struct EventCut {
 
 inline constexpr int quick_event_trials = 12; ///< then the interval is halved: a kink of the index may be crept up to
 inline constexpr int max_event_trials = 60;
+inline constexpr int max_trials_without = 6;         ///< an equilibrium
 inline constexpr double largest_useful_index = 10.0; ///< a strength of zero makes f infinite
 
 /// Where in the bracket the next trial of a search is made.
@@ -36,7 +39,8 @@ inline constexpr double largest_useful_index = 10.0; ///< a strength of zero mak
 
 /// The first event in (from, end.load_factor]. `index_of(equilibrium)` and `index_at_start()` evaluate the index, each
 /// under the loads of its own load factor; `find_at(load_factor, share, end)` searches an equilibrium between the start
-/// (share 0) and `end` (share 1). Illinois on the load factor; a search without a balanced result ends it.
+/// (share 0) and `end` (share 1). Illinois on the load factor. Where a trial has no balanced result, one at a smaller load
+/// factor follows; where the event stays among those, the last equilibrium before it is returned, if one was found.
 template <class Equilibrium, class IndexOf, class IndexAtStart, class FindAt>
 EventCut<Equilibrium> first_event(const EventGoal& goal, double from, Equilibrium end, IndexOf index_of,
                                   IndexAtStart index_at_start, FindAt find_at) {
@@ -44,10 +48,18 @@ EventCut<Equilibrium> first_event(const EventGoal& goal, double from, Equilibriu
     if (at_end <= goal.last_without) return {std::move(end)};
     Bracket bracket{from, end.load_factor, index_at_start() - goal.index, at_end - goal.index};
     if (bracket.g_low >= 0.0) return {std::move(end)};
+    double without = bracket.high; // the least load factor at which no equilibrium was found
+    int n_without = 0;
+    std::optional<Equilibrium> before; // the last one before the event
     for (int i = 0; i < max_event_trials && bracket.width() > goal.least_width; ++i) {
-        const double at = event_trial(bracket, i);
+        double at = event_trial(bracket, i);
+        if (at >= without) at = std::midpoint(bracket.low, without);
         Equilibrium next = find_at(at, (at - from) / (bracket.high - from), end);
-        if (!next.balanced) break;
+        if (!next.balanced) {
+            without = at;
+            if (++n_without > max_trials_without) break;
+            continue;
+        }
         const double g = index_of(next) - goal.index;
         const bool is_event = std::abs(g) <= goal.reach;
         if (is_event) {
@@ -55,9 +67,10 @@ EventCut<Equilibrium> first_event(const EventGoal& goal, double from, Equilibriu
         } else {
             bracket.take(at, g);
         }
-        if (bracket.high == at) end = std::move(next);
+        (bracket.high == at ? end : before.emplace()) = std::move(next);
         if (is_event) break;
     }
+    if (without < bracket.high && before) return {std::move(*before)}; // the event lies where no equilibrium was found
     if (bracket.width() <= goal.least_width) return {std::move(end), bracket.width()};
     return {std::move(end)};
 }

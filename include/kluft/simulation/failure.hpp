@@ -14,7 +14,8 @@ namespace kluft {
 enum class FailureKind {
     no_equilibrium, ///< none was found at the load level
     falling,        ///< blocks move on at a load that does not change
-    broken_body     ///< displacements that are those of a body no more
+    broken_body,    ///< displacements that are those of a body no more
+    too_many_solves ///< the load step took as many as it may: what it would come to is not known
 };
 
 struct Failure {
@@ -28,13 +29,15 @@ struct Failure {
     std::string what;                ///< in place of the residual, of a broken body or a motion
 
     /// Whether the body may just have reached what it carries, where its load is a stress.
-    [[nodiscard]] bool may_be_collapse() const { return !nothing_holds && kind != FailureKind::broken_body; }
+    [[nodiscard]] bool may_be_collapse() const {
+        return !nothing_holds && (kind == FailureKind::no_equilibrium || kind == FailureKind::falling);
+    }
 };
 
-/// Where blocks have moved away by `moved` in the load step (m), they go on in that direction, whatever pushes them at the
-/// moment.
-[[nodiscard]] std::vector<MovingBlock> moving_on(const BlockSystem& system, const Eigen::VectorXd& moved,
-                                                 std::vector<MovingBlock> moving);
+/// Where blocks have moved away in the load step, from the displacements `before` to `now`, they go on in that direction
+/// and turn on, whatever pushes them at the moment.
+[[nodiscard]] std::vector<MovingBlock> moving_on(const BlockSystem& system, const Eigen::VectorXd& before,
+                                                 const Eigen::VectorXd& now, std::vector<MovingBlock> moving);
 
 /// In words the blocks that move and where to; "" without any.
 [[nodiscard]] std::string description(const Model& model, const std::vector<MovingBlock>& moving);

@@ -38,6 +38,7 @@ struct SolverOptions {
     double viscosity = 5e-3; ///< eta H^2/E of the mass-like term
     int max_iterations = 12; ///< open-close iterations per attempt
     int max_unbalanced_steps = 10; ///< successive unbalanced steps that end a run
+    int max_step_solves = 20000;   ///< linear solves of one load step; more end the run
     Tangent tangent = Tangent::unsymmetric;
     bool reuse = true;       ///< of the factor; false: a factorization in each linear solve
     bool repeatable = false; ///< one BLAS thread and a new factor in each load step: runs are bit-identical for any

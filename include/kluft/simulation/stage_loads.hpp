@@ -67,7 +67,10 @@ struct LoadsAt {
     std::vector<InterfaceLaw> laws; ///< per interface type and kind of broken edge, reduced by `strength_factor`
     double load_factor = 0.0;
     double strength_factor = 1.0; ///< F that strengths are divided by
+    double carried_stress = 0.0;  ///< of LoadedBody
 };
+/// Whether anything but a platen that is moved and what it is held with loads the body.
+[[nodiscard]] bool has_given_loads(const Model& model, const Loads& loads);
 [[nodiscard]] LoadsAt loads_at(const Model& model, const StageLoads& stage_loads, const PlatenHold& hold, int stage,
                                double load_factor);
 

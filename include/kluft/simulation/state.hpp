@@ -54,7 +54,7 @@ struct SolverMemory {
         rate; ///< displacement per unit of load factor of a smooth last step: the predictor; empty without one
     std::vector<std::pair<int, int>> near_pairs; ///< blocks the matrix was ordered for, besides those at interfaces
     /// Contact points that the next load step may keep where blocks have hardly moved, and the load steps taken with
-    /// them: only where contacts are not detected in each step. Not saved: a resumed run detects anew.
+    /// them: only where contacts are not detected in each step.
     std::vector<ContactPoint> kept_points;
     int steps_since_detection = 0;
     Eigen::VectorXd detected_at; ///< displacement at the last detection (m)
@@ -127,6 +127,9 @@ template <class Members, class Visit> void visit_saved(Members& state, Visit&& v
     visit("strain_zero", state.strain_zero);
     visit("rate", state.memory.rate);
     visit("near_pairs", state.memory.near_pairs);
+    visit("kept_points", state.memory.kept_points);
+    visit("steps_since_detection", state.memory.steps_since_detection);
+    visit("detected_at", state.memory.detected_at);
     visit("step_size", state.control.size);
     visit("step_curvature", state.control.curvature);
     visit("step_lag", state.control.lag);

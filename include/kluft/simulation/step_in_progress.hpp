@@ -49,17 +49,20 @@ struct StepInProgress {
     const State& from;
     const StepGoal& goal;
     Step step;
-    PlatenHold hold; ///< of the platens where the step stands
+    PlatenHold hold;          ///< of the platens where the step stands
+    bool is_at_limit = false; ///< no equilibrium was found a little further on, and no potential crack fails before
 
     [[nodiscard]] const Eigen::VectorXd& displacement() const { return step.end.body.displacement; }
     [[nodiscard]] double load_factor() const { return step.end.at.load_factor; }
-    [[nodiscard]] LoadsAt loads_at(double load_factor) const {
-        return kluft::loads_at(bench.model, bench.loads, hold, step.end.at.stage, load_factor);
-    }
+    [[nodiscard]] LoadsAt loads_at(double load_factor) const { return loads_at(hold, load_factor); }
     /// Under which an equilibrium was found.
     [[nodiscard]] LoadsAt loads_at(const Equilibrium& found) const {
-        return kluft::loads_at(bench.model, bench.loads, found.hold.value_or(hold), step.end.at.stage,
-                               found.load_factor);
+        return loads_at(found.hold.value_or(hold), found.load_factor);
+    }
+    [[nodiscard]] LoadsAt loads_at(const PlatenHold& held, double load_factor) const {
+        LoadsAt at = kluft::loads_at(bench.model, bench.loads, held, step.end.at.stage, load_factor);
+        if (!has_given_loads(bench.model, at.loads)) at.carried_stress = from.stresses.largest_axial; // (27c)
+        return at;
     }
     [[nodiscard]] bool failed() const { return step.failure.has_value(); }
 };
@@ -120,6 +123,15 @@ template <class IndexAt>
             return find_at(in_progress, placed, load_factor, start + share * (end.displacement - start));
         });
 }
+
+/// Thrown by find_at and solve_step where the load step has taken as many linear solves as it may.
+struct SolvesSpent {
+    Equilibrium last;
+};
+/// Counts the linear solves that led to `found`. Throws SolvesSpent.
+void count_solves(StepInProgress& in_progress, const Equilibrium& found);
+/// The step has failed: its solves are spent.
+void fail(StepInProgress& in_progress, const SolvesSpent& spent);
 
 /// Where blocks have moved away in the load step up to q, they go on in that direction (failure.hpp).
 [[nodiscard]] std::vector<MovingBlock> moving_on(const StepInProgress& in_progress, const Eigen::VectorXd& q,

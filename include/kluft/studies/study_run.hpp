@@ -32,19 +32,6 @@ struct StudyRunOptions {
     std::function<void(const StudyProgress&)> show; ///< called often
 };
 
-/// Keeps other studies out of a directory for its life.
-class StudyLock {
-public:
-    /// Throws InputError when another study has the directory, ResourceError when the lock cannot be made.
-    explicit StudyLock(const std::filesystem::path& directory);
-    StudyLock(const StudyLock&) = delete;
-    StudyLock& operator=(const StudyLock&) = delete;
-    ~StudyLock();
-
-private:
-    int descriptor_ = -1;
-};
-
 /// The command line of a case: the program, its words, not quoted.
 [[nodiscard]] std::vector<std::string> case_command(const ReadStudy& read, const PlannedCase& one,
                                                     const std::filesystem::path& program,
@@ -53,7 +40,11 @@ private:
 /// Words as a POSIX shell takes them.
 [[nodiscard]] std::string shell_line(const std::vector<std::string>& words);
 
-/// Makes the directories of all cases that can be run and writes cases.txt, a command line for each of them.
+/// Throws InputError where the text has a line break, which cases.txt and the scripts of schedulers cannot hold. `what` it is.
+void require_one_line(const std::string& what, const std::string& text);
+
+/// Makes the directories of all cases that can be run and writes cases.txt, a command line for each of them. Throws
+/// InputError for a line break in a command.
 void prepare_study(const ReadStudy& read, const std::filesystem::path& program, const std::filesystem::path& directory);
 
 /// Runs what has not ended yet, one process each; a case that was interrupted goes on from its saved state. Rewrites

@@ -5,8 +5,6 @@
 #include <string>
 #include <string_view>
 
-#include <fmt/format.h>
-
 namespace kluft {
 
 /// FNV-1a, 64 bits, of texts one after the other.
@@ -18,7 +16,7 @@ public:
         return *this;
     }
     /// 16 hexadecimal digits.
-    [[nodiscard]] std::string text() const { return fmt::format("{:016x}", state_); }
+    [[nodiscard]] std::string text() const;
 
 private:
     void step(std::uint64_t symbol) { state_ = (state_ ^ symbol) * 0x100000001B3U; }

@@ -1,0 +1,82 @@
+#include "failure.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <new>
+#include <stdexcept>
+#include <system_error>
+
+#include <sys/stat.h>
+
+#include "kluft/core/diagnostics.hpp"
+
+namespace kluft {
+
+namespace {
+
+/// Names of files may hold what moves the cursor or colours the terminal.
+void tell_line(const char* message) noexcept {
+    for (const char* c = message; *c != '\0'; ++c) {
+        const bool is_control = (static_cast<unsigned char>(*c) < 0x20 && *c != '\n' && *c != '\t') || *c == 0x7F;
+        std::fputc(is_control ? '?' : *c, stderr);
+    }
+    std::fputc('\n', stderr);
+}
+
+ExitCode told(const char* message, ExitCode code) noexcept {
+    tell_line(message);
+    return code;
+}
+
+bool is_shortage(const std::error_code& error) {
+    const auto shortages = {std::errc::no_space_on_device, std::errc::not_enough_memory, std::errc::io_error,
+                            std::errc::too_many_files_open, std::errc::too_many_files_open_in_system};
+    return std::ranges::any_of(shortages, [&](std::errc shortage) { return error == shortage; });
+}
+
+ExitCode told(const std::filesystem::filesystem_error& error) {
+    const std::string message = error.path1().string() + ": " + error.code().message();
+    return told(message.c_str(), is_shortage(error.code()) ? ExitCode::out_of_resources : ExitCode::bad_input);
+}
+
+} // namespace
+
+ExitCode tell_failure() noexcept {
+    try {
+        throw;
+    } catch (const InputError& error) {
+        return told(error.what(), ExitCode::bad_input);
+    } catch (const NoEquilibriumError& error) {
+        return told(error.what(), ExitCode::no_equilibrium);
+    } catch (const ResourceError& error) {
+        return told(error.what(), ExitCode::out_of_resources);
+    } catch (const std::bad_alloc&) {
+        return told("out of memory", ExitCode::out_of_resources);
+    } catch (const std::length_error&) { // of an array that no memory could hold
+        return told("out of memory", ExitCode::out_of_resources);
+    } catch (const std::filesystem::filesystem_error& error) {
+        try {
+            return told(error);
+        } catch (const std::exception&) {
+            return told("out of memory", ExitCode::out_of_resources);
+        }
+    } catch (const std::exception& error) { // which nothing foresees: what was given made the program err
+        std::fputs("kluft cannot go on with this input: ", stderr);
+        return told(error.what(), ExitCode::bad_input);
+    } catch (...) {
+        return told("kluft cannot go on with this input", ExitCode::bad_input);
+    }
+}
+
+void require_possible_output(const std::string& path) {
+    struct stat status {};
+    if (stat((path + ".part").c_str(), &status) == 0 || (errno != ENAMETOOLONG && errno != ENOTDIR && errno != ELOOP))
+        return;
+    throw InputError("-o: expected a name for the results, found " + path + " (" +
+                     std::generic_category().message(errno) + ")");
+}
+
+} // namespace kluft

@@ -1,0 +1,16 @@
+// The one end of a program that fails.
+#pragma once
+
+#include <string>
+
+#include "commands.hpp"
+
+namespace kluft {
+
+/// Says on standard error what the exception in flight is about, and gives the exit code; within a catch only.
+[[nodiscard]] ExitCode tell_failure() noexcept;
+
+/// Throws InputError where nothing can be made at `path`, which the option -o names: a part of it is too long or is a file.
+void require_possible_output(const std::string& path);
+
+} // namespace kluft
