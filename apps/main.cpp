@@ -340,6 +340,7 @@ int program(int argc, char** argv) {
 
 int main(int argc, char** argv) {
     try {
+        kluft::take_termination();
         kluft::open_standard_streams();
         kluft::leave_writing_to_its_result();
         kluft::choose_blas_kernels(argv);

@@ -14,7 +14,22 @@ void request_stop(int signal) {
     if (!stop_requested.exchange(true)) first_signal = signal;
 }
 
+/// What was blocked when this program was started.
+sigset_t blocked_at_start;
+
+/// Runs before the libraries start threads of their own, which inherit what is blocked.
+void block_termination() {
+    sigset_t termination;
+    sigemptyset(&termination);
+    sigaddset(&termination, SIGTERM);
+    sigprocmask(SIG_BLOCK, &termination, &blocked_at_start);
+}
+
+[[gnu::section(".preinit_array"), gnu::used]] void (*const before_libraries)() = block_termination;
+
 } // namespace
+
+void take_termination() { sigprocmask(SIG_SETMASK, &blocked_at_start, nullptr); }
 
 void listen_for_stop() {
     for (const int signal : {SIGINT, SIGTERM})

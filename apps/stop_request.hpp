@@ -10,6 +10,10 @@ namespace kluft {
 /// Whether a signal has asked to stop since `listen_for_stop`.
 extern std::atomic<bool> stop_requested;
 
+/// From now on SIGTERM reaches this thread, for which it has waited since the program's start. The threads that libraries
+/// have started by then never take it: while METIS works it has a handler that must run in the thread of its caller.
+void take_termination();
+
 /// From now on SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXCPU, SIGUSR1, SIGUSR2 and SIGALRM set `stop_requested`. Who started
 /// the program with one of the last six ignored, as nohup does, has it ignored.
 void listen_for_stop();

@@ -72,6 +72,7 @@ kluft::ExitCode run(const std::vector<std::string>& words) {
 
 int main(int argc, char** argv) {
     try {
+        kluft::take_termination();
         kluft::open_standard_streams();
         kluft::leave_writing_to_its_result();
         const ExitCode code = run({argv, argv + argc});

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <cholmod.h>
+#include <csignal>
 #include <metis.h>
 
 #include "kluft/core/diagnostics.hpp"
@@ -13,6 +14,33 @@
 namespace kluft {
 
 namespace {
+
+/// Keeps METIS from the signals of this program. While it works it handles SIGTERM and SIGABRT itself: it takes one that
+/// comes from outside for an error of its own, leaves its work, wherever that is, and reports a lack of memory; and it
+/// restores the handlers in System V's way, for one signal only. SIGTERM waits until METIS is done.
+class SignalsKept {
+public:
+    SignalsKept() {
+        sigset_t termination;
+        sigemptyset(&termination);
+        sigaddset(&termination, SIGTERM);
+        pthread_sigmask(SIG_BLOCK, &termination, &blocked_);
+        sigaction(SIGTERM, nullptr, &on_termination_);
+        sigaction(SIGABRT, nullptr, &on_abort_);
+    }
+    ~SignalsKept() {
+        sigaction(SIGTERM, &on_termination_, nullptr);
+        sigaction(SIGABRT, &on_abort_, nullptr);
+        pthread_sigmask(SIG_SETMASK, &blocked_, nullptr);
+    }
+    SignalsKept(const SignalsKept&) = delete;
+    SignalsKept& operator=(const SignalsKept&) = delete;
+
+private:
+    sigset_t blocked_{};
+    struct sigaction on_termination_ {};
+    struct sigaction on_abort_ {};
+};
 
 /// METIS's new position of each block.
 std::vector<int> nested_dissection(const BlockPattern& pattern) {
@@ -36,6 +64,7 @@ std::vector<int> nested_dissection(const BlockPattern& pattern) {
     idx_t options[METIS_NOPTIONS];
     METIS_SetDefaultOptions(options);
     options[METIS_OPTION_SEED] = 1;
+    const SignalsKept kept;
     if (METIS_NodeND(&count, starts.data(), neighbours.data(), nullptr, options, perm.data(), inverse.data()) !=
         METIS_OK) {
         throw ResourceError("out of memory while ordering the blocks");

@@ -16,6 +16,7 @@ def signals(bench, i):
     process = bench.start(words, cwd)
     if words[0] == "run":
         wait_for_rows(cwd / "out", rng.randint(0, {"run": 24, "slope": 8, "explicit": 4}[name]), process)
+        time.sleep(rng.uniform(0.0, 0.05))
     else:
         time.sleep(rng.uniform(0.2, 1.5))
     process.send_signal(getattr(signal, which))

@@ -8,6 +8,26 @@ TYPES = {"Float64": "f8", "Int64": "i8", "Int32": "i4", "UInt8": "u1"}
 START = b'<AppendedData encoding="raw">\n_'
 
 
+def data_arrays(path):
+    """The arrays of a field file, {section: {name: array}} with the sections Points, PointData, CellData and Cells: (n, columns), or (n,)
+    with one column."""
+    content = path.read_bytes()
+    at = content.index(START)
+    order = "<" if b'byte_order="LittleEndian"' in content[:at] else ">"
+    base = at + len(START)
+
+    def array(node):
+        begin = base + int(node.get("offset"))
+        length = int(np.frombuffer(content, order + "u8", 1, begin)[0])
+        kind = np.dtype(order + TYPES[node.get("type")])
+        values = np.frombuffer(content, kind, length // kind.itemsize, begin + 8)
+        columns = int(node.get("NumberOfComponents", 1))
+        return values.reshape(-1, columns) if columns > 1 else values
+
+    piece = ElementTree.fromstring(content[:at].decode() + "</VTKFile>").find("UnstructuredGrid/Piece")
+    return {section.tag: {node.get("Name"): array(node) for node in section} for section in piece}
+
+
 class Fields:
     """Blocks (polygons) or interfaces (lines) of one load step.
 
@@ -17,31 +37,16 @@ class Fields:
     """
 
     def __init__(self, path):
-        content = path.read_bytes()
-        at = content.index(START)
-        order = "<" if b'byte_order="LittleEndian"' in content[:at] else ">"
-        root = ElementTree.fromstring(content[:at].decode() + "</VTKFile>")
-        base = at + len(START)
-
-        def array(node):
-            begin = base + int(node.get("offset"))
-            length = int(np.frombuffer(content, order + "u8", 1, begin)[0])
-            kind = np.dtype(order + TYPES[node.get("type")])
-            values = np.frombuffer(content, kind, length // kind.itemsize, begin + 8)
-            columns = int(node.get("NumberOfComponents", 1))
-            return values.reshape(-1, columns) if columns > 1 else values
-
-        piece = root.find("UnstructuredGrid/Piece")
-        self.points = array(piece.find("Points/DataArray"))[:, :2]
-        point_data = {node.get("Name"): array(node) for node in piece.findall("PointData/DataArray")}
-        self.displacement = point_data["displacement"][:, :2]
-        self.field = {node.get("Name"): array(node) for node in piece.findall("CellData/DataArray")}
+        sections = data_arrays(path)
+        self.points = sections["Points"]["Points"][:, :2]
+        self.displacement = sections["PointData"]["displacement"][:, :2]
+        self.field = sections["CellData"]
         if "stress" in self.field:
             tensor = -self.field.pop("stress")
             self.field.update(stress_xx=tensor[:, 0], stress_xy=tensor[:, 1], stress_yy=tensor[:, 4])
         if "normal_traction" in self.field:
             self.field["normal_traction"] = -self.field["normal_traction"]
-        shapes = {node.get("Name"): array(node) for node in piece.findall("Cells/DataArray")}
+        shapes = sections["Cells"]
         self.cells = np.split(shapes["connectivity"], shapes["offsets"][:-1])
 
     def __getitem__(self, name):
