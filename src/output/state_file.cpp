@@ -11,14 +11,18 @@
 #include <hdf5.h>
 
 #include "kluft/core/diagnostics.hpp"
+#include "kluft/core/digest.hpp"
 #include "kluft/output/atomic_file.hpp"
 
 namespace kluft {
 
 namespace {
 
-constexpr int format_version = 11;
+constexpr int format_version = 12;
 constexpr std::string_view format_name = "kluft state";
+
+constexpr std::string_view seal = "\nkluft digest "; // before the digest of all that stands before the seal
+constexpr std::size_t digest_digits = 16;
 
 /// What went wrong inside HDF5; the callers add the file's name.
 struct Hdf5Failure {
@@ -87,7 +91,7 @@ void write_text(hid_t file, const char* name, std::string_view text) {
     checked(H5Awrite(attribute, type, padded.data()), name);
 }
 
-/// Nothing in a file is larger than the file: what it stores is not compressed.
+/// Nothing in a file is larger than the file: what it holds is not compressed.
 void require_room(hid_t file, std::size_t count, std::size_t size_of_one, const char* name) {
     hsize_t size = 0;
     checked(H5Fget_filesize(file, &size), name);
@@ -121,15 +125,8 @@ template <class Number> void write_array(hid_t file, const char* name, const Num
     }
     const hsize_t extent = size;
     const Identifier space(H5Screate_simple(1, &extent, nullptr), H5Sclose, name);
-    const Identifier creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, name);
-    if (size > 0) {
-        constexpr hsize_t largest_chunk = 65536;
-        const hsize_t chunk = std::min(extent, largest_chunk);
-        checked(H5Pset_chunk(creation, 1, &chunk), name);
-        checked(H5Pset_fletcher32(creation), name);
-    }
     const hid_t type = memory_type<Number>();
-    const Identifier set(H5Dcreate2(file, name, type, space, H5P_DEFAULT, creation, H5P_DEFAULT), H5Dclose, name);
+    const Identifier set(H5Dcreate2(file, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose, name);
     if (size > 0) checked(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), name);
 }
 
@@ -139,8 +136,8 @@ template <class Number> std::vector<Number> read_array(hid_t file, const char* n
     const hssize_t size = H5Sget_simple_extent_npoints(space);
     if (size < 0) throw Hdf5Failure{name};
     const Identifier stored(H5Dget_type(set), H5Tclose, name);
-    require_room(file, static_cast<std::size_t>(size), H5Tget_size(stored), name);
-    require_room(file, H5Dget_storage_size(set), 1, name); // HDF5 takes memory for whatever its chunks claim
+    if (H5Tequal(stored, memory_type<Number>()) <= 0) throw Hdf5Failure{std::string(name) + " has another type"};
+    require_room(file, static_cast<std::size_t>(size), sizeof(Number), name);
     std::vector<Number> values(static_cast<std::size_t>(size));
     if (size > 0) checked(H5Dread(set, memory_type<Number>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), name);
     if constexpr (std::is_same_v<Number, double>) {
@@ -288,6 +285,7 @@ struct Reader {
         for (std::size_t i = 0; i < v.size(); ++i) {
             const int* const key = &keys[5 * i];
             const double* const number = &numbers[3 * i];
+            if (key[4] < 0 || key[4] > static_cast<int>(PlatenContact::beyond)) throw Hdf5Failure{name};
             v[i] = {key[0],    key[1],    key[2],   key[3] != 0, static_cast<PlatenContact>(key[4]),
                     number[0], number[1], number[2]};
         }
@@ -331,14 +329,27 @@ std::string file_image(const State& state, const std::string& fingerprint, const
     return image;
 }
 
+/// The image in the bytes of a state file. HDF5 itself crashes on some damaged files.
+std::string_view unsealed(std::string_view bytes) {
+    const std::size_t length = seal.size() + digest_digits + 1;
+    if (bytes.size() < length || bytes.substr(bytes.size() - length, seal.size()) != seal)
+        throw Hdf5Failure{"without the digest at its end"};
+    const std::string_view image = bytes.substr(0, bytes.size() - length);
+    if (bytes.substr(image.size()) != std::string(seal) + Digest().add(image).text() + "\n")
+        throw Hdf5Failure{"changed since it was saved"};
+    return image;
+}
+
 /// Calls read(file) with the file of a state, after a look at its format and version.
 template <class Read> auto read_image(const std::filesystem::path& path, Read&& read) {
     const SilentErrors silent;
     const std::string place = path.string();
-    std::string image = read_file(path);
+    const std::string bytes = read_file(path);
     try {
+        const std::string_view image = unsealed(bytes);
         const Identifier access = memory_access();
-        checked(H5Pset_file_image(access, image.data(), image.size()), "no image");
+        checked(H5Pset_file_image(access, const_cast<char*>(image.data()), image.size()),
+                "no image"); // which it copies
         const Identifier file(H5Fopen("state", H5F_ACC_RDONLY, access), H5Fclose, "not a whole HDF5 file");
         if (read_text(file, "format") != format_name) throw Hdf5Failure{"no state in it"};
         const int version = read_scalar<int>(file, "format_version");
@@ -371,11 +382,13 @@ std::string read_bytes(const std::filesystem::path& path, const char* name, cons
 
 } // namespace
 
+std::string sealed(std::string image) { return image + std::string(seal) + Digest().add(image).text() + "\n"; }
+
 void write_state(const std::filesystem::path& path, const State& state, const std::string& fingerprint,
                  const std::string& scene, const std::string& tables) {
     const SilentErrors silent;
     try {
-        write_file(path, file_image(state, fingerprint, scene, tables));
+        write_file(path, sealed(file_image(state, fingerprint, scene, tables)));
     } catch (const Hdf5Failure& failure) {
         throw ResourceError(path.string() + ": cannot store the state in memory: " + failure.what);
     }

@@ -42,7 +42,7 @@ def states(bench, i):
             return data[:rng.randrange(len(data))]
         data = bytearray(data)
         for _ in range(rng.choice([1, 1, 3, 30])):
-            # where HDF5 keeps its own numbers is the more dangerous: the data have checksums
+            # where HDF5 keeps its own numbers is the more dangerous
             at = rng.randrange(len(data) if i % 4 == 1 else min(len(data), 4096))
             data[at] ^= 1 << rng.randrange(8) if i % 4 < 3 else rng.randrange(1, 256)
         return bytes(data)

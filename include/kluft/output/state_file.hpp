@@ -8,7 +8,7 @@
 
 namespace kluft {
 
-/// Writes all members of a state, each array with checksums. `fingerprint` says which scene the state belongs to,
+/// Writes all members of a state, with a digest of the whole at the file's end. `fingerprint` says which scene the state belongs to,
 /// `scene` is that scene's text, `tables` says what the tables of the run hold up to this state. The file appears whole or
 /// not at all. Throws ResourceError; NoEquilibriumError where a number of the state is none: the file that was there stays.
 void write_state(const std::filesystem::path& path, const State& state, const std::string& fingerprint,
@@ -23,5 +23,8 @@ void write_state(const std::filesystem::path& path, const State& state, const st
 
 /// What was saved with a state of the tables. Throws InputError like read_state_scene.
 [[nodiscard]] std::string read_state_tables(const std::filesystem::path& path);
+
+/// The bytes of a state file with this HDF5 image: a line with its digest stands behind it, where HDF5 reads nothing.
+[[nodiscard]] std::string sealed(std::string image);
 
 } // namespace kluft
