@@ -1,10 +1,14 @@
 #include "kluft/output/atomic_file.hpp"
 
 #include <cerrno>
+#include <chrono>
 #include <cstdio>
 #include <system_error>
+#include <thread>
 
 #include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 
 #include "file_descriptor.hpp"
 #include "kluft/core/input_file.hpp"
@@ -23,19 +27,43 @@ void write_directly(const fs::path& path, std::string_view content) {
     file.close();
 }
 
+/// Whether the open file still has this name.
+bool has_name(const FileDescriptor& file, const fs::path& path) {
+    struct stat opened {};
+    struct stat named {};
+    return ::fstat(file.number(), &opened) == 0 && ::stat(path.c_str(), &named) == 0 && opened.st_dev == named.st_dev &&
+           opened.st_ino == named.st_ino;
+}
+
+/// The unfinished file, for this process alone; one that was killed may have left something in it, and one that writes the
+/// same file at this time has given it its name before this returns.
+FileDescriptor own_part(const fs::path& part) {
+    constexpr std::chrono::milliseconds pause{10};
+    constexpr int n_tries = 1000;
+    for (int i = 0; i < n_tries; ++i) {
+        FileDescriptor file(part, O_WRONLY | O_CREAT);
+        const bool is_locked = ::flock(file.number(), LOCK_EX | LOCK_NB) == 0;
+        const bool has_no_locks = !is_locked && errno != EWOULDBLOCK && errno != EINTR; // some network file systems
+        if (has_no_locks || (is_locked && has_name(file, part))) return file;
+        if (!is_locked) std::this_thread::sleep_for(pause);
+    }
+    throw_system_error(part, "another process does not finish it", EBUSY);
+}
+
 void write_and_rename(const fs::path& path, std::string_view content) {
     const fs::path part = partial_name(path);
+    FileDescriptor file = own_part(part);
     try {
-        FileDescriptor file(part, O_WRONLY | O_CREAT | O_TRUNC);
+        file.empty();
         file.write(content);
         file.sync();
-        file.close();
         if (std::rename(part.c_str(), path.c_str()) != 0) throw_system_error(path, "cannot rename to it", errno);
     } catch (...) {
         std::error_code ignored;
         fs::remove(part, ignored);
         throw;
     }
+    file.close();
     FileDescriptor(directory_of(path), O_RDONLY | O_DIRECTORY).sync();
 }
 

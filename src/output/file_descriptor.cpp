@@ -41,6 +41,10 @@ void FileDescriptor::write(std::string_view bytes) {
     }
 }
 
+void FileDescriptor::empty() {
+    if (::ftruncate(number_, 0) != 0) throw_system_error(path_, "cannot empty", errno);
+}
+
 void FileDescriptor::sync() {
     // EINVAL and ENOTSUP: a device or a file system that has nothing to bring to a disk.
     int result = 0;

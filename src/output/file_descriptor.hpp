@@ -19,6 +19,8 @@ public:
 
     /// One write call where the system allows it; repeats after interruptions and partial writes.
     void write(std::string_view bytes);
+    /// Cuts the file to no bytes.
+    void empty();
     void sync();
     /// Closes now, so that an error of the close is seen.
     void close();

@@ -49,11 +49,10 @@ NOT_COVERED = """
 """
 
 UNREACHED = """
-Branches that only an exception takes do not count. What is not reached: in apps, what runs only in a process that is killed or leaves at
-once (handlers of signals, lack of memory), which leaves no counters, and what the slow tests reach, which are not in that build, as those of
-calibration; in
-kinematics and core, branches that the compiler makes of Eigen's expressions and of the conditions of libraries' templates; elsewhere
-mostly messages for files and systems that fail in ways that the campaign tries and the tests do not.
+Branches that only an exception takes do not count. What is not reached: in apps, what runs only in a process that is killed or leaves
+at once (handlers of signals, lack of memory), which leaves no counters, and what the slow tests and those of calibration reach, which
+are not in that build; in kinematics and core, templates and inline functions, whose branches count once for each source that they are
+compiled into; elsewhere mostly messages for files and systems that fail in ways that the campaign tries and the tests do not.
 """
 
 

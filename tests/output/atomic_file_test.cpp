@@ -1,7 +1,11 @@
 #include "kluft/output/atomic_file.hpp"
 
+#include <atomic>
 #include <csignal>
 #include <fstream>
+#include <string>
+#include <thread>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -47,6 +51,30 @@ TEST(AtomicFile, HoldsWhatWasWrittenAndLeavesNothingElse) {
     write_file(directory / "f", content);
     EXPECT_EQ(read_file(directory / "f"), content);
     EXPECT_EQ(std::distance(fs::directory_iterator(directory.path()), fs::directory_iterator()), 1);
+}
+
+TEST(AtomicFile, IsThatOfOneOfItsWritersWhereSeveralWriteIt) {
+    const TemporaryDirectory directory;
+    write_file(directory / "f.part", "of a process that was killed");
+    const auto content_of = [](int writer) { return std::string(100000, static_cast<char>('a' + writer)); };
+    std::atomic<int> n_failures{0};
+    std::vector<std::jthread> writers;
+    for (int writer = 0; writer < 4; ++writer) {
+        writers.emplace_back([&, writer] {
+            for (int i = 0; i < 25; ++i) {
+                try {
+                    write_file(directory / "f", content_of(writer));
+                } catch (const ResourceError&) {
+                    ++n_failures;
+                }
+            }
+        });
+    }
+    writers.clear();
+    EXPECT_EQ(n_failures, 0);
+    const std::string content = read_file(directory / "f");
+    EXPECT_EQ(content, content_of(content.front() - 'a'));
+    EXPECT_FALSE(fs::exists(directory / "f.part"));
 }
 
 TEST(AtomicFile, KeepsTheOldFileWhenTheDiskIsFull) {

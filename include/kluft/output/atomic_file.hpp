@@ -8,8 +8,9 @@
 namespace kluft {
 
 /// Replaces the file at `path` by one that holds `content`. Readers see the old file or the new one, never a part: the
-/// bytes go to `<name>.part` in the same directory, reach the disk, and take the name by a rename. A symbolic link is
-/// followed; what is not a regular file (a device, a pipe) is written to directly.
+/// bytes go to `<name>.part` in the same directory, reach the disk, and take the name by a rename. Of several processes that
+/// write the same file each waits for the one before. A symbolic link is followed; what is not a regular file (a device, a
+/// pipe) is written to directly.
 /// Throws ResourceError (file and the system's reason) and leaves the old file as it was.
 void write_file(const std::filesystem::path& path, std::string_view content);
 
