@@ -135,11 +135,13 @@ void apply(hid_t file, const std::vector<std::string>& names, const Edit& edit) 
     replace(file, name, numbers, type);
 }
 
-void read_all(const std::string& bytes) {
-    const fuzz::MemoryFile file(bytes);
-    fuzz::is_taken([&] { (void)read_state(file.path(), "fuzz"); });
+void read_parts(const fuzz::MemoryFile& file) {
     fuzz::is_taken([&] { (void)read_state_scene(file.path()); });
     fuzz::is_taken([&] { (void)read_state_tables(file.path()); });
+}
+
+void read_whole(const fuzz::MemoryFile& file) {
+    fuzz::is_taken([&] { (void)read_state(file.path(), "fuzz"); });
 }
 
 /// The n-th record of the bytes; false where they end before.
@@ -161,7 +163,7 @@ std::string with_other_arrays(const std::uint8_t* bytes, std::size_t size) {
     constexpr std::size_t most_edits = 8;
     const std::string& whole = whole_file();
     const hid_t file = file_in_memory(whole.substr(0, whole.rfind("\nkluft digest ")));
-    const auto names = array_names(file);
+    static const auto names = array_names(file);
     Edit edit{};
     for (std::size_t n = 0; n < most_edits && take(bytes, size, n, edit); ++n) apply(file, names, edit);
     const std::string image = image_of(file);
@@ -172,15 +174,14 @@ std::string with_other_arrays(const std::uint8_t* bytes, std::size_t size) {
 } // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
-    switch (size % 4) {
-    case 0:
-        read_all(std::string(fuzz::text_of(bytes, size)));
-        break;
-    case 1:
-        read_all(with_other_bytes(bytes, size));
-        break;
-    default:
-        read_all(with_other_arrays(bytes, size));
+    if (size % 4 < 2) {
+        const fuzz::MemoryFile file(size % 4 == 0 ? std::string(fuzz::text_of(bytes, size))
+                                                  : with_other_bytes(bytes, size));
+        read_whole(file);
+        read_parts(file);
+        return 0;
     }
+    const fuzz::MemoryFile file(with_other_arrays(bytes, size));
+    size % 4 == 2 ? read_whole(file) : read_parts(file);
     return 0;
 }
