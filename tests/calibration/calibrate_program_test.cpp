@@ -133,7 +133,7 @@ TEST_F(CalibrateProgram, BadInputEndsWithTwo) {
 // No file may grow beyond some tens of kilobytes, which a saved state does.
 TEST_F(CalibrateProgram, StopsWhereARunHasNoRoomAndGoesOnFromThere) {
     const std::string target = moduli + cohesion + elasticity + peak;
-    EXPECT_EQ(run(target, "ulimit -f 120; "), 4);
+    EXPECT_EQ(run(target, "ulimit -f 60; "), 4);
     EXPECT_THAT(told_, AllOf(HasSubstr("the run failed (out of disk or memory"), HasSubstr("File too large")));
     EXPECT_FALSE(fs::exists(path("out") / "calibrated.yaml"));
     EXPECT_EQ(run(target), 0) << told_;
