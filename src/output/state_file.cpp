@@ -335,7 +335,7 @@ std::string_view unsealed(std::string_view bytes) {
     if (bytes.size() < length || bytes.substr(bytes.size() - length, seal.size()) != seal)
         throw Hdf5Failure{"without the digest at its end"};
     const std::string_view image = bytes.substr(0, bytes.size() - length);
-    if (bytes.substr(image.size()) != std::string(seal) + Digest().add(image).text() + "\n")
+    if (bytes.substr(image.size() + seal.size()) != Digest().add(image).text() + "\n")
         throw Hdf5Failure{"changed since it was saved"};
     return image;
 }
@@ -382,7 +382,10 @@ std::string read_bytes(const std::filesystem::path& path, const char* name, cons
 
 } // namespace
 
-std::string sealed(std::string image) { return image + std::string(seal) + Digest().add(image).text() + "\n"; }
+std::string sealed(std::string image) {
+    const std::string digest = Digest().add(image).text();
+    return std::move(image.append(seal).append(digest).append("\n"));
+}
 
 void write_state(const std::filesystem::path& path, const State& state, const std::string& fingerprint,
                  const std::string& scene, const std::string& tables) {
