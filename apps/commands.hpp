@@ -38,6 +38,9 @@ struct CheckArguments {
 
 [[nodiscard]] ExitCode check(const CheckArguments& arguments);
 
+/// Says the JSON Schema of scenes.
+[[nodiscard]] ExitCode schema();
+
 struct DrawArguments {
     std::vector<std::string> sources;
     std::string picture;

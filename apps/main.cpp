@@ -147,6 +147,15 @@ void add_check_command(CLI::App& app, Command& command) {
     sub->callback([arguments, &command] { command = [arguments] { return kluft::check(*arguments); }; });
 }
 
+void add_schema_command(CLI::App& app, Command& command) {
+    auto of = std::make_shared<std::string>("scene");
+    CLI::App* sub =
+        app.add_subcommand("schema", "Say the JSON Schema of scenes, from which editors complete and check");
+    sub->add_option("of", *of, "What the schema is of (default: scene)")->check(CLI::IsMember({"scene"}));
+    sub->footer("Example: kluft schema >scene.schema.json");
+    sub->callback([of, &command] { command = [of] { return kluft::schema(); }; });
+}
+
 void add_draw_command(CLI::App& app, Command& command) {
     auto arguments = std::make_shared<kluft::DrawArguments>();
     CLI::App* sub = app.add_subcommand(
@@ -318,6 +327,7 @@ int program(int argc, char** argv) {
     Command command;
     add_run_command(app, command);
     add_check_command(app, command);
+    add_schema_command(app, command);
     add_draw_command(app, command);
     add_compare_command(app, command);
     add_envelope_command(app, command);

@@ -2,7 +2,7 @@
 
 _kluft() {
     local word=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
-    local commands="run check draw compare envelope study calibrate validate"
+    local commands="run check schema draw compare envelope study calibrate validate"
     COMPREPLY=()
 
     local command="" index
@@ -47,6 +47,7 @@ _kluft() {
     fi
 
     case "$command" in
+    schema) mapfile -t COMPREPLY < <(compgen -W "scene" -- "$word") ;;
     run | check | draw | calibrate) _kluft_scenes "$word" ;;
     study)
         _kluft_scenes "$word"

@@ -22,7 +22,9 @@ constexpr std::string_view introduction = R"(# Scenes
 A scene is a YAML file that says everything about a run: rock, fractures, geometry, loading, solution and output. The
 scene's name is the file's stem. `kluft check SCENE` reads a scene and runs nothing.
 
-This page is written from the table of keys that also checks scenes, so it is complete.
+This page is written from the table of keys that also checks scenes, so it is complete. So is the JSON Schema that
+`kluft schema >scene.schema.json` says: with the first line `# yaml-language-server: $schema=scene.schema.json` in a scene,
+editors complete its keys and mark mistakes.
 
 ```yaml
 kluft: 1
@@ -143,13 +145,16 @@ Json list_schema(Json items, const KeyRule& rule) {
 
 Json mapping_schema(std::string_view pattern);
 
+/// Takes null as well, which removes an inherited key.
+Json or_null(Json schema) { return Json{{"anyOf", Json::array({std::move(schema), Json{{"type", "null"}}})}}; }
+
 Json value_schema(const KeyRule& rule) {
     const auto child = [&](std::string_view key) { return value_schema(*find_rule(child_pattern(rule.path, key))); };
     switch (rule.type) {
     case KeyType::mapping:
         return mapping_schema(rule.path);
     case KeyType::named:
-        return Json{{"type", "object"}, {"additionalProperties", child("*")}};
+        return Json{{"type", "object"}, {"additionalProperties", or_null(child("*"))}};
     case KeyType::list:
         return list_schema(child("#"), rule);
     case KeyType::number:
@@ -180,10 +185,9 @@ Json value_schema(const KeyRule& rule) {
     return {};
 }
 
-/// Accepts null as well, which removes an inherited key.
 Json described_schema(const KeyRule& rule) {
     Json schema{{"description", fmt::format("{} Default: {}.", rule.doc, shown_default(rule))}};
-    schema["anyOf"] = Json::array({value_schema(rule), Json{{"type", "null"}}});
+    schema.update(or_null(value_schema(rule)));
     return schema;
 }
 
