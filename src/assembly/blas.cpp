@@ -123,6 +123,7 @@ std::string wider_blas_core() {
 }
 
 bool blas_computes_rightly() {
+    prepare_blas();
     constexpr double roundoff = 1e-12; // of sums of some hundred products below one; solutions grow to some 1e2
     std::mt19937 random;
     for (const int n : {3, 6, 17, 40, 128}) {

@@ -9,6 +9,7 @@
 #include <IpIpoptApplication.hpp>
 #include <IpTNLP.hpp>
 
+#include "kluft/assembly/blas.hpp"
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/core/memory.hpp"
 
@@ -156,6 +157,7 @@ bool set_ipopt_options(Ipopt::OptionsList& options, const LeastSquaresOptions& w
 LeastSquaresResult minimise_free(const ResidualFunction& function, const Eigen::VectorXd& start,
                                  const Eigen::VectorXd& lower, const Eigen::VectorXd& upper,
                                  const LeastSquaresOptions& options) {
+    prepare_blas(); // Ipopt factorizes with it
     const Ipopt::SmartPtr<Ipopt::IpoptApplication> application = IpoptApplicationFactory();
     if (!set_ipopt_options(*application->Options(), options) ||
         application->Initialize("") != Ipopt::Solve_Succeeded) // "": no file of options

@@ -969,6 +969,24 @@ TEST_F(SlowCommandLine, OutOfMemoryEndsWithExitCode4) {
     EXPECT_THAT(result.err, HasSubstr("out of memory"));
 }
 
+// The BLAS tries for ever to get its work space of 128 MB where the system refuses it: also in a second start with other
+// kernels, which are tried before anything else.
+TEST_F(SlowCommandLine, SecondStartWithoutRoomForTheBlasEndsWithExitCode4) {
+#ifdef KLUFT_SANITIZED
+    GTEST_SKIP() << "the address sanitizer reserves more address space than any limit";
+#endif
+    constexpr rlim_t megabyte = 1000000;
+    const std::map<std::string, std::string> second_start{{"OPENBLAS_CORETYPE", "Prescott"},
+                                                          {"KLUFT_OWN_BLAS_CORE", "Prescott"}};
+    int n_without_room = 0;
+    for (rlim_t room = 64 * megabyte; room < 4000 * megabyte; room += 16 * megabyte) {
+        const Result result = kluft({"--version"}, {.memory_bytes = room, .environment = second_start});
+        if (result.code == 0) break;
+        if (result.code == 4) ++n_without_room; // else too little to load the libraries
+    }
+    EXPECT_GE(n_without_room, 4); // 128 MB
+}
+
 /// The program does not start itself again with another count of allocations.
 const std::map<std::string, std::string> one_kernel{{"OPENBLAS_CORETYPE", "Haswell"}};
 

@@ -30,7 +30,8 @@ void set_blas_threads(int n_threads);
 /// needs OPENBLAS_CORETYPE in the environment of a new start.
 [[nodiscard]] std::string wider_blas_core();
 
-/// True if products and triangular solutions agree with plain loops up to round-off, for matrices of several sizes.
+/// True if products and triangular solutions agree with plain loops up to round-off, for matrices of several sizes. Throws
+/// ResourceError out of memory.
 [[nodiscard]] bool blas_computes_rightly();
 
 } // namespace kluft
