@@ -38,8 +38,8 @@ struct CheckArguments {
 
 [[nodiscard]] ExitCode check(const CheckArguments& arguments);
 
-/// Says the JSON Schema of scenes.
-[[nodiscard]] ExitCode schema();
+/// Says the JSON Schema of a kind of file: scene, study or calibration.
+[[nodiscard]] ExitCode schema(const std::string& of);
 
 struct DrawArguments {
     std::vector<std::string> sources;

@@ -149,11 +149,12 @@ void add_check_command(CLI::App& app, Command& command) {
 
 void add_schema_command(CLI::App& app, Command& command) {
     auto of = std::make_shared<std::string>("scene");
-    CLI::App* sub =
-        app.add_subcommand("schema", "Say the JSON Schema of scenes, from which editors complete and check");
-    sub->add_option("of", *of, "What the schema is of (default: scene)")->check(CLI::IsMember({"scene"}));
-    sub->footer("Example: kluft schema >scene.schema.json");
-    sub->callback([of, &command] { command = [of] { return kluft::schema(); }; });
+    CLI::App* sub = app.add_subcommand(
+        "schema", "Say the JSON Schema of scenes, studies or calibrations, from which editors complete and check");
+    sub->add_option("of", *of, "What the schema is of: scene, study or calibration (default: scene)")
+        ->check(CLI::IsMember({"scene", "study", "calibration"}));
+    sub->footer("Examples:\n  kluft schema >scene.schema.json\n  kluft schema study >study.schema.json");
+    sub->callback([of, &command] { command = [of] { return kluft::schema(*of); }; });
 }
 
 void add_draw_command(CLI::App& app, Command& command) {

@@ -20,6 +20,7 @@ install(FILES scripts/completions/kluft.bash DESTINATION ${CMAKE_INSTALL_DATADIR
 install(PROGRAMS scripts/validate DESTINATION ${CMAKE_INSTALL_DATADIR}/kluft/scripts)
 install(DIRECTORY validation DESTINATION ${CMAKE_INSTALL_DATADIR}/kluft
   PATTERN triaxial EXCLUDE PATTERN __pycache__ EXCLUDE PATTERN "report.*" EXCLUDE)
+install(DIRECTORY docs/schema DESTINATION ${CMAKE_INSTALL_DATADIR}/kluft)
 install(FILES README.md LICENSE docs/licences.md TYPE DOC)
 
 set(CPACK_GENERATOR DEB)

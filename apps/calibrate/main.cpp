@@ -13,6 +13,7 @@
 #include "kluft/calibration/calibration_report.hpp"
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/output/directory_lock.hpp"
+#include "kluft/scene/json_schema.hpp"
 #include "kluft/scene/quantity.hpp"
 #include "standard_output.hpp"
 #include "stop_request.hpp"
@@ -41,6 +42,10 @@ private:
 };
 
 kluft::ExitCode run(const std::vector<std::string>& words) {
+    if (words.size() == 2 && words[1] == "schema") {
+        kluft::say_text(kluft::json_schema(kluft::calibration_schema(), "Kluft calibration", kluft::Extending::never));
+        return ExitCode::done;
+    }
     const auto jobs = words.size() == n_words ? kluft::read_integer(words[4]) : std::nullopt;
     if (!jobs || *jobs < 1)
         throw kluft::InputError(

@@ -47,7 +47,7 @@ _kluft() {
     fi
 
     case "$command" in
-    schema) mapfile -t COMPREPLY < <(compgen -W "scene" -- "$word") ;;
+    schema) mapfile -t COMPREPLY < <(compgen -W "scene study calibration" -- "$word") ;;
     run | check | draw | calibrate) _kluft_scenes "$word" ;;
     study)
         _kluft_scenes "$word"

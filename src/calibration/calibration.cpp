@@ -55,7 +55,7 @@ const std::vector<std::array<std::string, 9>>& target_paths() {
 
 void add_target_rules(const QuantityRow& row, std::vector<KeyRule>& rules) {
     const auto& path = target_paths().at(static_cast<std::size_t>(row.quantity));
-    rules.push_back({.path = path[0], .type = KeyType::mapping, .doc = row.doc});
+    rules.push_back({.path = path[0], .type = KeyType::mapping_or_mappings, .doc = row.doc});
     if (row.quantity == TargetQuantity::curve)
         rules.push_back({.path = path[2],
                          .type = KeyType::text,
@@ -86,7 +86,7 @@ void add_target_rules(const QuantityRow& row, std::vector<KeyRule>& rules) {
                      .type = KeyType::named,
                      .doc = "Keys of the scene and their values, for this "
                             "target alone."});
-    rules.push_back({.path = path[6], .type = KeyType::text, .doc = "A value, as the scene has it."});
+    rules.push_back({.path = path[6], .type = KeyType::value, .doc = "A value, as the scene has it."});
     rules.push_back({.path = path[7],
                      .type = KeyType::text,
                      .fallback_note = "the calibration's",
@@ -123,7 +123,7 @@ std::vector<KeyRule> rules_of_calibration() {
          .required = true,
          .least_items = 1,
          .doc = "Keys of the scene that have the parameter's value: a path, or {key: path, times: factor}."},
-        {.path = "parameters.*.keys.#", .type = KeyType::mapping, .doc = "One key."},
+        {.path = "parameters.*.keys.#", .type = KeyType::text_or_mapping, .doc = "One key."},
         {.path = "parameters.*.keys.#.key", .type = KeyType::text, .required = true, .doc = "Path in the scene."},
         {.path = "parameters.*.keys.#.times",
          .type = KeyType::number,
@@ -170,9 +170,9 @@ std::vector<KeyRule> rules_of_calibration() {
 
 } // namespace
 
-const std::vector<KeyRule>& calibration_schema() {
-    static const std::vector<KeyRule> rules = rules_of_calibration();
-    return rules;
+const KeyTable& calibration_schema() {
+    static const KeyTable keys(rules_of_calibration());
+    return keys;
 }
 
 std::string_view quantity_name(TargetQuantity quantity) { return row_of(quantity).name; }

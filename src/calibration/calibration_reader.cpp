@@ -12,6 +12,7 @@
 #include "kluft/output/history_table.hpp"
 #include "kluft/scene/scene_check.hpp"
 #include "kluft/scene/scene_reader.hpp"
+#include "kluft/scene/scene_schema.hpp"
 #include "kluft/scene/scene_text.hpp"
 #include "kluft/scene/scene_writer.hpp"
 #include "kluft/studies/comparison.hpp"
@@ -24,20 +25,7 @@ namespace fs = std::filesystem;
 
 constexpr int default_evaluations = 40;
 
-/// The last key of each rule that stands right below a path of the calibration's schema.
-std::vector<std::string> keys_below(const std::string& pattern) {
-    std::vector<std::string> keys;
-    for (const KeyRule& rule : calibration_schema()) {
-        const auto dot = rule.path.rfind('.');
-        const std::string_view parent = dot == std::string_view::npos ? std::string_view{} : rule.path.substr(0, dot);
-        if (parent == pattern) keys.emplace_back(dot == std::string_view::npos ? rule.path : rule.path.substr(dot + 1));
-    }
-    return keys;
-}
-
-const KeyRule& rule_at(const std::string& pattern) {
-    return *std::ranges::find(calibration_schema(), pattern, &KeyRule::path);
-}
+const KeyRule& rule_at(const std::string& pattern) { return *calibration_schema().find(pattern); }
 
 std::vector<std::string> parts_of(const std::string& path) {
     std::vector<std::string> parts;
@@ -95,7 +83,7 @@ public:
 
 private:
     void check_keys(const SceneNode& node, const std::string& pattern, const std::string& path) {
-        const auto known = keys_below(pattern);
+        const auto known = calibration_schema().child_keys(pattern);
         for (const auto& key : node.keys) {
             if (std::ranges::find(known, key.text) != known.end()) continue;
             errors_.add(key.at, joined_path(path, key.text),
@@ -111,12 +99,13 @@ private:
         const SceneNode* value = node.find(key);
         const std::string place = joined_path(path, key);
         if (value == nullptr) {
-            if (rule.required) errors_.add(node.at, place, "expected " + expected_text(rule) + ", found nothing");
+            if (rule.required)
+                errors_.add(node.at, place, "expected " + calibration_schema().expected_text(rule) + ", found nothing");
             return nullptr;
         }
         const std::string problem = scalar_problem(*value, rule);
         if (problem.empty()) return value;
-        errors_.add(value->at, place, "expected " + expected_text(rule) + ", found " + problem);
+        errors_.add(value->at, place, "expected " + calibration_schema().expected_text(rule) + ", found " + problem);
         return nullptr;
     }
 
@@ -131,7 +120,7 @@ private:
         if (problem.empty()) return read_quantity(value->text, measure).value;
         if (value != nullptr || rule.required)
             errors_.add(value == nullptr ? node.at : value->at, place,
-                        "expected " + expected_text(rule) + ", found " + problem);
+                        "expected " + calibration_schema().expected_text(rule) + ", found " + problem);
         return std::nullopt;
     }
 
@@ -250,9 +239,9 @@ private:
         std::string pattern;
         const SceneNode* node = tree_ ? &*tree_ : nullptr;
         for (const std::string& part : parts_of(key.key)) {
-            const std::string below = child_pattern(pattern, part);
+            const std::string below = scene_schema().child_pattern(pattern, part);
             if (below.empty()) {
-                const auto known = child_keys(pattern);
+                const auto known = scene_schema().child_keys(pattern);
                 errors_.add(key.at, path,
                             fmt::format("expected a key of the scene, found {}, in which {} is unknown; expected one "
                                         "of {}{}",
@@ -270,7 +259,7 @@ private:
             node = child_of(node, part);
             pattern = below;
         }
-        const KeyRule* rule = find_rule(pattern);
+        const KeyRule* rule = scene_schema().find(pattern);
         if (rule != nullptr && rule->type == KeyType::number) return rule;
         errors_.add(key.at, path, "expected a key of the scene that takes a number, found " + in_quotes(key.key));
         return nullptr;
@@ -289,7 +278,7 @@ private:
         const SceneNode* node = root_.find("targets");
         if (node == nullptr || !node->is_mapping() || node->items.empty()) {
             errors_.add(node == nullptr ? root_.at : node->at, "targets",
-                        "expected a mapping of " + listed(keys_below("targets")) + ", found " +
+                        "expected a mapping of " + listed(calibration_schema().child_keys("targets")) + ", found " +
                             (node == nullptr ? "nothing" : found_text(*node)));
             return;
         }
@@ -353,7 +342,8 @@ private:
             for (const SceneNode& item : list->items) {
                 const std::string problem = scalar_problem(item, rule);
                 if (!problem.empty())
-                    errors_.add(item.at, place, "expected " + expected_text(rule) + ", found " + problem);
+                    errors_.add(item.at, place,
+                                "expected " + calibration_schema().expected_text(rule) + ", found " + problem);
                 else if (*read_quantity(item.text, Measure::stress).value < 0.0)
                     errors_.add(item.at, place, "expected a lateral pressure >= 0, found " + in_quotes(item.text));
                 else if (different.insert(*read_quantity(item.text, Measure::stress).value).second)

@@ -88,16 +88,16 @@ bool is_name(std::string_view text) {
 /// Walks a scene along the table.
 class SchemaCheck {
 public:
-    explicit SchemaCheck(SceneErrors& errors) : errors_(errors) {}
+    SchemaCheck(const KeyTable& keys, SceneErrors& errors) : keys_(keys), errors_(errors) {}
 
     void check(const SceneNode& node, const KeyRule& rule, const std::string& path) {
         switch (rule.type) {
         case KeyType::mapping:
-            check_mapping(node, rule.path, path, expected_text(rule));
+            check_mapping(node, rule.path, path, keys_.expected_text(rule));
             break;
         case KeyType::choice_or_mapping:
             if (node.is_mapping())
-                check_mapping(node, rule.path, path, expected_text(rule));
+                check_mapping(node, rule.path, path, keys_.expected_text(rule));
             else
                 check_scalar(node, rule, path);
             break;
@@ -108,7 +108,7 @@ public:
             check_list(node, rule, path);
             break;
         case KeyType::point:
-            check_point(node, rule, path, expected_text(rule));
+            check_point(node, rule, path, keys_.expected_text(rule));
             break;
         case KeyType::points:
             check_points(node, rule, path);
@@ -131,7 +131,7 @@ public:
     void check_mapping(const SceneNode& node, std::string_view pattern, const std::string& path,
                        const std::string& expected) {
         if (!node.is_mapping()) return fail(node, path, expected, found_text(node));
-        const auto valid = child_keys(pattern);
+        const auto valid = keys_.child_keys(pattern);
         std::vector<std::string> missing;
         std::copy_if(valid.begin(), valid.end(), std::back_inserter(missing),
                      [&](const std::string& key) { return node.find(key) == nullptr; });
@@ -140,15 +140,15 @@ public:
             const SceneKey& key = node.keys[i];
             const auto known = std::find(valid.begin(), valid.end(), key.text);
             if (known != valid.end())
-                check(node.items[i], *find_rule(joined_path(std::string(pattern), key.text)),
+                check(node.items[i], *keys_.find(joined_path(std::string(pattern), key.text)),
                       joined_path(path, key.text));
             else
                 mistyped.insert(refuse_key(key, valid, missing, path));
         }
         for (const auto& key : missing) {
-            const KeyRule& rule = *find_rule(joined_path(std::string(pattern), key));
+            const KeyRule& rule = *keys_.find(joined_path(std::string(pattern), key));
             if (rule.required && !mistyped.contains(key))
-                fail(node, joined_path(path, key), expected_text(rule), "nothing");
+                fail(node, joined_path(path, key), keys_.expected_text(rule), "nothing");
         }
     }
 
@@ -170,10 +170,10 @@ private:
     }
 
     void check_named(const SceneNode& node, const KeyRule& rule, const std::string& path) {
-        if (!node.is_mapping()) return fail(node, path, expected_text(rule), found_text(node));
+        if (!node.is_mapping()) return fail(node, path, keys_.expected_text(rule), found_text(node));
         if (static_cast<int>(node.items.size()) < rule.least_items)
-            fail(node, path, expected_text(rule), found_text(node));
-        const KeyRule* item = find_rule(child_pattern(rule.path, "*"));
+            fail(node, path, keys_.expected_text(rule), found_text(node));
+        const KeyRule* item = keys_.find(keys_.child_pattern(rule.path, "*"));
         for (std::size_t i = 0; i < node.keys.size(); ++i) {
             const std::string& name = node.keys[i].text;
             if (!is_name(name))
@@ -186,13 +186,13 @@ private:
     /// Whether it is a list with as many items as the rule asks for; an error if not.
     bool is_long_enough(const SceneNode& node, const KeyRule& rule, const std::string& path) {
         const bool enough = node.is_list() && static_cast<int>(node.items.size()) >= rule.least_items;
-        if (!enough) fail(node, path, expected_text(rule), found_text(node));
+        if (!enough) fail(node, path, keys_.expected_text(rule), found_text(node));
         return enough;
     }
 
     void check_list(const SceneNode& node, const KeyRule& rule, const std::string& path) {
         if (!is_long_enough(node, rule, path)) return;
-        const KeyRule* item = find_rule(child_pattern(rule.path, "#"));
+        const KeyRule* item = keys_.find(keys_.child_pattern(rule.path, "#"));
         for (std::size_t i = 0; i < node.items.size(); ++i)
             check(node.items[i], *item, joined_path(path, std::to_string(i)));
     }
@@ -233,16 +233,17 @@ private:
     }
 
     void check_gravity(const SceneNode& node, const KeyRule& rule, const std::string& path) {
-        if (node.is_list()) return check_point(node, rule, path, expected_text(rule));
+        if (node.is_list()) return check_point(node, rule, path, keys_.expected_text(rule));
         const std::string problem = number_problem(node, rule.measure, rule.range);
-        if (!problem.empty()) fail(node, path, expected_text(rule), problem);
+        if (!problem.empty()) fail(node, path, keys_.expected_text(rule), problem);
     }
 
     void check_scalar(const SceneNode& node, const KeyRule& rule, const std::string& path) {
         const std::string problem = scalar_problem(node, rule);
-        if (!problem.empty()) fail(node, path, expected_text(rule), problem);
+        if (!problem.empty()) fail(node, path, keys_.expected_text(rule), problem);
     }
 
+    const KeyTable& keys_;
     SceneErrors& errors_;
 };
 
@@ -273,7 +274,7 @@ std::string scalar_problem(const SceneNode& node, const KeyRule& rule) {
 }
 
 void check_against_schema(const SceneNode& root, SceneErrors& errors) {
-    SchemaCheck(errors).check_mapping(root, {}, {}, "a mapping that begins with kluft: 1");
+    SchemaCheck(scene_schema(), errors).check_mapping(root, {}, {}, "a mapping that begins with kluft: 1");
 }
 
 } // namespace kluft

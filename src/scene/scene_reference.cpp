@@ -1,12 +1,9 @@
 #include "kluft/scene/scene_reference.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <string_view>
-#include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "kluft/scene/quantity.hpp"
 #include "kluft/scene/scene_schema.hpp"
@@ -15,8 +12,6 @@ namespace kluft {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr std::string_view introduction = R"(# Scenes
 
 A scene is a YAML file that says everything about a run: rock, fractures, geometry, loading, solution and output. The
@@ -24,7 +19,7 @@ scene's name is the file's stem. `kluft check SCENE` reads a scene and runs noth
 
 This page is written from the table of keys that also checks scenes, so it is complete. So is the JSON Schema that
 `kluft schema >scene.schema.json` says: with the first line `# yaml-language-server: $schema=scene.schema.json` in a scene,
-editors complete its keys and mark mistakes.
+editors complete its keys and mark mistakes. The models name `docs/schema/scene.json`, which is the same.
 
 ```yaml
 kluft: 1
@@ -111,112 +106,7 @@ std::string shown_type(const KeyRule& rule) {
         for (const auto& choice : rule.choices) text += fmt::format("{}`{}`", text.empty() ? "" : ", ", choice);
         return rule.type == KeyType::choice ? text : text + " or mapping";
     }
-    return expected_text(rule);
-}
-
-std::string shown_default(const KeyRule& rule) {
-    if (rule.required) return "required";
-    if (rule.path.ends_with('*') || rule.path.ends_with('#')) return "";
-    if (!rule.fallback_note.empty()) return std::string(rule.fallback_note);
-    return rule.fallback.empty() ? "none" : fmt::format("`{}`", rule.fallback);
-}
-
-Json unit_number(const KeyRule& rule) {
-    Json plain{{"type", rule.type == KeyType::integer ? "integer" : "number"}};
-    if (std::isfinite(rule.range.least))
-        plain[rule.range.open_below ? "exclusiveMinimum" : "minimum"] = rule.range.least;
-    if (std::isfinite(rule.range.most)) plain[rule.range.open_above ? "exclusiveMaximum" : "maximum"] = rule.range.most;
-    if (rule.type == KeyType::integer) return plain;
-    const Json with_unit{{"type", "string"}, {"pattern", R"(^\s*[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\s*\S)"}};
-    return Json{{"anyOf", Json::array({plain, with_unit})}};
-}
-
-Json point_schema(const KeyRule& rule) {
-    KeyRule coordinate = rule;
-    coordinate.range = {};
-    return Json{{"type", "array"}, {"items", unit_number(coordinate)}, {"minItems", 2}, {"maxItems", 2}};
-}
-
-Json list_schema(Json items, const KeyRule& rule) {
-    Json schema{{"type", "array"}, {"items", std::move(items)}};
-    if (rule.least_items > 0) schema["minItems"] = rule.least_items;
-    return schema;
-}
-
-Json mapping_schema(std::string_view pattern);
-
-/// Takes null as well, which removes an inherited key.
-Json or_null(Json schema) { return Json{{"anyOf", Json::array({std::move(schema), Json{{"type", "null"}}})}}; }
-
-Json value_schema(const KeyRule& rule) {
-    const auto child = [&](std::string_view key) { return value_schema(*find_rule(child_pattern(rule.path, key))); };
-    switch (rule.type) {
-    case KeyType::mapping:
-        return mapping_schema(rule.path);
-    case KeyType::named:
-        return Json{{"type", "object"}, {"additionalProperties", or_null(child("*"))}};
-    case KeyType::list:
-        return list_schema(child("#"), rule);
-    case KeyType::number:
-    case KeyType::integer:
-        return unit_number(rule);
-    case KeyType::boolean:
-        return Json{{"type", "boolean"}};
-    case KeyType::text:
-        return Json{{"type", Json::array({"string", "number", "boolean"})}};
-    case KeyType::choice:
-        return Json{{"enum", rule.choices}};
-    case KeyType::choice_or_mapping:
-        return Json{{"anyOf", Json::array({Json{{"enum", rule.choices}}, mapping_schema(rule.path)})}};
-    case KeyType::point:
-        return point_schema(rule);
-    case KeyType::points:
-        return list_schema(point_schema(rule), rule);
-    case KeyType::integers: {
-        KeyRule item = rule;
-        item.type = KeyType::integer;
-        return list_schema(unit_number(item), rule);
-    }
-    case KeyType::texts:
-        return list_schema(Json{{"type", Json::array({"string", "number", "boolean"})}}, rule);
-    case KeyType::gravity:
-        return Json{{"anyOf", Json::array({unit_number(rule), point_schema(rule)})}};
-    }
-    return {};
-}
-
-Json described_schema(const KeyRule& rule) {
-    Json schema{{"description", fmt::format("{} Default: {}.", rule.doc, shown_default(rule))}};
-    schema.update(or_null(value_schema(rule)));
-    return schema;
-}
-
-Json mapping_schema(std::string_view pattern) {
-    Json properties = Json::object();
-    for (const auto& key : child_keys(pattern))
-        properties[key] = described_schema(*find_rule(child_pattern(pattern, key)));
-    return Json{{"type", "object"}, {"properties", std::move(properties)}, {"additionalProperties", false}};
-}
-
-/// Only what is required, of a mapping and all below it; null where nothing is.
-Json requirements(std::string_view pattern) {
-    Json required = Json::array();
-    Json properties = Json::object();
-    for (const auto& key : child_keys(pattern)) {
-        const KeyRule& rule = *find_rule(child_pattern(pattern, key));
-        if (rule.required) required.push_back(key);
-        Json below;
-        if (rule.type == KeyType::mapping) below = requirements(rule.path);
-        if (rule.type == KeyType::named)
-            if (const Json item = requirements(child_pattern(rule.path, "*")); !item.is_null())
-                below = Json{{"additionalProperties", item}};
-        if (rule.type == KeyType::list)
-            if (const Json item = requirements(child_pattern(rule.path, "#")); !item.is_null())
-                below = Json{{"items", item}};
-        if (!below.is_null()) properties[key] = below;
-    }
-    if (required.empty() && properties.empty()) return {};
-    return Json{{"required", required}, {"properties", properties}};
+    return scene_schema().expected_text(rule);
 }
 
 } // namespace
@@ -227,22 +117,15 @@ std::string scene_reference_markdown() {
     for (const auto& rule : scene_schema()) {
         if (rule.path.find('.') == std::string_view::npos) {
             page += fmt::format("\n### `{}`\n\n{}\n\nTakes {}. Default: {}.\n", rule.path, rule.doc, shown_type(rule),
-                                shown_default(rule));
-            if (!child_keys(rule.path).empty()) page += "\n| key | takes | default | meaning |\n|---|---|---|---|\n";
+                                default_text(rule));
+            if (!scene_schema().child_keys(rule.path).empty())
+                page += "\n| key | takes | default | meaning |\n|---|---|---|---|\n";
         } else {
             page += fmt::format("| `{}` | {} | {} | {} |\n", shown_path(rule.path), shown_type(rule),
-                                shown_default(rule), rule.doc);
+                                default_text(rule), rule.doc);
         }
     }
     return page;
-}
-
-std::string scene_json_schema() {
-    Json schema{{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", "Kluft scene"}};
-    schema.update(mapping_schema({}));
-    schema["if"] = Json{{"not", Json{{"required", Json::array({"extends"})}}}};
-    schema["then"] = requirements({});
-    return schema.dump(2) + "\n";
 }
 
 } // namespace kluft

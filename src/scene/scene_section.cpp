@@ -33,7 +33,7 @@ const SceneNode* SceneSection::value(std::string_view key) const {
 }
 
 const KeyRule& SceneSection::rule(std::string_view key) const {
-    const KeyRule* found = find_rule(joined_path(pattern_, key));
+    const KeyRule* found = scene_schema().find(joined_path(pattern_, key));
     if (found == nullptr) throw std::logic_error("no rule for the key " + path_of(key));
     return *found;
 }
@@ -45,7 +45,7 @@ SceneSection SceneSection::section(std::string_view key) const {
 std::vector<SceneSection> SceneSection::sections(std::string_view key) const {
     const SceneNode* parent = value(key);
     if (parent == nullptr) return {};
-    const std::string pattern = child_pattern(rule(key).path, "*");
+    const std::string pattern = scene_schema().child_pattern(rule(key).path, "*");
     std::vector<SceneSection> result;
     for (std::size_t i = 0; i < parent->items.size(); ++i) {
         const std::string name = parent->is_mapping() ? parent->keys[i].text : std::to_string(i);

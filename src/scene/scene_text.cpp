@@ -164,7 +164,7 @@ private:
              const std::string& path) {
         if (depth == keys.size()) return merge_scene_trees(node, std::move(*value_));
         const std::string& key = keys[depth];
-        const std::string below = child_pattern(pattern, key);
+        const std::string below = scene_schema().child_pattern(pattern, key);
         if (node.kind == SceneNode::Kind::nothing) {
             node.kind = below.ends_with('#') ? SceneNode::Kind::list : SceneNode::Kind::mapping;
             node.at = at_;

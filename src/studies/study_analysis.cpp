@@ -32,11 +32,11 @@ const KeyRule* rule_of(std::string_view key) {
         const std::size_t end = std::min(key.find('.', begin), key.size());
         const std::string_view part = key.substr(begin, end - begin);
         const bool is_index = !part.empty() && part.find_first_not_of("0123456789") == std::string_view::npos;
-        pattern = child_pattern(pattern, is_index ? "#" : part);
+        pattern = scene_schema().child_pattern(pattern, is_index ? "#" : part);
         if (pattern.empty()) return nullptr;
         begin = end + 1;
     }
-    return find_rule(pattern);
+    return scene_schema().find(pattern);
 }
 
 bool is_step_count(std::string_view key) { return key.starts_with("stages.") && key.ends_with(".steps"); }

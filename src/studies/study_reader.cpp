@@ -17,15 +17,13 @@
 #include "kluft/scene/scene_text.hpp"
 #include "kluft/scene/scene_writer.hpp"
 #include "kluft/studies/study.hpp"
+#include "kluft/studies/study_schema.hpp"
 
 namespace kluft {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-const std::vector<std::string> study_keys{"title",    "scene",      "set",   "vary",      "combine", "variants",
-                                          "replicas", "quantities", "curve", "reference", "along",   "time_limit"};
 
 std::string expected_one_of(const std::string& found, const std::vector<std::string>& names) {
     if (names.empty()) return "expected nothing, since there is none to choose from, found " + in_quotes(found);
@@ -56,7 +54,7 @@ public:
             fail(root_, "", "expected a mapping with the keys scene and vary, found " + found_text(root_));
             return std::move(study_);
         }
-        check_keys(root_, "", study_keys);
+        check_keys(root_, "", study_schema().child_keys(""));
         if (const auto title = text("title")) study_.title = *title;
         read_scene_name();
         if (const SceneNode* set = root_.find("set")) study_.set = settings(*set, "set");
@@ -66,7 +64,7 @@ public:
         read_combination();
         read_replicas();
         read_quantities();
-        study_.curve = choice("curve", {"true", "false"}, "true") == "true";
+        study_.curve = choice("curve", {"true", "false"}) == "true";
         read_along();
         read_reference();
         read_time_limit();
@@ -93,29 +91,35 @@ private:
         return std::nullopt;
     }
 
-    std::string choice(const char* key, const std::vector<std::string>& choices, const char* fallback) {
+    static const KeyRule& rule(const std::string& pattern) { return *study_schema().find(pattern); }
+
+    /// A key of the study itself; its default where it says nothing.
+    std::string choice(const char* key, const std::vector<std::string>& choices) {
         const SceneNode* node = root_.find(key);
-        if (node == nullptr) return fallback;
+        if (node == nullptr) return std::string(rule(key).fallback);
         if (node->is_scalar() && std::ranges::find(choices, node->text) != choices.end()) return node->text;
         fail(*node, key,
              node->is_scalar() ? expected_one_of(node->text, choices)
                                : fmt::format("expected one of {}, found {}", listed(choices), found_text(*node)));
-        return fallback;
+        return std::string(rule(key).fallback);
     }
 
-    /// A number of a mapping within bounds.
-    std::optional<double> number(const SceneNode& mapping, const std::string& path, const char* key, Measure measure,
-                                 double least, double most) {
+    /// A number of a mapping within the bounds of its rule.
+    std::optional<double> number(const SceneNode& mapping, const std::string& path, const char* key) {
         const SceneNode* node = mapping.find(key);
         if (node == nullptr) return std::nullopt;
-        const auto value = node->is_scalar() ? read_quantity(node->text, measure).value : std::nullopt;
-        if (value && *value >= to_si(least, measure) && *value <= to_si(most, measure)) return value;
+        const KeyRule& of_key = rule(joined_path(path, key));
+        const auto [least, most] = std::pair(of_key.range.least, of_key.range.most);
+        const auto value = node->is_scalar() ? read_quantity(node->text, of_key.measure).value : std::nullopt;
+        if (value && *value >= to_si(least, of_key.measure) && *value <= to_si(most, of_key.measure)) return value;
         fail(*node, joined_path(path, key),
              fmt::format("expected a number from {:g} to {:g}, found {}", least, most, found_text(*node)));
         return std::nullopt;
     }
 
-    std::optional<long long> integer(const SceneNode& node, const std::string& path, long long least, long long most) {
+    std::optional<long long> integer(const SceneNode& node, const std::string& path, const Range& range) {
+        const auto least = static_cast<long long>(range.least);
+        const auto most = static_cast<long long>(range.most);
         const auto value = node.is_scalar() ? read_integer(node.text) : std::nullopt;
         if (value && *value >= least && *value <= most) return value;
         fail(node, path, fmt::format("expected an integer from {} to {}, found {}", least, most, found_text(node)));
@@ -183,7 +187,7 @@ private:
         const std::string form = "expected a list of values, {from: 0, to: 30, count: 4} or {from: 1e-3, to: 1e-7, "
                                  "factor: 0.1}, found ";
         if (!range.is_mapping()) return fail(range, path, form + found_text(range));
-        check_keys(range, path, {"from", "to", "count", "factor"});
+        check_keys(range, path, study_schema().child_keys("vary.*"));
         const auto from = plain_number(range, path, "from");
         const auto to = plain_number(range, path, "to");
         const bool counted = range.find("count") != nullptr;
@@ -206,7 +210,7 @@ private:
     }
 
     std::vector<double> arithmetic(const SceneNode& range, const std::string& path, double from, double to) {
-        const auto count = integer(*range.find("count"), joined_path(path, "count"), 2, most_cases);
+        const auto count = integer(*range.find("count"), joined_path(path, "count"), rule("vary.*.count").range);
         std::vector<double> values;
         for (long long i = 0; count && i < *count; ++i)
             values.push_back(std::lerp(from, to, static_cast<double>(i) / static_cast<double>(*count - 1)));
@@ -232,7 +236,7 @@ private:
     }
 
     void read_combination() {
-        study_.together = choice("combine", {"product", "together"}, "product") == "together";
+        study_.together = choice("combine", rule("combine").choices) == "together";
         if (!study_.together) return;
         for (const auto& variant : study_.variants) {
             for (const auto& parameter : variant.vary) {
@@ -278,7 +282,7 @@ private:
     void read_variant(const SceneNode& node, const std::string& path) {
         if (!node.is_mapping())
             return fail(node, path, "expected {name: ..., set: {...}, vary: {...}}, found " + found_text(node));
-        check_keys(node, path, {"name", "set", "vary"});
+        check_keys(node, path, study_schema().child_keys("variants.#"));
         const SceneNode* name = node.find("name");
         if (name == nullptr || !name->is_scalar() || name->text.empty())
             return fail(name == nullptr ? node : *name, joined_path(path, "name"), "expected a name");
@@ -295,29 +299,25 @@ private:
     void read_replicas() {
         const SceneNode* node = root_.find("replicas");
         if (node == nullptr) return;
-        constexpr long long most_copies = 1000;
         ReplicaPlan& plan = study_.replicas;
         plan.at = node->at;
         if (!node->is_mapping()) {
-            plan.count = static_cast<int>(integer(*node, "replicas", 1, most_copies).value_or(1));
+            plan.count = static_cast<int>(integer(*node, "replicas", rule("replicas").range).value_or(1));
             return;
         }
-        check_keys(*node, "replicas", {"count", "seed", "strength_noise", "offset", "rotation"});
+        check_keys(*node, "replicas", study_schema().child_keys("replicas"));
         const SceneNode* count = node->find("count");
         if (count == nullptr) return fail(*node, "replicas.count", "expected a number of copies, found nothing");
-        plan.count = static_cast<int>(integer(*count, "replicas.count", 1, most_copies).value_or(1));
-        constexpr long long largest_seed = 1LL << 53;
+        plan.count = static_cast<int>(integer(*count, "replicas.count", rule("replicas.count").range).value_or(1));
         if (const SceneNode* seed = node->find("seed"))
-            plan.seed = integer(*seed, "replicas.seed", 0, largest_seed).value_or(1);
-        plan.strength_noise =
-            number(*node, "replicas", "strength_noise", Measure::fraction, 0.0, 1.0).value_or(plan.strength_noise);
+            plan.seed = integer(*seed, "replicas.seed", rule("replicas.seed").range).value_or(1);
+        plan.strength_noise = number(*node, "replicas", "strength_noise").value_or(plan.strength_noise);
         if (const SceneNode* offset = node->find("offset")) {
             plan.offset = offset->text == "true";
             if (!offset->is_scalar() || (offset->text != "true" && offset->text != "false"))
                 fail(*offset, "replicas.offset", "expected true or false, found " + found_text(*offset));
         }
-        constexpr double half_turn = 180.0;
-        if (const auto rotation = number(*node, "replicas", "rotation", Measure::angle, 0.0, half_turn))
+        if (const auto rotation = number(*node, "replicas", "rotation"))
             plan.rotation = *rotation / to_si(1.0, Measure::angle);
     }
 
@@ -374,7 +374,7 @@ private:
         const std::string form = "expected finest, none, {case: {key: value}}, {values: {quantity: number}} or "
                                  "{directory: DIR}, found ";
         if (!node->is_mapping() || node->keys.size() != 1) return fail(*node, "reference", form + found_text(*node));
-        check_keys(*node, "reference", {"case", "values", "directory"});
+        check_keys(*node, "reference", study_schema().child_keys("reference"));
         if (const SceneNode* chosen = node->find("case")) read_chosen_case(*chosen);
         if (const SceneNode* values = node->find("values")) read_values(*values);
         if (const SceneNode* directory = node->find("directory")) read_directory(*directory);
@@ -450,11 +450,7 @@ private:
                              found_text(node)));
     }
 
-    void read_time_limit() {
-        constexpr double longest = 1e9;
-        study_.time_limit =
-            number(root_, "", "time_limit", Measure::fraction, 0.0, longest).value_or(study_.time_limit);
-    }
+    void read_time_limit() { study_.time_limit = number(root_, "", "time_limit").value_or(study_.time_limit); }
 
     const SceneNode& root_;
     const fs::path& file_;
@@ -516,7 +512,7 @@ std::string setting_at(const SceneNode& tree, std::string_view path) {
         const std::size_t end = std::min(path.find('.', begin), path.size());
         const std::string_view key = path.substr(begin, end - begin);
         const bool is_index = !key.empty() && key.find_first_not_of("0123456789") == std::string_view::npos;
-        pattern = child_pattern(pattern, is_index ? "#" : key);
+        pattern = scene_schema().child_pattern(pattern, is_index ? "#" : key);
         parent = node;
         if (node != nullptr) node = child_of(*node, key);
         begin = end + 1;
@@ -525,7 +521,7 @@ std::string setting_at(const SceneNode& tree, std::string_view path) {
     if (node != nullptr && node->is_list()) return "[...]";
     if (node != nullptr && node->is_mapping()) return "{...}";
     const bool in_section = std::ranges::count(path, '.') <= 1;
-    const KeyRule* const rule = parent != nullptr || in_section ? find_rule(pattern) : nullptr;
+    const KeyRule* const rule = parent != nullptr || in_section ? scene_schema().find(pattern) : nullptr;
     return rule != nullptr ? std::string(rule->fallback) : std::string{};
 }
 

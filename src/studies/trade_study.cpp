@@ -52,7 +52,7 @@ std::string quoted_line(const std::string& text) {
     return result + "\"";
 }
 
-bool is_known(const std::string& key) { return find_rule(key) != nullptr; }
+bool is_known(const std::string& key) { return scene_schema().find(key) != nullptr; }
 
 bool same_number(const std::string& a, const std::string& b) {
     const auto x = read_number(a);
@@ -75,7 +75,7 @@ const SceneNode* node_at(const SceneNode& tree, const std::string& key) {
 std::string own_setting(const SceneNode& tree, const std::string& key) {
     const SceneNode* const node = node_at(tree, key);
     if (node != nullptr && node->is_scalar()) return node->text;
-    const KeyRule* const rule = find_rule(key);
+    const KeyRule* const rule = scene_schema().find(key);
     return rule != nullptr ? std::string(rule->fallback) : std::string{};
 }
 

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "kluft/scene/json_schema.hpp"
 #include "kluft/scene/scene_reader.hpp"
 #include "kluft/scene/scene_schema.hpp"
 
@@ -36,8 +37,8 @@ TEST(SceneReference, ExampleInThePageIsAValidScene) {
 
 TEST(SceneReference, PageAndJsonSchemaNameEveryKey) {
     const std::string page = scene_reference_markdown();
-    const auto schema = nlohmann::json::parse(scene_json_schema());
-    EXPECT_EQ(schema.at("properties").size(), child_keys("").size());
+    const auto schema = nlohmann::json::parse(json_schema(scene_schema(), "Kluft scene", Extending::possible));
+    EXPECT_EQ(schema.at("properties").size(), scene_schema().child_keys("").size());
     for (const auto& rule : scene_schema()) {
         EXPECT_FALSE(rule.doc.empty()) << rule.path;
         const std::string last(rule.path.substr(rule.path.rfind('.') + 1));

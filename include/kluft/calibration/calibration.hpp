@@ -10,8 +10,8 @@
 #include <Eigen/Core>
 
 #include "kluft/core/vector.hpp"
+#include "kluft/scene/key_table.hpp"
 #include "kluft/scene/quantity.hpp"
-#include "kluft/scene/scene_schema.hpp"
 #include "kluft/studies/study.hpp"
 
 namespace kluft {
@@ -71,7 +71,7 @@ struct Calibration {
 };
 
 /// All keys of a calibration file, parents before children, as scene_schema has those of a scene.
-[[nodiscard]] const std::vector<KeyRule>& calibration_schema();
+[[nodiscard]] const KeyTable& calibration_schema();
 
 /// Reads and checks a calibration file, its keys against the scene's schema and its start against the scene. Throws
 /// InputError with one message for each thing that is wrong, as read_scene does.
