@@ -17,9 +17,9 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/kluftConfigVersion.cmake 
 install(FILES ${PROJECT_BINARY_DIR}/kluftConfig.cmake ${PROJECT_BINARY_DIR}/kluftConfigVersion.cmake
   cmake/FindSuiteSparse.cmake cmake/FindMETIS.cmake DESTINATION ${KLUFT_CONFIG_DIR})
 install(FILES scripts/completions/kluft.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME kluft)
-install(PROGRAMS scripts/validate DESTINATION ${CMAKE_INSTALL_DATADIR}/kluft/scripts)
+install(PROGRAMS scripts/validate scripts/python DESTINATION ${CMAKE_INSTALL_DATADIR}/kluft/scripts)
 install(DIRECTORY validation DESTINATION ${CMAKE_INSTALL_DATADIR}/kluft
-  PATTERN triaxial EXCLUDE PATTERN __pycache__ EXCLUDE PATTERN "report.*" EXCLUDE)
+  PATTERN triaxial EXCLUDE PATTERN __pycache__ EXCLUDE PATTERN "report.md" EXCLUDE PATTERN "report.html" EXCLUDE)
 install(DIRECTORY docs/schema DESTINATION ${CMAKE_INSTALL_DATADIR}/kluft)
 install(FILES README.md LICENSE docs/licences.md TYPE DOC)
 

@@ -17,3 +17,9 @@ if(NOT output STREQUAL "${VERSION} 1e+10\n")
   message(FATAL_ERROR "expected the version and the rock's modulus, got: ${output}")
 endif()
 run(${WORK_DIR}/prefix/bin/kluft --help)
+# The suite of the installed program, into a directory of its own.
+execute_process(COMMAND ${WORK_DIR}/prefix/bin/kluft validate incline -o ${WORK_DIR}/validation
+  OUTPUT_VARIABLE output ERROR_VARIABLE output RESULT_VARIABLE result)
+if(NOT result EQUAL 0)
+  message(FATAL_ERROR "the installed program cannot validate: ${output}")
+endif()
