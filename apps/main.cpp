@@ -313,7 +313,11 @@ void load_unwinder() {
 
 int program(int argc, char** argv) {
     CLI::App app{"Kluft: strength of fractured rock by the implicit expanded distinct element method"};
-    app.set_version_flag("--version", std::string(kluft::version()));
+    app.set_version_flag("--version", [] {
+        std::string text(kluft::version());
+        if (!kluft::commit().empty()) text += " (" + std::string(kluft::commit()) + ")";
+        return text;
+    });
     app.require_subcommand(1);
     app.footer("Examples:\n"
                "  kluft check models/quickstart.yaml\n"
