@@ -252,10 +252,11 @@ TEST_F(CommandLine, HelpOfEverySubcommandGivesAnExample) {
     }
 }
 
-TEST_F(CommandLine, VersionIsThreeNumbers) {
+TEST_F(CommandLine, VersionIsThreeNumbersAndTheCommit) {
     const Result result = kluft({"--version"});
     EXPECT_EQ(result.code, 0);
-    EXPECT_TRUE(std::regex_match(result.out, std::regex("[0-9]+\\.[0-9]+\\.[0-9]+\n"))) << result.out;
+    EXPECT_TRUE(std::regex_match(result.out, std::regex("[0-9]+\\.[0-9]+\\.[0-9]+( \\([0-9a-f]+(-dirty)?\\))?\n")))
+        << result.out;
 }
 
 TEST_F(CommandLine, MistypedSubcommandIsAnsweredWithTheNearestOne) {
