@@ -27,6 +27,7 @@ struct RunArguments {
     int threads = 0;
     bool quiet = false;
     bool resume = false;
+    bool force = false; ///< replaces results of another scene
 };
 
 [[nodiscard]] ExitCode run(const RunArguments& arguments);

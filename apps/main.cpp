@@ -130,11 +130,15 @@ void add_run_command(CLI::App& app, Command& command) {
     sub->add_option("--threads", arguments->threads, "Threads of the factorization (bodies of 20 000 unknowns or more)")
         ->check(CLI::Range(1, most_threads));
     sub->add_flag("--quiet", arguments->quiet, "No progress and no closing line");
-    sub->add_flag("--resume", arguments->resume, "Go on from the state saved in the directory");
+    CLI::Option* resume = sub->add_flag("--resume", arguments->resume, "Go on from the state saved in the directory");
+    sub->add_flag("--force", arguments->force, "Replace results of another scene in the directory")->excludes(resume);
     sub->footer(
+        "The scene as run is scene.yaml in the directory of the results. Run again into the same directory, the same "
+        "scene replaces its results; another one is refused without --force.\n"
         "Exit codes: 0 done, 2 bad input, 3 no equilibrium, 4 out of disk or memory, 128 + n stopped by signal n (130: "
         "Ctrl-C).\n"
-        "Example: kluft run models/triaxial/case-3-all.yaml --set geometry.tessellation.triangles.spacing=0.05");
+        "Example: kluft run models/triaxial/case-3-all.yaml -o results/coarse --set "
+        "geometry.tessellation.triangles.spacing=0.05");
     sub->callback([arguments, &command] { command = [arguments] { return kluft::run(*arguments); }; });
 }
 
@@ -322,7 +326,8 @@ int program(int argc, char** argv) {
     app.footer("Examples:\n"
                "  kluft check models/quickstart.yaml\n"
                "  kluft run models/triaxial/case-3-all.yaml -o results/case-3-all\n"
-               "  kluft run models/triaxial/case-3-all.yaml --set cracks.update=all --set stages.1.steps=200\n"
+               "  kluft run models/triaxial/case-3-all.yaml -o results/finer --set cracks.update=all --set "
+               "stages.1.steps=200\n"
                "  kluft draw results/case-3-all -o picture.png\n"
                "  kluft compare results/case-3 results/case-3-all\n"
                "  kluft envelope results/case-5-all results/case-3-all results/case-4-all results/case-6-all\n"

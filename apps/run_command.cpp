@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "commands.hpp"
+#include "earlier_results.hpp"
 #include "failure.hpp"
 #include "kluft/assembly/blas.hpp"
 #include "kluft/core/diagnostics.hpp"
@@ -24,6 +25,7 @@
 #include "kluft/output/state_file.hpp"
 #include "kluft/output/summary.hpp"
 #include "kluft/reference/explicit_simulation.hpp"
+#include "kluft/scene/scene_as_run.hpp"
 #include "kluft/scene/scene_model.hpp"
 #include "kluft/scene/scene_reader.hpp"
 #include "kluft/simulation/contact_pressure.hpp"
@@ -93,6 +95,12 @@ RunWriterOptions writer_options(const Scene& scene, const Model& model) {
     options.history_columns = history_columns(model);
     for (const Material& material : scene.materials) options.material_names.push_back(material.name);
     return options;
+}
+
+/// Content of the scene.yaml to be written; "" where the directory has one of the user's own, which stays.
+std::string scene_file_for(const fs::path& directory, const RunArguments& arguments, const Scene& scene) {
+    if (!arguments.resume && !arguments.force) require_no_other_results(directory, scene);
+    return has_own_scene_file(directory, scene) ? "" : write_scene_as_run(scene);
 }
 
 /// Processor time of the runs that this one goes on from (s): that of the last one that said so.
@@ -221,6 +229,7 @@ ExitCode run(const RunArguments& arguments) {
     if (arguments.resume && scene.integrator == Integrator::explicit_motion)
         throw InputError("--resume: expected analysis.integrator: implicit, found explicit; a saved state has no "
                          "velocities to go on with");
+    if (!is_locked(directory)) (void)scene_file_for(directory, arguments, scene); // early; again under the lock
     const SceneModel built = build_scene_model(scene);
     const Model& model = built.model;
     const int unknowns = unknowns_per_block(model.kinematics) * model.system.n_blocks();
@@ -234,7 +243,12 @@ ExitCode run(const RunArguments& arguments) {
     RunWriterOptions options = writer_options(scene, model);
     std::optional<DirectoryLock> lock;
     const bool has_something = !arguments.resume || fs::is_directory(directory); // to go on from
-    if (has_something) lock.emplace(directory, "kluft run " + arguments.scene);
+    if (has_something) {
+        lock.emplace(
+            directory, "kluft run " + arguments.scene,
+            "wait for its end or choose another directory with -o; neither --force nor --resume takes it away");
+        options.scene_file = scene_file_for(directory, arguments, scene);
+    }
     State state = initial_state(model);
     if (arguments.resume) {
         state = read_state(directory / "state.h5", options.fingerprint);

@@ -32,7 +32,7 @@ _kluft() {
 
     local options="--help"
     case "$command" in
-    run) options+=" -o --output --set --threads --quiet --resume" ;;
+    run) options+=" -o --output --set --threads --quiet --resume --force" ;;
     check) options+=" --set" ;;
     draw) options+=" -o --output --curve --blocks --mark --limit --title --set" ;;
     compare) options+=" -o --output --tolerance" ;;

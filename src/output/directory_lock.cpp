@@ -66,12 +66,13 @@ std::string holder_in(int descriptor) {
 
 } // namespace
 
-DirectoryLock::DirectoryLock(const fs::path& directory, std::string_view what) {
+DirectoryLock::DirectoryLock(const fs::path& directory, std::string_view what, std::string_view advice) {
     make_directory(directory);
     file_ = std::make_unique<FileDescriptor>(lock_file(directory), O_RDWR | O_CREAT | O_NOFOLLOW);
     if (!lock_patiently(file_->number()))
-        throw InputError(fmt::format("{}: expected a directory that no other process writes to, found {} in it",
-                                     directory.string(), holder_in(file_->number())));
+        throw InputError(fmt::format("{}: expected a directory that no other process writes to, found {} in it{}{}",
+                                     directory.string(), holder_in(file_->number()), advice.empty() ? "" : "; ",
+                                     advice));
     write_holder(file_->number(), this_process(what));
 }
 

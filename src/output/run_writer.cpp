@@ -100,9 +100,10 @@ TableMark saved_mark(const fs::path& state, const std::string& marks, const std:
         fmt::format("{}: expected a state of a run with {}, found one of a run without it", state.string(), table));
 }
 
+constexpr std::array summary_and_pictures{"summary.json", "curve.png", "curve.svg", "blocks.png", "blocks.svg"};
+
 void remove_results_but_tables_and_state(const fs::path& directory) {
-    for (const char* name : {"summary.json", "curve.png", "curve.svg", "blocks.png", "blocks.svg"})
-        remove_file(directory / name);
+    for (const char* name : summary_and_pictures) remove_file(directory / name);
 }
 
 /// Runs each action and remembers the first error, so that one full disk does not cost the rest.
@@ -142,6 +143,16 @@ bool is_due(int step, int every) { return every > 0 && step % every == 0; }
 
 } // namespace
 
+std::string first_result_in(const fs::path& directory) {
+    std::vector<std::string> names(table_names.begin(), table_names.end());
+    names.insert(names.end(), summary_and_pictures.begin(), summary_and_pictures.end());
+    names.insert(names.end(), {"state.h5", "fields.pvd"});
+    std::error_code error;
+    for (const std::string& name : names)
+        if (fs::exists(fs::symlink_status(directory / name, error))) return name;
+    return {};
+}
+
 void remove_results(const fs::path& directory) {
     remove_results_but_tables_and_state(directory);
     FieldSeries::remove(directory);
@@ -156,7 +167,10 @@ RunWriter::RunWriter(fs::path directory, const BlockSystem& system, RunWriterOpt
     if (options_.strength_factor) header += ",strength_factor";
     if (options_.motion) header += ',' + motion_header();
     const bool has_histories = !options_.history_columns.empty();
-    if (!options_.resumed_step) remove_results(directory_);
+    if (!options_.resumed_step) {
+        remove_results(directory_);
+        write_scene_file();
+    }
     const fs::path state = directory_ / "state.h5";
     const std::string marks = options_.resumed_step ? read_state_tables(state) : "";
     const auto open = [&](const char* name, const std::string& columns) {
@@ -180,6 +194,7 @@ RunWriter::RunWriter(fs::path directory, const BlockSystem& system, RunWriterOpt
             throw InputError(fmt::format("{}: does not reach the saved load step {}", (directory_ / history).string(),
                                          *options_.resumed_step));
         last_row_ = rows.back();
+        write_scene_file();
     }
     if (options_.fields)
         tables_->fields = options_.resumed_step ? FieldSeries::resume(directory_, *options_.resumed_step)
@@ -190,6 +205,10 @@ RunWriter::~RunWriter() = default;
 
 bool RunWriter::is_known(const StepRecord& record) const {
     return options_.resumed_step && record.step <= *options_.resumed_step;
+}
+
+void RunWriter::write_scene_file() const {
+    if (!options_.scene_file.empty()) write_file(directory_ / "scene.yaml", options_.scene_file);
 }
 
 void RunWriter::equilibrium(const StepRecord& record) {

@@ -35,18 +35,6 @@ std::size_t character_length(std::string_view text, std::size_t at) {
     return length;
 }
 
-/// Whether all of `text` is UTF-8 without control characters other than tab and line ends.
-bool is_text(std::string_view text) {
-    for (std::size_t at = 0; at < text.size();) {
-        const auto c = static_cast<unsigned char>(text[at]);
-        if (c < 0x20 && c != '\t' && c != '\n' && c != '\r') return false;
-        const std::size_t length = character_length(text, at);
-        if (length == 0) return false;
-        at += length;
-    }
-    return true;
-}
-
 /// Where a line ends in a way that YAML's readers do not agree upon; npos where none does.
 std::size_t lone_carriage_return(std::string_view text) {
     for (std::size_t at = text.find('\r'); at != std::string_view::npos; at = text.find('\r', at + 1))
@@ -57,7 +45,7 @@ std::size_t lone_carriage_return(std::string_view text) {
 void require_scene_text(std::string_view text, const std::filesystem::path& file, std::string_view what) {
     if (text.size() > largest_scene)
         throw InputError(fmt::format("{}: expected {} of at most 1 MB, found more{}", file.string(), what, hint));
-    if (!is_text(text))
+    if (!is_scene_text(text))
         throw InputError(fmt::format("{}: expected {} in UTF-8 text, found a binary file", file.string(), what));
     if (const std::size_t at = lone_carriage_return(text); at != std::string_view::npos)
         throw InputError(fmt::format("{}:{}: expected lines that end in LF or CR LF, found one that ends in CR alone",
@@ -143,7 +131,7 @@ public:
         }
         path_ = assignment.substr(0, equals);
         const std::string text = assignment.substr(equals + 1);
-        if (!is_text(text) || text.size() > largest_scene) {
+        if (!is_scene_text(text) || text.size() > largest_scene) {
             errors_.add(at_, path_, "expected a value in UTF-8 text");
             return;
         }
@@ -226,6 +214,17 @@ private:
 };
 
 } // namespace
+
+bool is_scene_text(std::string_view text) {
+    for (std::size_t at = 0; at < text.size();) {
+        const auto c = static_cast<unsigned char>(text[at]);
+        if (c < 0x20 && c != '\t' && c != '\n' && c != '\r') return false;
+        const std::size_t length = character_length(text, at);
+        if (length == 0) return false;
+        at += length;
+    }
+    return true;
+}
 
 std::string read_scene_bytes(const std::filesystem::path& file, std::string_view what) {
     std::string text = read_input_file(file, what, largest_scene, hint);

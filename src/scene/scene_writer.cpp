@@ -37,9 +37,13 @@ std::string scalar_text(std::string_view text, bool quoted) {
     return result + "\"";
 }
 
+/// How lists of mappings are written.
+enum class Lists { on_one_line, an_item_per_line };
+
 class TreeWriter {
 public:
-    explicit TreeWriter(const SceneSources& sources) : sources_(sources) {}
+    explicit TreeWriter(const SceneSources& sources, Lists lists = Lists::on_one_line)
+        : sources_(sources), lists_(lists) {}
 
     /// The entries of a mapping, one per line.
     std::string block(const SceneNode& mapping, const std::string& path, int indent) const {
@@ -51,6 +55,8 @@ public:
             text += fmt::format("{:{}}{}:", "", indent, scalar_text(key, false));
             if (value.is_mapping() && !value.items.empty())
                 text += "\n" + block(value, joined_path(path, key), indent + 2);
+            else if (lists_ == Lists::an_item_per_line && has_mappings(value))
+                text += "\n" + items_below(value, joined_path(path, key), indent + 2);
             else
                 text += fmt::format(" {}\n", inline_text(value, joined_path(path, key)));
         }
@@ -63,7 +69,7 @@ public:
         case SceneNode::Kind::nothing:
             return "null";
         case SceneNode::Kind::scalar:
-            return is_file(path) ? scalar_text(absolute(node), false) : scalar_text(node.text, node.quoted);
+            return names_geometry_file(path) ? scalar_text(absolute(node), false) : scalar_text(node.text, node.quoted);
         case SceneNode::Kind::list:
         case SceneNode::Kind::mapping:
             return collection_text(node, path);
@@ -72,6 +78,19 @@ public:
     }
 
 private:
+    static bool has_mappings(const SceneNode& node) {
+        return node.is_list() && std::ranges::any_of(node.items, &SceneNode::is_mapping);
+    }
+
+    /// The items of a list, one per line.
+    [[nodiscard]] std::string items_below(const SceneNode& list, const std::string& path, int indent) const {
+        std::string text;
+        for (std::size_t i = 0; i < list.items.size(); ++i)
+            text += fmt::format("{:{}}- {}\n", "", indent,
+                                inline_text(list.items[i], joined_path(path, std::to_string(i))));
+        return text;
+    }
+
     [[nodiscard]] std::string collection_text(const SceneNode& node, const std::string& path) const {
         std::string text;
         for (std::size_t i = 0; i < node.items.size(); ++i) {
@@ -83,19 +102,27 @@ private:
         return node.is_mapping() ? fmt::format("{{{}}}", text) : fmt::format("[{}]", text);
     }
 
-    static bool is_file(std::string_view path) { return path.starts_with("geometry.") && path.ends_with(".file"); }
-
     [[nodiscard]] std::string absolute(const SceneNode& node) const {
-        return std::filesystem::absolute(sources_.directory(node.at) / node.text).lexically_normal().string();
+        std::filesystem::path file = node.text;
+        if (file.is_relative()) file = std::filesystem::absolute(sources_.directory(node.at) / file);
+        return file.lexically_normal().string();
     }
 
     const SceneSources& sources_;
+    Lists lists_;
 };
 
 } // namespace
 
+bool names_geometry_file(std::string_view path) { return path.starts_with("geometry.") && path.ends_with(".file"); }
+
 std::string write_scene_tree(const SceneNode& root, const SceneSources& sources) {
     return TreeWriter(sources).block(root, {}, 0);
+}
+
+std::string write_readable_scene(const SceneNode& written) {
+    const SceneSources none;
+    return TreeWriter(none, Lists::an_item_per_line).block(written, {}, 0);
 }
 
 std::string write_scene_value(const SceneNode& value) {

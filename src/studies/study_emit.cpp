@@ -98,9 +98,9 @@ run() {
 
 if [[ -e $directory/state.h5 ]]; then
     run "${words[@]}" --resume
-    if [[ $code == 2 ]]; then run "${words[@]}"; fi # a state that cannot be gone on from
+    if [[ $code == 2 ]]; then run "${words[@]}" --force; fi # a state that cannot be gone on from
 else
-    run "${words[@]}"
+    run "${words[@]}" --force # the directory is the study's
 fi
 stopped=false # by a signal that makes it save its state: HUP, INT, QUIT, USR1, USR2, ALRM, TERM, XCPU
 case $code in 129 | 130 | 131 | 138 | 140 | 142 | 143 | 152) stopped=true ;; esac

@@ -79,6 +79,7 @@ private:
             words.emplace_back("--resume");
             resumed_.insert(i);
         } else {
+            words.emplace_back("--force"); // a case's directory is the study's, which knows what has to be run again
             remove_file(place(i) / "outcome.json");
         }
         children_.start(i, words, place(i) / "messages.txt", read_.study.time_limit);

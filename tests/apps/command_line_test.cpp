@@ -182,6 +182,15 @@ protected:
         return text;
     }
 
+    /// Name and content of all files below a directory.
+    std::map<std::string, std::string> files_in(const std::string& directory) const {
+        std::map<std::string, std::string> files;
+        for (const auto& entry : fs::recursive_directory_iterator(path(directory)))
+            if (entry.is_regular_file())
+                files[entry.path().lexically_relative(path(directory)).string()] = content_of(entry.path());
+        return files;
+    }
+
     TemporaryDirectory directory_;
 };
 using SlowCommandLine = CommandLine;
@@ -231,6 +240,11 @@ geometry:
   reference_spacing: 1.0
 stages: [{name: push, pressure: {left: 1 MPa}, steps: 2}]
 )";
+
+Words with(Words words, const Words& more) {
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+}
 
 const Words commands{"run", "check", "draw", "compare", "envelope", "study", "calibrate"};
 
@@ -467,8 +481,9 @@ TEST_F(CommandLine, WarningsOfARunStandInItsSummary) {
 
 // ---- kluft run -----------------------------------------------------------------------------------------------------
 
-const Words all_files{"history.csv", "equilibria.csv", "cracks.csv", "jumps.csv",  "summary.json", "fields.pvd",
-                      "curve.png",   "curve.svg",      "blocks.png", "blocks.svg", "run.log",      "state.h5"};
+const Words all_files{"history.csv", "equilibria.csv", "cracks.csv", "jumps.csv",  "summary.json",
+                      "fields.pvd",  "curve.png",      "curve.svg",  "blocks.png", "blocks.svg",
+                      "run.log",     "state.h5",       "scene.yaml"};
 
 void expect_all_files(const fs::path& run) {
     for (const auto& name : all_files) EXPECT_GT(fs::file_size(run / name), 0U) << name;
@@ -592,11 +607,160 @@ TEST_F(CommandLine, NewRunReplacesTheResultsOfAnOldOneAndKeepsForeignFiles) {
     write("tiny.yaml", tiny_scene);
     ASSERT_EQ(kluft({"run", "tiny.yaml", "-o", "r"}).code, 0);
     write("r/notes.txt", "mine");
-    ASSERT_EQ(
-        kluft({"run", "tiny.yaml", "-o", "r", "--set", "stages.1.steps=3", "--set", "output.pictures=false"}).code, 0);
+    const Words other{"run", "tiny.yaml", "-o", "r", "--set", "stages.1.steps=3", "--set", "output.pictures=false"};
+    ASSERT_EQ(kluft(with(other, {"--force"})).code, 0);
     EXPECT_EQ(content_of(path("r/notes.txt")), "mine");
     EXPECT_FALSE(fs::exists(path("r/curve.png")));
     EXPECT_EQ(lines_of(content_of(path("r/history.csv"))).size(), 7U);
+    EXPECT_THAT(content_of(path("r/scene.yaml")), HasSubstr("steps: 3}"));
+    EXPECT_EQ(kluft(other).code, 0); // the results are of this scene now
+}
+
+TEST_F(CommandLine, ResultsOfAnotherSceneAreNotReplacedInSilence) {
+    write("tiny.yaml", tiny_scene);
+    ASSERT_EQ(kluft({"run", "tiny.yaml", "-o", "r", "--quiet"}).code, 0);
+    const auto before = files_in("r");
+    const Words other{"run", "tiny.yaml", "-o", "r", "--set", "stages.1.steps=3"};
+    expect_refused(other, AllOf(StartsWith("r: expected results of this scene or none, found results of another one: "
+                                           "stages.1.steps is '8' there and '3' here"),
+                                HasSubstr("--force"), HasSubstr("--resume")));
+    EXPECT_TRUE(files_in("r") == before);
+    expect_refused(with(other, {"--resume", "--force"}), HasSubstr("--resume excludes --force"));
+    EXPECT_TRUE(files_in("r") == before);
+    expect_refused(with(other, {"--resume"}), HasSubstr("belongs to another scene"));
+    auto after = files_in("r");
+    after[".lock"] = before.at(".lock"); // names the last process
+    EXPECT_TRUE(after == before);
+}
+
+TEST_F(CommandLine, SameSceneIsRunAnewWhateverItsCommentsAndTheOrderOfItsKeys) {
+    write("tiny.yaml", tiny_scene);
+    write("again.yaml", std::string("# the same\nboundaries: {bottom: {support: smooth}}  # at the foot\n") +
+                            std::regex_replace(tiny_scene, std::regex("\nboundaries: .*\n"), "\n\n"));
+    ASSERT_EQ(kluft({"run", "tiny.yaml", "-o", "r", "--quiet"}).code, 0);
+    const std::string history = table("r/history.csv");
+    write("r/history.csv", "old");
+    ASSERT_EQ(kluft({"run", "again.yaml", "-o", "r", "--quiet"}).code, 0);
+    EXPECT_EQ(table("r/history.csv"), history);
+}
+
+/// Results of a program before there was a scene.yaml name their scene in the saved state, if there is one.
+TEST_F(CommandLine, ResultsWithoutASceneAreReplacedWhereTheirStateIsOfTheSameScene) {
+    write("tiny.yaml", tiny_scene);
+    const Words words{"run", "tiny.yaml", "-o", "r", "--quiet"}, other = with(words, {"--set", "stages.1.steps=3"});
+    ASSERT_EQ(kluft(words).code, 0);
+    fs::remove(path("r/scene.yaml"));
+    expect_refused(other, HasSubstr("stages.1.steps is '8' there and '3' here"));
+    EXPECT_EQ(kluft(words).code, 0);
+    fs::remove(path("r/scene.yaml"));
+    fs::remove(path("r/state.h5"));
+    expect_refused(words, HasSubstr("found history.csv and no scene.yaml that says what it is of; --force"));
+    EXPECT_EQ(kluft(with(words, {"--force"})).code, 0);
+    fs::create_directory(path("mine"));
+    write("mine/cracks.csv", "measured");
+    expect_refused({"run", "tiny.yaml", "-o", "mine"},
+                   HasSubstr("mine: expected results of this scene or none, found cracks.csv"));
+    EXPECT_EQ(content_of(path("mine/cracks.csv")), "measured");
+}
+
+TEST_F(CommandLine, SceneThatWasChangedBesideItsResultsIsAnotherOne) {
+    write("tiny.yaml", tiny_scene);
+    ASSERT_EQ(kluft({"run", "tiny.yaml", "-o", "r", "--quiet"}).code, 0);
+    EXPECT_EQ(kluft({"run", "r/scene.yaml", "-o", "r", "--quiet"}).code, 0);
+    write("r/scene.yaml", std::regex_replace(content_of(path("r/scene.yaml")), std::regex("steps: 8"), "steps: 3"));
+    const auto before = files_in("r");
+    expect_refused({"run", "r/scene.yaml", "-o", "r"}, HasSubstr("scene.yaml has been changed since"));
+    EXPECT_TRUE(files_in("r") == before);
+    EXPECT_EQ(kluft({"run", "r/scene.yaml", "-o", "r", "--force"}).code, 0);
+    EXPECT_EQ(summary("r")["steps"], 5);
+}
+
+TEST_F(CommandLine, SceneOfTheUsersOwnInTheDirectoryOfTheResultsIsNotReplaced) {
+    fs::create_directory(path("mine"));
+    write("mine/scene.yaml", std::string("# by hand\n") + tiny_scene);
+    const std::string before = content_of(path("mine/scene.yaml"));
+    const Words words{"run", "mine/scene.yaml", "-o", "mine", "--quiet"};
+    for (int i = 0; i < 2; ++i) EXPECT_EQ(kluft(words).code, 0);
+    EXPECT_EQ(kluft(with(words, {"--resume"})).code, 0);
+    for (const char* option : {"--quiet", "--force"})
+        expect_refused({"run", "mine/scene.yaml", "-o", "mine", "--set", "title=Other", option},
+                       AnyOf(HasSubstr("title is 'Tiny' there and 'Other' here"),
+                             AllOf(StartsWith("mine/scene.yaml: "), HasSubstr("would be lost"), HasSubstr("-o"))));
+    EXPECT_EQ(content_of(path("mine/scene.yaml")), before);
+    write("mine/scene.yaml", std::regex_replace(tiny_scene, std::regex("steps: 8"), "steps: 3"));
+    expect_refused(words, HasSubstr("stages.1.steps is '8' there and '3' here"));
+    EXPECT_EQ(kluft(with(words, {"--force"})).code, 0);
+}
+
+TEST_F(CommandLine, SceneInTheResultsGivesTheSameTablesElsewhere) {
+    write("tiny.yaml", tiny_scene);
+    fs::create_directories(path("maps/traces"));
+    write(
+        "maps/base.yaml",
+        std::regex_replace(tiny_scene, std::regex("  tessellation"),
+                           "  fractures: [{name: mapped, file: traces/t.geojson, interface: joint}]\n  tessellation"));
+    write("maps/traces/t.geojson", R"({"type": "LineString", "coordinates": [[-1, 0.13], [1, 0.24]]})");
+    write("steep.yaml", "extends: maps/base.yaml\ninterfaces: {joint: {friction_angle: 25 deg}}\n");
+    const Words set{"--quiet",
+                    "--set",
+                    "solver.repeatable=true",
+                    "--set",
+                    "output.pictures=false",
+                    "--set",
+                    "stages.1.strain.value=0.8 %"};
+    for (const char* scene : {"tiny.yaml", "steep.yaml"}) {
+        ASSERT_EQ(kluft(with({"run", scene, "-o", "first", "--force"}, set)).code, 0);
+        fs::create_directory(path("away"));
+        fs::rename(path("first/scene.yaml"), path("away/scene.yaml"));
+        ASSERT_EQ(kluft({"run", "away/scene.yaml", "-o", "away/again", "--quiet", "--force"}).code, 0);
+        for (const std::string name : {"history.csv", "equilibria.csv"})
+            EXPECT_TRUE(table("first/" + name) == table("away/again/" + name)) << scene << ' ' << name;
+        for (const std::string name : {"cracks.csv", "jumps.csv"})
+            EXPECT_TRUE(content_of(path("first/" + name)) == content_of(path("away/again/" + name))) << scene;
+        EXPECT_EQ(content_of(path("away/again/scene.yaml")), content_of(path("away/scene.yaml")));
+        EXPECT_EQ(summary("away/again")["title"], summary("first")["title"]);
+        fs::remove_all(path("away"));
+    }
+}
+
+TEST_F(CommandLine, SceneWhoseFileOfTracesHasChangedIsAnotherOne) {
+    write("base.yaml",
+          std::regex_replace(tiny_scene, std::regex("  tessellation"),
+                             "  fractures: [{name: mapped, file: t.geojson, interface: joint}]\n  tessellation"));
+    const std::string traces = R"({"type": "LineString", "coordinates": [[-1, 0.13], [1, 0.24]]})";
+    write("t.geojson", traces);
+    const Words words{"run", "base.yaml", "-o", "r", "--quiet"};
+    ASSERT_EQ(kluft(words).code, 0);
+    write("t.geojson", std::regex_replace(traces, std::regex("0.13"), "0.14"));
+    expect_refused(words, HasSubstr("a file of the geometry has another content"));
+    write("t.geojson", traces);
+    EXPECT_EQ(kluft(words).code, 0);
+}
+
+/// Killed as soon as scene.yaml is there: the same command runs, and nothing of it is torn.
+TEST_F(CommandLine, RunThatWasKilledRightAfterItsSceneWasWrittenIsRunAnew) {
+    write("tiny.yaml", tiny_scene);
+    const Words words{"run", "tiny.yaml", "-o", "r"};
+    Child child(directory_.path(), words);
+    for (int i = 0; i < 30000 && !fs::exists(path("r/scene.yaml")); ++i)
+        std::this_thread::sleep_for(std::chrono::microseconds(200));
+    child.send(SIGKILL);
+    ASSERT_EQ(child.wait(), 128 + SIGKILL);
+    const std::string scene = content_of(path("r/scene.yaml"));
+    for (const auto& [name, content] : files_in("r"))
+        if (name != "scene.yaml" && name != ".lock") fs::remove_all(path("r/" + name)); // as if killed earlier still
+    EXPECT_EQ(kluft({"run", "r/scene.yaml", "-o", "other", "--quiet"}).code, 0);
+    EXPECT_EQ(kluft(words).code, 0);
+    EXPECT_EQ(content_of(path("r/scene.yaml")), scene);
+    expect_all_files(path("r"));
+}
+
+TEST_F(CommandLine, ResumedRunLeavesTheSceneThatItWasResumedWith) {
+    write("tiny.yaml", tiny_scene);
+    ASSERT_EQ(kluft({"run", "tiny.yaml", "-o", "r", "--quiet"}).code, 0);
+    const Words resume{"run", "tiny.yaml", "-o", "r", "--quiet", "--resume", "--set", "output.pictures=false"};
+    ASSERT_EQ(kluft(resume).code, 0);
+    EXPECT_THAT(content_of(path("r/scene.yaml")), HasSubstr("pictures: false"));
 }
 
 TEST_F(CommandLine, RunIsRefusedWhereItsDirectoryIsAFile) {
@@ -637,11 +801,6 @@ TEST_F(CommandLine, BodyThatNothingHoldsEndsWithExitCode3) {
 const Words long_run{"run",   model("quickstart.yaml"), "--quiet", "--set", "stages.1.steps=120",
                      "--set", "solver.repeatable=true"};
 
-Words with(Words words, const Words& more) {
-    words.insert(words.end(), more.begin(), more.end());
-    return words;
-}
-
 TEST_F(SlowCommandLine, InterruptedRunIsCompleteAndGoesOnAsIfItHadNotBeenInterrupted) {
     ASSERT_EQ(kluft(with(long_run, {"-o", "whole"})).code, 0);
     Child child(directory_.path(), with(long_run, {"-o", "broken"}));
@@ -674,8 +833,9 @@ TEST_F(SlowCommandLine, RunKeepsOthersOutOfItsDirectory) {
     write("study.yaml", "scene: tiny.yaml\nvary: {stages.1.steps: [4]}\n");
     Child child(directory_.path(), with(long_run, {"-o", "r"}));
     wait_for_rows("r", 5);
-    const auto named = ContainsRegex("^r: expected .* found process [0-9]+ .*kluft run ");
+    const auto named = ContainsRegex("^r: expected .* found process [0-9]+ .*kluft run .*--force.*--resume");
     expect_refused({"run", "tiny.yaml", "-o", "r"}, named);
+    expect_refused({"run", "tiny.yaml", "-o", "r", "--force"}, named);
     expect_refused(with(long_run, {"-o", "r", "--resume"}), named);
     expect_refused({"study", "study.yaml", "-o", "r"}, ContainsRegex("found process [0-9]+ .*kluft run "));
     child.interrupt();
@@ -685,7 +845,7 @@ TEST_F(SlowCommandLine, RunKeepsOthersOutOfItsDirectory) {
     wait_for_rows("r", 5);
     killed.send(SIGKILL);
     ASSERT_EQ(killed.wait(), 128 + SIGKILL);
-    EXPECT_EQ(kluft({"run", "tiny.yaml", "-o", "r"}).code, 0); // what it had locked is free
+    EXPECT_EQ(kluft({"run", "tiny.yaml", "-o", "r", "--force"}).code, 0); // what it had locked is free
 }
 
 // What a shell says of a process that a signal has ended, but with the state and a summary.
@@ -1079,7 +1239,7 @@ TEST_F(SlowCommandLine, CheckEstimatesTheLargestMemoryOfARun) {
     write("fractured.yaml", fractured_hexagons);
     const auto expect_estimate = [&](const Words& scene) {
         const double estimate = megabytes_in(kluft(with({"check"}, scene)).out);
-        ASSERT_EQ(kluft(with(with({"run"}, scene), {"-o", "r", "--quiet"})).code, 0);
+        ASSERT_EQ(kluft(with(with({"run"}, scene), {"-o", "r", "--quiet", "--force"})).code, 0);
         const double peak = 1e-6 * summary("r")["peak_memory_bytes"].get<double>();
         EXPECT_NEAR(estimate, peak, 0.2 * peak) << ::testing::PrintToString(scene);
     };

@@ -243,7 +243,15 @@ def differences(out, reference, words):
         found, known = (json.loads((each / "summary.json").read_text())["factor_of_safety"] for each in (out, reference))
         return [] if abs(found / known - 1) < 0.01 else [f"factor of safety {found} instead of {known}"]
     paths = {path.relative_to(each) for each in (out, reference) for path in each.rglob("*.csv") if path.name in TABLES}
-    return [f"another {path}" for path in sorted(paths) if rows(out / path) != rows(reference / path)]
+    return [f"another {path}" for path in sorted(paths) if rows(out / path) != rows(reference / path)] + other_scenes(out, reference)
+
+
+def other_scenes(out, reference):
+    """The scenes as run that are not the reference's. Those of a study and of a calibration name their own directories."""
+    if not (reference / "history.csv").exists():
+        return [f"no scene.yaml beside {path}" for path in out.rglob("history.csv") if not (path.parent / "scene.yaml").exists()]
+    known, path = (reference / "scene.yaml").read_bytes(), out / "scene.yaml"
+    return [] if path.exists() and path.read_bytes() == known else ["another scene.yaml"]
 
 
 def status(out):
@@ -276,6 +284,8 @@ def is_whole(path):
         return data.startswith(b"\x89PNG") and b"IEND" in data[-12:]
     if path.suffix in (".svg", ".vtu", ".pvd", ".html"):
         return data.rstrip().endswith(b">")
+    if path.suffix == ".yaml":  # JSON is YAML too
+        return data.endswith((b"\n", b"}")) and b"\0" not in data
     return True
 
 

@@ -22,7 +22,7 @@ What was done:
 - *limits*: `ulimit -v`, `-f`, `-t`; *full disks*: a small tmpfs (without root: writes that fail from the n-th on); *output without
   room*: standard output on `/dev/full`, closed, or with nobody who reads.
 - *signals*: HUP, INT, TERM, PIPE, QUIT, XCPU, XFSZ, USR1 in the midst of a run, study or calibration; *several processes*: a run, study,
-  calibration or resumption beside another one in its directory.
+  calibration or resumption beside another one in its directory; a run of another scene is refused there.
 - *damaged states* and *tables*: bits that flip, bytes that change, ends, rows or whole files that are missing, before `--resume`.
 - *mistakes*: random changes of scenes, studies and maps for `kluft check` and `kluft study --emit`.
 - *hard scenes*: joints from k_n d/E 1e-3 to 1e6, needles, snap-backs, mechanisms, maps with nets, tiny and huge units.

@@ -33,7 +33,8 @@ def signals(bench, i):
 
 
 def together(bench, i):
-    """The second process says whose directory it is, or comes after the first one's end; the results are of one of them."""
+    """The second process says whose directory it is, or comes after the first one's end: then the same scene is run anew and another
+    one is refused, as its results would be lost. The results are of one of them."""
     kinds = [("run", "run"), ("run", "other run"), ("run", "resume"), ("study", "study"), ("study", "run"), ("calibration", "calibration")]
     first, second = kinds[i % len(kinds)]
     jobs = bench.jobs()
@@ -51,7 +52,8 @@ def together(bench, i):
     refused = [end for end in ends if end.code == BAD_INPUT]
     if not problems and (any(end.code not in (DONE, BAD_INPUT) for end in ends) or len(refused) > 1):
         problems.append("; ".join(end.said() for end in ends if end.code != DONE))
-    problems += [f"the other process is not named: {end.said()}" for end in refused if not re.search(r"process \d+", end.err)]
+    named = r"process \d+|results of another one.*--force.*--resume" if second == "other run" else r"process \d+"
+    problems += [f"neither the other process nor the other scene is named: {end.said()}" for end in refused if not re.search(named, end.err)]
     winners = [words for words, end in zip((first, second), ends) if end.code == DONE]
     if winners and all(differences(cwd / "out", bench.reference(plain(jobs[w])), jobs[w]) for w in winners):
         problems.append("tables of neither")

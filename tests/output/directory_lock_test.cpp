@@ -28,6 +28,8 @@ TEST(DirectoryLock, KeepsOthersOutForItsLifeAndNamesTheProcess) {
     {
         const DirectoryLock lock(place, "kluft run scene.yaml");
         EXPECT_TRUE(is_locked(place));
+        EXPECT_THAT([&] { const DirectoryLock second(place, "kluft run s.yaml", "try elsewhere"); },
+                    ThrowsMessage<InputError>(HasSubstr("(kluft run scene.yaml) in it; try elsewhere")));
         EXPECT_THAT([&] { const DirectoryLock second(place, "kluft study s.yaml"); },
                     ThrowsMessage<InputError>(AllOf(HasSubstr("results: expected a directory that no other process "),
                                                     HasSubstr("found process " + std::to_string(getpid())),

@@ -224,6 +224,38 @@ TEST(RunWriter, WritesHistoriesWhereTheSceneFollowsSomething) {
     EXPECT_FALSE(fs::exists(whole / "histories.csv"));
 }
 
+TEST(RunWriter, WritesTheSceneWholeAndRemovesNoneOfTheUsersOwn) {
+    const TemporaryDirectory directory;
+    EXPECT_EQ(first_result_in(directory.path()), "");
+    write_file(directory / "scene.yaml", "mine");
+    RunWriterOptions options;
+    { SmallRun(directory.path(), options).go_to(5); }
+    EXPECT_EQ(read_file(directory / "scene.yaml"), "mine");
+    EXPECT_EQ(first_result_in(directory.path()), "history.csv");
+    options.scene_file = "kluft: 1\n";
+    { SmallRun(directory.path(), options).go_to(5); }
+    EXPECT_EQ(read_file(directory / "scene.yaml"), "kluft: 1\n");
+    options.resumed_step = 4;
+    options.scene_file = "kluft: 1\ntitle: again\n";
+    { SmallRun(directory.path(), options).go_to(7, false); }
+    EXPECT_EQ(read_file(directory / "scene.yaml"), options.scene_file);
+    remove_results(directory.path());
+    EXPECT_EQ(first_result_in(directory.path()), "");
+    EXPECT_TRUE(fs::exists(directory / "scene.yaml"));
+}
+
+TEST(RunWriter, RefusedResumptionLeavesTheScene) {
+    const TemporaryDirectory directory;
+    RunWriterOptions options;
+    options.scene_file = "kluft: 1\n";
+    { SmallRun(directory.path(), options).go_to(5); }
+    fs::remove(directory / "cracks.csv");
+    options.resumed_step = 4;
+    options.scene_file = "kluft: 1\ntitle: again\n";
+    EXPECT_THROW(SmallRun(directory.path(), options), InputError);
+    EXPECT_EQ(read_file(directory / "scene.yaml"), "kluft: 1\n");
+}
+
 TEST(RunWriter, IgnoresStepsThatAResumedRunTellsAgain) {
     const TemporaryDirectory directory;
     RunWriterOptions options;

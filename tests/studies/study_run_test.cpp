@@ -128,7 +128,7 @@ std::string steps(const std::string& list) { return "vary: {stages.1.steps: [" +
 TEST_F(StudyRuns, EveryCaseIsRunOnceAndNeverAgain) {
     const StudyTable table = run(steps("10, 20, 40"));
     EXPECT_THAT(statuses_of(table), ::testing::Each(CaseStatus::done));
-    EXPECT_THAT(starts(), ElementsAre("10 --quiet", "20 --quiet", "40 --quiet"));
+    EXPECT_THAT(starts(), ElementsAre("10 --force", "20 --force", "40 --force"));
     EXPECT_EQ(table.cases[0].quantities[0], 10.0);
     EXPECT_EQ(table.cases[0].errors[0], (10.0 - 40.0) / 40.0);
     EXPECT_EQ(table.cases[0].quantities[1], std::nullopt);
@@ -139,7 +139,7 @@ TEST_F(StudyRuns, EveryCaseIsRunOnceAndNeverAgain) {
     (void)run(steps("10, 20, 40"));
     EXPECT_THAT(starts(), IsEmpty());
     EXPECT_THAT(statuses_of(run(steps("5, 10, 20, 40"))), SizeIs(4));
-    EXPECT_THAT(starts(), ElementsAre("5 --quiet"));
+    EXPECT_THAT(starts(), ElementsAre("5 --force"));
 }
 
 TEST_F(StudyRuns, ChangedScenesAndSettingsAreRunAgain) {
@@ -162,7 +162,7 @@ TEST_F(StudyRuns, KilledAndRefusedCasesAreToldAndTheOthersGoOn) {
     EXPECT_EQ(table.cases[1].quantities[0], std::nullopt);
     (void)starts();
     (void)run(steps("10, 66, 77, 20"));
-    EXPECT_THAT(starts(), ElementsAre("66 --quiet")); // what failed is tried again
+    EXPECT_THAT(starts(), ElementsAre("66 --force")); // what failed is tried again
 }
 
 TEST_F(StudyRuns, CaseThatTakesTooLongIsStopped) {
@@ -174,7 +174,7 @@ TEST_F(StudyRuns, CaseThatTakesTooLongIsStopped) {
 
 TEST_F(StudyRuns, InterruptedCaseGoesOnFromItsSavedState) {
     EXPECT_EQ(run(steps("10, 99")).cases[1].status, CaseStatus::waiting);
-    EXPECT_THAT(starts(), ElementsAre("10 --quiet", "99 --quiet"));
+    EXPECT_THAT(starts(), ElementsAre("10 --force", "99 --force"));
     EXPECT_EQ(run(steps("10, 99")).cases[1].status, CaseStatus::done);
     EXPECT_THAT(starts(), ElementsAre("99 --resume"));
 }
@@ -199,12 +199,12 @@ TEST_F(StudyRuns, CaseThatAnotherProcessRunsIsWaitedFor) {
     std::optional<DirectoryLock> earlier(std::in_place, case_directory(results_, study.cases[0]), "kluft run");
     std::jthread saving([&] {
         while (!fs::exists(results_ / "cases/steps=20/outcome.json")) std::this_thread::yield();
-        EXPECT_THAT(starts(), ElementsAre("20 --quiet"));
+        EXPECT_THAT(starts(), ElementsAre("20 --force"));
         earlier.reset();
     });
     const StudyTable table = run_study(study, results_, {directory_ / "program", 2, {}}, stop_);
     EXPECT_THAT(statuses_of(table), ElementsAre(CaseStatus::done, CaseStatus::done));
-    EXPECT_THAT(starts(), ElementsAre("10 --quiet"));
+    EXPECT_THAT(starts(), ElementsAre("10 --force"));
 }
 
 TEST_F(StudyRuns, ClosedFormAndOtherRunsAreReferencesToo) {
@@ -265,13 +265,13 @@ TEST_F(StudyRuns, MakefileRunsWhatHasNotEndedAndGathersTheSameTable) {
     EXPECT_EQ(next, "make -j2 -C " + results_.string() + "\n");
     EXPECT_EQ(exit_code_of("make -s -j2 -C '" + results_.string() + "' >/dev/null 2>&1"), 0);
     EXPECT_EQ(content_of(results_ / "collected"), std::string(std::getenv("HOME")) + "\n");
-    EXPECT_THAT(starts(), ElementsAre("10 --quiet", "66 --quiet", "77 --quiet", "99 --quiet"));
+    EXPECT_THAT(starts(), ElementsAre("10 --force", "66 --force", "77 --force", "99 --force"));
     auto statuses = statuses_of(collect_study(study, results_));
     EXPECT_THAT(statuses, ElementsAre(CaseStatus::done, CaseStatus::failed, CaseStatus::refused, CaseStatus::waiting));
     EXPECT_EQ(collect_study(study, results_).cases[1].reason, "killed by signal 9 (Killed)");
 
     EXPECT_EQ(exit_code_of("make -s -C '" + results_.string() + "' >/dev/null 2>&1"), 0);
-    EXPECT_THAT(starts(), ElementsAre("66 --quiet", "99 --resume"));
+    EXPECT_THAT(starts(), ElementsAre("66 --force", "99 --resume"));
     statuses = statuses_of(collect_study(study, results_));
     EXPECT_EQ(statuses[3], CaseStatus::done);
 }

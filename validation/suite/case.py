@@ -3,6 +3,7 @@
 import csv
 import json
 import math
+import shutil
 import subprocess
 import time
 from dataclasses import asdict, dataclass
@@ -141,9 +142,8 @@ class Case:
         """Runs a scene with overrides. Without `may_fail` a run that finds no equilibrium ends the check. `defaults`: with
         the program's defaults in place of all numerical settings of the scene."""
         target = self.output / (f"defaults-{name}" if defaults else name)
-        target.mkdir(parents=True, exist_ok=True)
-        for stale in ("summary.json", "history.csv"):
-            (target / stale).unlink(missing_ok=True)
+        shutil.rmtree(target, ignore_errors=True)  # results of an earlier version of the case
+        target.mkdir(parents=True)
         path = with_defaults(self.directory / scene, self.output) if defaults else self.directory / scene
         command = [str(self.program), "run", str(path), "-o", str(target), "--quiet"]
         command += overrides_of({"output.pictures": False, **(overrides or {})})

@@ -14,8 +14,9 @@ class FileDescriptor;
 class DirectoryLock {
 public:
     /// Makes the directory where there is none. `what` tells those who come later what has it: "kluft run scene.yaml".
-    /// Throws InputError, which names the process that has the directory; ResourceError when the lock cannot be made.
-    DirectoryLock(const std::filesystem::path& directory, std::string_view what);
+    /// Throws InputError, which names the process that has the directory and ends with `advice`; ResourceError when the
+    /// lock cannot be made.
+    DirectoryLock(const std::filesystem::path& directory, std::string_view what, std::string_view advice = {});
     DirectoryLock(const DirectoryLock&) = delete;
     DirectoryLock& operator=(const DirectoryLock&) = delete;
     ~DirectoryLock();

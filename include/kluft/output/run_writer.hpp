@@ -28,6 +28,7 @@ struct RunWriterOptions {
     std::string title;
     std::string fingerprint;         ///< of the scene, kept in state.h5
     std::string scene_text;          ///< kept in state.h5 too, so that the run can be drawn again
+    std::string scene_file;          ///< content of scene.yaml; empty: that file stays as it is
     std::optional<int> resumed_step; ///< load step of the saved state that the run goes on from; none: a new run
     std::optional<int> platen_stage; ///< the first stage that moves a platen
     Plane plane = Plane::strain;
@@ -50,8 +51,9 @@ struct RunOutcome {
 /// at checkpoints, and at the end summary.json and the pictures. The tables hold whole rows at any moment, every other file
 /// appears whole. No state is saved before all rows of its load step are on the disk.
 ///
-/// A new run first removes what an earlier one left in the directory (run.log excepted), so that results never mix;
-/// foreign files stay. A resumed run keeps the rows and field files up to the saved step and goes on from there.
+/// A new run first removes what an earlier one left in the directory (run.log and scene.yaml excepted), so that results
+/// never mix; foreign files stay. Then it writes scene.yaml, before its tables: results without it are of earlier versions.
+/// A resumed run keeps the rows and field files up to the saved step and goes on from there.
 class RunWriter : public StepObserver {
 public:
     /// `system` must outlive the writer. Throws ResourceError; InputError when the tables of a run to resume are
@@ -83,6 +85,7 @@ private:
 
     /// Whether the tables of a resumed run have the row already.
     [[nodiscard]] bool is_known(const StepRecord& record) const;
+    void write_scene_file() const;
     void write_pictures(const std::vector<StepRecord>& history, const std::vector<StepRecord>& equilibria,
                         const FieldRecord& fields) const;
     void write_fields(const StepRecord& record, const FieldRecord& fields);
@@ -97,7 +100,10 @@ private:
     Clock::time_point saved_ = Clock::now(); ///< when the last state was
 };
 
-/// Removes every file that a run writes, except run.log. Throws ResourceError.
+/// The first file in the directory that remove_results would remove; "" if there is none.
+[[nodiscard]] std::string first_result_in(const std::filesystem::path& directory);
+
+/// Removes every file that a run writes, except run.log and scene.yaml. Throws ResourceError.
 void remove_results(const std::filesystem::path& directory);
 
 } // namespace kluft

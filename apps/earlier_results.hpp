@@ -1,0 +1,18 @@
+// What a directory holds before a run writes its results into it.
+#pragma once
+
+#include <filesystem>
+
+#include "kluft/scene/scene.hpp"
+
+namespace kluft {
+
+/// Throws InputError, which names --force and --resume, where the directory has results of another scene, or results that
+/// do not say of which scene they are. Changes nothing.
+void require_no_other_results(const std::filesystem::path& directory, const Scene& scene);
+
+/// Whether scene.yaml in the directory is a file of the user's own that says the same scene, so that it can stay as it is;
+/// not where there is none, or one that a run wrote. Throws InputError where it is of the user's own and says another scene.
+[[nodiscard]] bool has_own_scene_file(const std::filesystem::path& directory, const Scene& scene);
+
+} // namespace kluft

@@ -1,0 +1,25 @@
+// scene.yaml in a directory of results: the scene as run, by which a later run tells whether it is the same one.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "kluft/scene/scene.hpp"
+
+namespace kluft {
+
+/// The text of scene.yaml: every key as it was written, with extended scenes and overrides merged and names of geometry
+/// files absolute, so that reading it gives the same scene wherever it lies. A scene without a title gets its name as one.
+/// A comment holds the digest of what it says and of the files' content.
+[[nodiscard]] std::string write_scene_as_run(const Scene& scene);
+
+/// Whether write_scene_as_run wrote the text.
+[[nodiscard]] bool is_scene_as_run(std::string_view text);
+
+/// What differs between an earlier scene and this one, "stages.1.steps is '200' there and '400' here"; "" where they are
+/// the same. `earlier` is what write_scene_as_run wrote, or the `text` of a scene, whose files are then taken as they are
+/// now. Values count as they are written, files by their content; comments, the order of keys, the place of files and a
+/// title that only one of the two has do not count.
+[[nodiscard]] std::string scene_difference(std::string_view earlier, const Scene& scene);
+
+} // namespace kluft
