@@ -12,6 +12,7 @@
 #include "kluft/scene/geometry_reader.hpp"
 #include "kluft/scene/load_reader.hpp"
 #include "kluft/scene/net_check.hpp"
+#include "kluft/scene/plausibility.hpp"
 #include "kluft/scene/property_reader.hpp"
 #include "kluft/scene/quantity.hpp"
 #include "kluft/scene/reading_context.hpp"
@@ -233,6 +234,7 @@ Scene convert(const SceneSection& root, ReadingContext& context) {
         if (!refused.contains(type)) require_spacing(interfaces[index], scene.interface_types[index], scene, context);
     }
     warn_of_net(root, scene, context);
+    warn_of_implausible_values(root, scene, context);
     return scene;
 }
 

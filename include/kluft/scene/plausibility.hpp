@@ -1,0 +1,13 @@
+// Values that a scene may have and that are hardly meant: a lost unit, a forgotten side.
+#pragma once
+
+#include "kluft/scene/reading_context.hpp"
+#include "kluft/scene/scene.hpp"
+
+namespace kluft {
+
+/// Warnings: a material softer than 1 MPa or stiffer than diamond, or of no rock's density; a joint stiffer than a
+/// millimetre of steel; a pressure on one side of a rectangle against which nothing stands. `root` is the whole scene.
+void warn_of_implausible_values(const SceneSection& root, const Scene& scene, ReadingContext& context);
+
+} // namespace kluft

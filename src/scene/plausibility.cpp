@@ -1,0 +1,101 @@
+#include "kluft/scene/plausibility.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace kluft {
+
+namespace {
+
+void warn_of_material(const SceneSection& section, const Material& material, ReadingContext& context) {
+    constexpr double softest = 1e6;     // Pa; soft clay has some MPa
+    constexpr double diamond = 1.2e12;  // Pa
+    constexpr double lightest = 100.0;  // kg/m3; pumice has some hundreds
+    constexpr double heaviest = 2.26e4; // kg/m3; osmium
+    const double modulus = material.youngs_modulus;
+    if (modulus > 0.0 && modulus < softest)
+        context.warn(section, "youngs_modulus",
+                     fmt::format("{:.4g} Pa is softer than any rock or soil; is its unit missing, as in {:.4g} GPa?",
+                                 modulus, modulus));
+    if (modulus > diamond)
+        context.warn(section, "youngs_modulus", fmt::format("{:.4g} Pa is stiffer than diamond", modulus));
+    const double density = material.density;
+    if (density > 0.0 && (density < lightest || density > heaviest))
+        context.warn(section, "density",
+                     fmt::format("{:.4g} kg/m3 is the density of no rock, which is some 1500 to 5000 kg/m3", density));
+}
+
+void warn_of_joint(const SceneSection& section, const InterfaceType& type, ReadingContext& context) {
+    constexpr double steel = 2.1e11 / 1e-3; // Pa/m: Young's modulus over a thickness of 1 mm
+    if (type.normal_stiffness.value_or(0.0) > steel)
+        context.warn(section, "normal_stiffness",
+                     fmt::format("{:.3g} Pa/m is stiffer than a millimetre of steel, {:.2g} Pa/m; stiffer joints take "
+                                 "more iterations and change no strength",
+                                 *type.normal_stiffness, steel));
+}
+
+/// The side of a rectangle across from one; "" of another name.
+std::string_view opposite(std::string_view side) {
+    constexpr std::array<std::pair<std::string_view, std::string_view>, 4> sides{
+        {{"left", "right"}, {"right", "left"}, {"top", "bottom"}, {"bottom", "top"}}};
+    const auto* const found = std::ranges::find(sides, side, &std::pair<std::string_view, std::string_view>::first);
+    return found == sides.end() ? std::string_view{} : found->second;
+}
+
+/// Something that takes forces along itself, and so a push from any side: a fixed boundary or rough or glued platens.
+bool is_held_sideways(const Scene& scene) {
+    const auto& [supports, forces, stages] = scene.loads;
+    return !forces.empty() || std::ranges::find(supports, Support::fixed) != supports.end() ||
+           std::ranges::any_of(stages, [](const Stage& stage) {
+               return stage.platen_friction > 0.0 || (stage.motion && stage.motion->glued);
+           });
+}
+
+void warn_of_one_sided_pressure(const SceneSection& root, const Scene& scene, ReadingContext& context) {
+    if (!root.section("geometry").section("domain").has("rectangle") || is_held_sideways(scene)) return;
+    const std::vector<std::string> names = names_of(scene.geometry.boundaries);
+    const auto stages = root.sections("stages");
+    std::set<std::string_view> standing; // sides that press or are held
+    const auto is_supported = [&](int boundary) {
+        return scene.loads.supports[static_cast<std::size_t>(boundary)] != Support::none;
+    };
+    for (std::size_t b = 0; b < std::min(names.size(), scene.loads.supports.size()); ++b)
+        if (scene.loads.supports[b] != Support::none) standing.insert(names[b]);
+    for (std::size_t s = 0; s < std::min(stages.size(), scene.loads.stages.size()); ++s) {
+        const Stage& stage = scene.loads.stages[s];
+        if (stage.motion) standing.insert(names[static_cast<std::size_t>(stage.motion->boundary)]);
+        for (const auto& [boundary, pressure] : stage.pressure)
+            if (pressure > 0.0) standing.insert(names[static_cast<std::size_t>(boundary)]);
+        for (const auto& [boundary, pressure] : stage.pressure) {
+            const std::string& name = names[static_cast<std::size_t>(boundary)];
+            const std::string_view across = opposite(name);
+            if (!(pressure > 0.0) || is_supported(boundary) || across.empty() || standing.contains(across)) continue;
+            context.warn(stages[s].section("pressure"), name,
+                         fmt::format("nothing stands against it: {} has neither a pressure nor a support, and no "
+                                     "boundary is fixed, so the body is pushed away",
+                                     across));
+        }
+    }
+}
+
+} // namespace
+
+void warn_of_implausible_values(const SceneSection& root, const Scene& scene, ReadingContext& context) {
+    const auto materials = root.sections("materials");
+    for (std::size_t m = 0; m < std::min(materials.size(), scene.materials.size()); ++m)
+        warn_of_material(materials[m], scene.materials[m], context);
+    const auto interfaces = root.sections("interfaces");
+    for (std::size_t i = 0; i < std::min(interfaces.size(), scene.interface_types.size()); ++i)
+        warn_of_joint(interfaces[i], scene.interface_types[i], context);
+    warn_of_one_sided_pressure(root, scene, context);
+}
+
+} // namespace kluft

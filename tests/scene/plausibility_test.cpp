@@ -1,0 +1,66 @@
+#include "kluft/scene/plausibility.hpp"
+
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kluft/scene/scene_reader.hpp"
+
+namespace kluft {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::StartsWith;
+
+const std::string pressed_block = R"(kluft: 1
+materials:
+  rock: {density: 2600, youngs_modulus: 10 GPa, poissons_ratio: 0.2}
+interfaces:
+  joint: {kind: fracture, friction_angle: 30, normal_stiffness: 10 GPa/m, shear_stiffness: 5 GPa/m}
+geometry:
+  domain: {rectangle: {width: 1, height: 2}}
+  fractures: [{trace: [[-1, 1], [2, 1]], interface: joint}]
+boundaries:
+  bottom: {support: smooth}
+stages:
+  - {pressure: {left: 1 MPa, right: 1 MPa}}
+  - {strain: {boundary: top, value: 1 %}}
+)";
+
+std::vector<std::string> warnings_with(const std::vector<std::string>& changes) {
+    return read_scene_text(pressed_block, changes).warnings;
+}
+
+TEST(ImplausibleValues, RockAndJointsOfUsualValuesAreTakenWithoutAWord) {
+    EXPECT_THAT(warnings_with({}), IsEmpty());
+    EXPECT_THAT(warnings_with({"materials.rock.youngs_modulus=20 MPa", "materials.rock.density=1500"}), IsEmpty());
+    EXPECT_THAT(warnings_with({"interfaces.joint.normal_stiffness=1e13"}), IsEmpty());
+}
+
+TEST(ImplausibleValues, LostUnitsAreTold) {
+    EXPECT_THAT(warnings_with({"materials.rock.youngs_modulus=15"}),
+                ElementsAre(AllOf(HasSubstr("materials.rock.youngs_modulus: 15 Pa is softer than any rock or soil"),
+                                  HasSubstr("15 GPa?"))));
+    EXPECT_THAT(warnings_with({"materials.rock.youngs_modulus=15e6 MPa"}), ElementsAre(HasSubstr("than diamond")));
+    EXPECT_THAT(warnings_with({"materials.rock.density=2.6"}), ElementsAre(HasSubstr("the density of no rock")));
+    EXPECT_THAT(warnings_with({"interfaces.joint.normal_stiffness=1e15"}),
+                ElementsAre(HasSubstr("interfaces.joint.normal_stiffness: 1e+15 Pa/m is stiffer than a millimetre")));
+}
+
+TEST(ImplausibleValues, PressureOnOneSideIsToldWhereNothingStandsAgainstIt) {
+    EXPECT_THAT(warnings_with({"stages.0.pressure.right=null"}),
+                ElementsAre(AllOf(StartsWith("scene.yaml:12:"), HasSubstr("stages.0.pressure.left: nothing stands"),
+                                  HasSubstr("right has neither a pressure nor a support"))));
+    EXPECT_THAT(warnings_with({"stages.0.pressure.right=null", "boundaries.right.support=smooth"}), IsEmpty());
+    EXPECT_THAT(warnings_with({"stages.0.pressure.right=null", "boundaries.bottom.support=fixed"}), IsEmpty());
+    EXPECT_THAT(warnings_with({"stages.0.pressure.right=null", "stages.1.platens=rough"}), IsEmpty());
+    EXPECT_THAT(warnings_with({"stages.0.pressure.left=0", "stages.0.pressure.right=0"}), IsEmpty());
+}
+
+} // namespace
+} // namespace kluft
