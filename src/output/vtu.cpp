@@ -1,23 +1,13 @@
 #include "kluft/output/vtu.hpp"
 
-#include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <optional>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
-#include <fmt/format.h>
-
-#include "file_descriptor.hpp"
-#include "kluft/output/atomic_file.hpp"
 #include "kluft/output/block_outline.hpp"
 #include "vtu_document.hpp"
 
 namespace kluft {
-
-namespace fs = std::filesystem;
 
 namespace {
 
@@ -136,32 +126,6 @@ void add_interface_fields(VtuDocument& document, const BlockSystem& system, cons
     document.add_cell_field("interface", [](std::size_t i) { return static_cast<std::int32_t>(i); });
 }
 
-std::string file_name(std::string_view part, int step) { return fmt::format("{}_{:06}.vtu", part, step); }
-
-/// The load step in the name of a field file of the given part.
-std::optional<int> step_of(const std::string& name, std::string_view part) {
-    const std::string prefix = std::string(part) + '_';
-    if (!name.starts_with(prefix)) return std::nullopt;
-    int step = 0;
-    const char* const end = name.data() + name.size();
-    const auto result = std::from_chars(name.data() + prefix.size(), end, step);
-    if (result.ec != std::errc()) return std::nullopt;
-    const std::string_view rest(result.ptr, end);
-    return rest == ".vtu" || rest == ".vtu.part" ? std::optional(step) : std::nullopt;
-}
-
-/// The files of a series in `directory`/fields with their load steps.
-std::vector<std::pair<fs::path, int>> field_files(const fs::path& directory) {
-    std::vector<std::pair<fs::path, int>> files;
-    std::error_code none;
-    for (const auto& entry : fs::directory_iterator(directory / "fields", none)) {
-        const std::string name = entry.path().filename();
-        for (const std::string_view part : {"blocks", "interfaces"})
-            if (const auto step = step_of(name, part)) files.emplace_back(entry.path(), *step);
-    }
-    return files;
-}
-
 } // namespace
 
 std::pair<double, double> principal_compression(const Mat2& stress) {
@@ -191,59 +155,6 @@ std::string interfaces_vtu(const BlockSystem& system, const FieldRecord& fields,
     add_interface_shapes(document, system, fields);
     add_interface_fields(document, system, fields);
     return document.content();
-}
-
-FieldSeries::FieldSeries(fs::path directory) : directory_(std::move(directory)) {}
-
-FieldSeries FieldSeries::create(const fs::path& directory) {
-    remove(directory);
-    make_directory(directory / "fields");
-    FieldSeries series(directory);
-    series.write_series();
-    return series;
-}
-
-FieldSeries FieldSeries::resume(const fs::path& directory, int last_step) {
-    make_directory(directory / "fields");
-    FieldSeries series(directory);
-    for (const auto& [file, step] : field_files(directory)) {
-        const bool whole = file.extension() == ".vtu";
-        if (step > last_step || !whole)
-            remove_file(file);
-        else if (file.filename().string().starts_with("interfaces")) // the later of the two
-            series.steps_.push_back(step);
-    }
-    std::sort(series.steps_.begin(), series.steps_.end());
-    series.write_series();
-    return series;
-}
-
-void FieldSeries::remove(const fs::path& directory) {
-    remove_file(directory / "fields.pvd");
-    for (const auto& [file, step] : field_files(directory)) remove_file(file);
-    std::error_code ignored;
-    const fs::path folder = directory / "fields";                      // a link to where there is more room stays
-    if (!fs::is_symlink(folder, ignored)) fs::remove(folder, ignored); // only when nothing else is in it
-}
-
-void FieldSeries::add(const BlockSystem& system, const FieldRecord& fields,
-                      const std::vector<std::string>& material_names, const StepRecord& record) {
-    const fs::path folder = directory_ / "fields";
-    write_file(folder / file_name("blocks", record.step), blocks_vtu(system, fields, material_names, record));
-    write_file(folder / file_name("interfaces", record.step), interfaces_vtu(system, fields, record));
-    if (steps_.empty() || steps_.back() != record.step) steps_.push_back(record.step);
-    write_series();
-}
-
-void FieldSeries::write_series() const {
-    std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n";
-    for (const int step : steps_) {
-        int part = 0;
-        for (const std::string_view name : {"blocks", "interfaces"})
-            text += fmt::format("<DataSet timestep=\"{}\" group=\"\" part=\"{}\" file=\"fields/{}\"/>\n", step, part++,
-                                file_name(name, step));
-    }
-    write_file(directory_ / "fields.pvd", text + "</Collection>\n</VTKFile>\n");
 }
 
 } // namespace kluft

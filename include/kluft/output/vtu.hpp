@@ -1,8 +1,8 @@
-// Fields for ParaView: VTU files with raw appended arrays, and the PVD series over them.
+// Fields for ParaView: VTU files with raw appended arrays.
 #pragma once
 
-#include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "kluft/blocks/block_system.hpp"
@@ -28,30 +28,5 @@ namespace kluft {
 /// In-plane principal stresses of a Cauchy stress that is positive in tension; positive in compression, first the
 /// larger (Pa).
 [[nodiscard]] std::pair<double, double> principal_compression(const Mat2& stress);
-
-/// The series of field files in a results directory: `fields.pvd` over `fields/blocks_<step>.vtu` (part 0) and
-/// `fields/interfaces_<step>.vtu` (part 1), with the load step as time.
-class FieldSeries {
-public:
-    /// A series without files in `directory`; field files of an earlier run are removed. Throws ResourceError.
-    [[nodiscard]] static FieldSeries create(const std::filesystem::path& directory);
-    /// Goes on with the files up to `last_step`; later ones are removed. Throws ResourceError.
-    [[nodiscard]] static FieldSeries resume(const std::filesystem::path& directory, int last_step);
-    /// Removes all that a series owns in `directory`. Throws ResourceError.
-    static void remove(const std::filesystem::path& directory);
-
-    /// Writes the two files of a load step, then the series with them in it. Throws ResourceError.
-    void add(const BlockSystem& system, const FieldRecord& fields, const std::vector<std::string>& material_names,
-             const StepRecord& record);
-
-    [[nodiscard]] const std::vector<int>& steps() const { return steps_; }
-
-private:
-    explicit FieldSeries(std::filesystem::path directory);
-    void write_series() const;
-
-    std::filesystem::path directory_;
-    std::vector<int> steps_; ///< ascending
-};
 
 } // namespace kluft
