@@ -14,7 +14,6 @@
 
 #include "kluft/output/atomic_file.hpp"
 #include "kluft/output/force_tables.hpp"
-#include "kluft/output/vtu.hpp"
 
 namespace kluft {
 
@@ -125,8 +124,8 @@ void FieldSeries::add(const BlockSystem& system, const FieldRecord& fields, cons
     };
     write(contacts_file, contacts_csv(system, fields.contacts, names_.laws));
     write(supports_file, supports_csv(system, fields.supports));
-    write(blocks_file, blocks_vtu(system, fields, names_.materials, record));
-    write(interfaces_file, interfaces_vtu(system, fields, record));
+    write(blocks_file, blocks_vtu(system, fields, names_.fields, record));
+    write(interfaces_file, interfaces_vtu(system, fields, names_.fields, record));
     if (!ends_with(record.step)) keep(record);
     write_series();
 }

@@ -139,7 +139,9 @@ double seconds_since(std::chrono::steady_clock::time_point then) {
 }
 
 SeriesNames series_names(const RunWriterOptions& options) {
-    return {options.material_names, options.law_names, options.platen_stage.has_value()};
+    return {{options.material_names, options.interface_type_names, options.fracture_names},
+            options.law_names,
+            options.platen_stage.has_value()};
 }
 
 bool is_due(int step, int every) { return every > 0 && step % every == 0; }

@@ -98,7 +98,7 @@ std::string series_of(const std::vector<StepRecord>& rows, bool has_axial_strain
     const BlockSystem system = testing::hexagon_grid(2, 1, 0.1);
     const auto fields = testing::affine_fields(system, Mat2::Zero(), Mat2::Zero());
     auto series =
-        FieldSeries::create(directory.path(), {.materials = {}, .laws = {}, .has_axial_strain = has_axial_strain});
+        FieldSeries::create(directory.path(), {.fields = {}, .laws = {}, .has_axial_strain = has_axial_strain});
     for (const StepRecord& row : rows) series.add(system, fields, row);
     return read_file(directory / "fields.pvd");
 }

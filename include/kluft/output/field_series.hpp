@@ -6,13 +6,14 @@
 #include <vector>
 
 #include "kluft/blocks/block_system.hpp"
+#include "kluft/output/vtu.hpp"
 #include "kluft/simulation/step_record.hpp"
 
 namespace kluft {
 
 /// What the files say beside numbers.
 struct SeriesNames {
-    std::vector<std::string> materials;
+    FieldNames fields;
     std::vector<std::string> laws; ///< of the interface of each law
     bool has_axial_strain = false; ///< the run moves a platen
 };

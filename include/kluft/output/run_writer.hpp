@@ -32,6 +32,8 @@ struct RunWriterOptions {
     std::optional<int> platen_stage; ///< the first stage that moves a platen
     Plane plane = Plane::strain;
     std::vector<std::string> material_names;
+    std::vector<std::string> interface_type_names;
+    std::vector<std::string> fracture_names;  ///< mapped ones
     std::vector<std::string> law_names;       ///< the interface of each law of the model
     bool strength_factor = false;             ///< the rows have that column
     bool motion = false;                      ///< the rows have the columns of an explicit run
