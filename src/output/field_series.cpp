@@ -130,6 +130,14 @@ void FieldSeries::add(const BlockSystem& system, const FieldRecord& fields, cons
     write_series();
 }
 
+std::vector<int> kept_steps(const fs::path& directory) {
+    std::vector<int> steps;
+    for (const FoundFile& file : files_in(directory))
+        if (file.is_last && file.is_whole) steps.push_back(file.step);
+    std::ranges::sort(steps);
+    return steps;
+}
+
 std::vector<int> FieldSeries::steps() const {
     std::vector<int> steps;
     for (const Kept& each : kept_) steps.push_back(each.step);

@@ -137,6 +137,7 @@ class Bench:
             "check": ["check", self.model("quick.yaml")],
             "draw": ["draw", self.model("quick.yaml"), "-o", "scene.png"],
             "draw a run": ["draw", str(self.reference(self.run())), "-o", "run.png"],
+            "draw a state": ["draw", str(self.reference(self.run())), "--step", "last", "--field", "sigma_3", "-o", "state.pdf"],
             "compare": ["compare", *[str(self.reference(self.run()))] * 2, "-o", "compared"],
             "envelope": ["envelope", self.model("tests.csv"), "-o", "envelope.png"],
         }
@@ -278,6 +279,8 @@ def is_whole(path):
             return False
     if path.suffix == ".png":
         return data.startswith(b"\x89PNG") and b"IEND" in data[-12:]
+    if path.suffix == ".pdf":
+        return data.startswith(b"%PDF") and b"%%EOF" in data[-16:]
     if path.suffix in (".svg", ".vtu", ".pvd", ".html"):
         return data.rstrip().endswith(b">")
     return True

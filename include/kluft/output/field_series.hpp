@@ -57,4 +57,7 @@ private:
     std::vector<Kept> kept_; ///< ascending steps
 };
 
+/// The load steps whose states a results directory keeps, ascending.
+[[nodiscard]] std::vector<int> kept_steps(const std::filesystem::path& directory);
+
 } // namespace kluft
