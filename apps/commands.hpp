@@ -51,6 +51,13 @@ struct DrawArguments {
     std::vector<std::string> overrides;
     bool curve = false;
     bool blocks = false;
+    std::string step;   ///< of the kept state that is drawn: a load step, peak or last; empty: the last saved state
+    std::string field;  ///< that blocks are coloured by
+    std::string scale;  ///< of displacements
+    std::string window; ///< x0,y0,x1,y1
+    [[nodiscard]] bool is_of_state() const {
+        return !step.empty() || !field.empty() || !scale.empty() || !window.empty();
+    }
 };
 
 [[nodiscard]] ExitCode draw(const DrawArguments& arguments);

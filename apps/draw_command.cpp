@@ -1,8 +1,10 @@
 // kluft draw SCENE|DIR...
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -11,8 +13,12 @@
 #include "commands.hpp"
 #include "failure.hpp"
 #include "kluft/core/diagnostics.hpp"
+#include "kluft/core/nearest_name.hpp"
+#include "kluft/output/atomic_file.hpp"
 #include "kluft/output/blocks_picture.hpp"
 #include "kluft/output/curve_picture.hpp"
+#include "kluft/output/field_reader.hpp"
+#include "kluft/output/field_series.hpp"
 #include "kluft/output/history_table.hpp"
 #include "kluft/output/state_file.hpp"
 #include "kluft/output/summary.hpp"
@@ -130,17 +136,29 @@ BlocksPlot plot_of(const Scene& scene) {
     return plot;
 }
 
-/// Before and after, from the last saved state and the scene that is saved with it.
-void draw_blocks_of_run(const DrawArguments& arguments, const std::vector<fs::path>& pictures) {
-    const fs::path directory = arguments.sources.front();
+/// The scene and the body of a run.
+struct DrawnRun {
+    Scene scene;
+    SceneModel built;
+};
+
+DrawnRun read_run(const fs::path& directory) {
     const fs::path saved = directory / "state.h5";
     if (!fs::exists(saved)) {
         throw InputError(directory.string() + ": expected a directory of results, found no state.h5 in it, from which "
                                               "the blocks are drawn");
     }
-    const Scene scene = read_scene_text(read_state_scene(saved), {}, saved);
-    const SceneModel built = build_scene_model(scene);
-    const State state = read_state(saved, fingerprint(built.model));
+    DrawnRun run;
+    run.scene = read_scene_text(read_state_scene(saved), {}, saved);
+    run.built = build_scene_model(run.scene);
+    return run;
+}
+
+/// Before and after, from the last saved state and the scene that is saved with it.
+void draw_blocks_of_run(const DrawArguments& arguments, const std::vector<fs::path>& pictures) {
+    const fs::path directory = arguments.sources.front();
+    const auto [scene, built] = read_run(directory);
+    const State state = read_state(directory / "state.h5", fingerprint(built.model));
     auto history = read_curve(directory, {}).history;
     std::erase_if(history, [&](const StepRecord& record) { return record.step > state.at.step; });
     BlocksPlot plot = plot_of(scene);
@@ -151,6 +169,103 @@ void draw_blocks_of_run(const DrawArguments& arguments, const std::vector<fs::pa
         write_blocks(picture, built.model.system, fields, plot);
         announce(picture);
     }
+}
+
+int nearest_of(const std::vector<int>& steps, int step) {
+    return *std::ranges::min_element(steps, {}, [&](int each) { return std::abs(each - step); });
+}
+
+/// The load step of the largest stress along the platen's axis, in its stage or later.
+int peak_step(const fs::path& directory) {
+    const auto history = read_curve(directory, {}).history;
+    const auto platen_stage = heading_of(directory).platen_stage;
+    if (!platen_stage)
+        throw InputError("--step peak: expected a finished run that moves a platen, found " + directory.string());
+    const auto stress = [&](const StepRecord& row) {
+        return row.stage < *platen_stage ? -1.0 : std::abs(row.axial_stress);
+    };
+    return std::ranges::max_element(history, {}, stress)->step;
+}
+
+/// Of the states that a run keeps, the one that is asked for.
+int step_asked_for(const std::string& text, const fs::path& directory) {
+    const std::vector<int> steps = kept_steps(directory);
+    if (steps.empty())
+        throw InputError(directory.string() + ": expected fields of a load step, found none (output.fields: true)");
+    if (text.empty() || text == "last") return steps.back();
+    if (text == "peak") {
+        const int peak = peak_step(directory);
+        const int nearest = nearest_of(steps, peak);
+        if (nearest != peak) tell("the peak is at load step {}; the nearest state that is kept is {}\n", peak, nearest);
+        return nearest;
+    }
+    const auto number = read_integer(text);
+    if (!number)
+        throw InputError(fmt::format("--step: expected a load step, peak or last, found '{}'{}", text,
+                                     suggestion(text, {"peak", "last"})));
+    const int step = static_cast<int>(std::clamp<long long>(*number, 0, steps.back()));
+    if (*number != step || std::ranges::find(steps, step) == steps.end())
+        throw InputError(fmt::format("--step: expected a load step whose fields are kept, the nearest of which is {}, "
+                                     "found {} (output.fields_every keeps more)",
+                                     nearest_of(steps, step), text));
+    return step;
+}
+
+double scale_of(const std::string& text) {
+    const auto number = read_number(text);
+    if (!number || !(*number >= 0.0)) throw InputError("--scale: expected a number >= 0, found '" + text + "'");
+    return *number;
+}
+
+/// x0,y0,x1,y1 in the coordinates of the scene.
+Box window_of(const std::string& text, const Vec2& origin) {
+    std::vector<double> numbers;
+    std::istringstream words(text);
+    for (std::string word; std::getline(words, word, ',');) {
+        const QuantityReading reading = read_quantity(word, Measure::length);
+        if (reading.value)
+            numbers.push_back(*reading.value);
+        else
+            break;
+    }
+    const bool is_window =
+        numbers.size() == 4 && std::ranges::count(text, ',') == 3 && numbers[0] < numbers[2] && numbers[1] < numbers[3];
+    if (!is_window)
+        throw InputError("--window: expected x0,y0,x1,y1 with x0 < x1 and y0 < y1, as in 0,0,0.2,0.4, found '" + text +
+                         "'");
+    return {Vec2(numbers[0], numbers[1]) - origin, Vec2(numbers[2], numbers[3]) - origin};
+}
+
+std::string heading_of_state(const fs::path& directory, int step, double scale) {
+    std::string heading = fmt::format("load step {}", step);
+    const auto history = read_curve(directory, {}).history;
+    const auto row = std::ranges::find(history, step, &StepRecord::step);
+    if (row != history.end() && !moves_no_platen(directory))
+        heading += fmt::format(", axial strain {:.3g} %", 100.0 * row->axial_strain);
+    if (scale != 1.0) heading += fmt::format(", displacements x {:g}", scale);
+    return heading;
+}
+
+/// One kept state by its field files.
+void draw_state_of_run(const DrawArguments& arguments) {
+    const fs::path directory = arguments.sources.front();
+    if (arguments.curve || !arguments.marks.empty())
+        throw InputError("--step, --field, --scale and --window: expected a picture of blocks, found one of a curve");
+    const int step = step_asked_for(arguments.step, directory);
+    const DrawnRun run = read_run(directory);
+    const BlockSystem& system = run.built.model.system;
+    const FieldRecord fields = read_fields(directory, step, system);
+    const std::string name = arguments.field.empty() ? "sigma_1" : arguments.field;
+    StatePlot plot;
+    plot.title = arguments.title.empty() ? heading_of(directory).title : arguments.title;
+    plot.field = block_field(system, fields, name);
+    if (!arguments.scale.empty()) plot.magnification = scale_of(arguments.scale);
+    if (!arguments.window.empty()) plot.window = window_of(arguments.window, system.origin);
+    plot.heading = heading_of_state(directory, step, plot.magnification);
+    const fs::path picture =
+        arguments.picture.empty() ? fmt::format("{}-{}-{}.png", run_name(directory), name, step) : arguments.picture;
+    write_file(picture, draw_state(system, fields, plot, picture_format(picture)));
+    announce(picture);
 }
 
 /// The pictures of a kind: the one asked for, or those that a run leaves in its directory.
@@ -210,11 +325,16 @@ ExitCode draw(const DrawArguments& arguments) {
         }
     }
     const bool is_run = fs::is_directory(arguments.sources.front());
+    if (arguments.is_of_state() && (several || !is_run))
+        throw InputError("--step, --field, --scale and --window: expected one directory of results, found " +
+                         std::string(several ? "several" : "a scene file"));
     if (is_run && !arguments.overrides.empty()) {
         throw InputError("--set: expected a scene file, found a directory of results, whose scene stays as it was run");
     }
     if (several) {
         draw_several_runs(arguments);
+    } else if (arguments.is_of_state()) {
+        draw_state_of_run(arguments);
     } else if (is_run) {
         draw_run(arguments);
     } else {

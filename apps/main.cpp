@@ -18,6 +18,7 @@
 #include "failure.hpp"
 #include "kluft/core/nearest_name.hpp"
 #include "kluft/core/version.hpp"
+#include "kluft/output/blocks_picture.hpp"
 #include "standard_output.hpp"
 #include "stop_request.hpp"
 
@@ -167,8 +168,8 @@ void add_draw_command(CLI::App& app, Command& command) {
         "draw", "Draw a scene's blocks; the blocks and the curve of a run; the curves of several runs");
     sub->add_option("source", arguments->sources, "Scene file, or directories of results")->required();
     sub->add_option("-o,--output", arguments->picture,
-                    "One picture, .png or .svg; of a single run that of its blocks (default: <scene name>.png; "
-                    "DIR/curve and DIR/blocks, each .png and .svg; curves.png)");
+                    "One picture, .png, .svg or .pdf; of a single run that of its blocks (default: <scene name>.png; "
+                    "DIR/curve and DIR/blocks, each .png and .svg; curves.png; <run>-<field>-<step>.png)");
     CLI::Option* curve = sub->add_flag("--curve", arguments->curve, "Of a run only the curve");
     sub->add_flag("--blocks", arguments->blocks, "Of a run only the blocks")->excludes(curve);
     sub->add_option("--mark", arguments->marks,
@@ -176,14 +177,23 @@ void add_draw_command(CLI::App& app, Command& command) {
                     "RUN:LABEL=... takes the colour of a run")
         ->take_all()
         ->allow_extra_args(false);
+    sub->add_option("--step", arguments->step,
+                    "A kept state of a run: a load step, peak (the one kept nearest to the peak) or last (default)");
+    sub->add_option("--field", arguments->field,
+                    fmt::format("What its blocks are coloured by: {} (default: sigma_1)",
+                                kluft::listed(kluft::block_field_names())));
+    sub->add_option("--scale", arguments->scale, "Its displacements are drawn so many times larger (default: 1)");
+    sub->add_option("--window", arguments->window, "The part of it that is drawn: x0,y0,x1,y1 in m or with units");
     sub->add_option("--limit", arguments->limit, "Where the stress axis of the curves ends, e.g. 5 MPa");
     sub->add_option("--title", arguments->title, "Title of the picture");
     sub->add_option("--set", arguments->overrides, "Replace a value of the scene")->take_all()->allow_extra_args(false);
-    sub->footer("Examples:\n"
-                "  kluft draw models/triaxial/case-3-all.yaml -o geometry.svg\n"
-                "  kluft draw results/case-3-all\n"
-                "  kluft draw results/case-3 results/case-3-all -o curves.png --mark 'published=1.205 MPa'\n"
-                "  kluft draw results/case-3 results/case-5 -o curves.png --mark 'case-5:published, 0 MPa=0.502 MPa'");
+    sub->footer(
+        "Examples:\n"
+        "  kluft draw models/triaxial/case-3-all.yaml -o geometry.svg\n"
+        "  kluft draw results/case-3-all\n"
+        "  kluft draw results/case-3-all --step peak --field sigma_3 --scale 10 --window 0,0.2,0.38,0.6 -o peak.pdf\n"
+        "  kluft draw results/case-3 results/case-3-all -o curves.png --mark 'published=1.205 MPa'\n"
+        "  kluft draw results/case-3 results/case-5 -o curves.png --mark 'case-5:published, 0 MPa=0.502 MPa'");
     sub->callback([arguments, &command] { command = [arguments] { return kluft::draw(*arguments); }; });
 }
 

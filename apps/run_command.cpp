@@ -94,6 +94,9 @@ RunWriterOptions writer_options(const Scene& scene, const Model& model) {
     options.motion = scene.integrator == Integrator::explicit_motion;
     options.history_columns = history_columns(model);
     for (const Material& material : scene.materials) options.material_names.push_back(material.name);
+    for (const InterfaceType& type : scene.interface_types) options.interface_type_names.push_back(type.name);
+    for (const FractureTrace& fracture : scene.geometry.fractures) options.fracture_names.push_back(fracture.name);
+    for (const int type : model.law_types) options.law_names.push_back(scene.interface_types[type].name);
     return options;
 }
 

@@ -51,6 +51,9 @@ kluft_purpose(HDF5 "saved states")
 set(HDF5_PREFER_PARALLEL OFF)
 find_package(HDF5 REQUIRED COMPONENTS C)
 
+kluft_purpose(ZLIB "compressed field files")
+find_package(ZLIB REQUIRED)
+
 kluft_purpose(PkgConfig "finds Cairo")
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo)

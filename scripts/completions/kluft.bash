@@ -19,7 +19,15 @@ _kluft() {
     fi
 
     case "$previous" in
-    --set | --threads | --mark | --limit | --title | --compare | --tension | --tolerance | --jobs) return ;;
+    --set | --threads | --mark | --limit | --title | --compare | --tension | --tolerance | --jobs | --scale | --window) return ;;
+    --step)
+        mapfile -t COMPREPLY < <(compgen -W "peak last" -- "$word")
+        return
+        ;;
+    --field)
+        mapfile -t COMPREPLY < <(compgen -W "sigma_1 sigma_3 stress_xx stress_yy stress_xy stress_zz displacement displacement_x displacement_y" -- "$word")
+        return
+        ;;
     --emit)
         mapfile -t COMPREPLY < <(compgen -W "slurm make" -- "$word")
         return
@@ -34,7 +42,7 @@ _kluft() {
     case "$command" in
     run) options+=" -o --output --set --threads --quiet --resume --force" ;;
     check) options+=" --set" ;;
-    draw) options+=" -o --output --curve --blocks --mark --limit --title --set" ;;
+    draw) options+=" -o --output --curve --blocks --step --field --scale --window --mark --limit --title --set" ;;
     compare) options+=" -o --output --tolerance" ;;
     envelope) options+=" -o --output --tension --compare --title" ;;
     study) options+=" -o --output --jobs --set --emit --collect --quantity --quiet" ;;

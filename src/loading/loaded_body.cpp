@@ -11,13 +11,6 @@ namespace {
 
 constexpr double negligible_stress = 1e-2; ///< of the largest so far
 
-/// Zero for a fixed block, whose weight nothing but its support feels.
-Vec2 weight_of(const LoadedBody& body, int b) {
-    const Block& block = body.system->blocks[b];
-    if (body.densities == nullptr || block.fixed) return Vec2::Zero();
-    return (*body.densities)[block.material] * block.area * body.loads->gravity;
-}
-
 /// Calls visit(block, xi, force) for each load but the weights.
 template <class Visit> void for_each_surface_load(const LoadedBody& body, const Eigen::VectorXd& q, Visit visit) {
     for (const PressureEdge& edge : body.loads->pressure_edges) {
@@ -99,6 +92,12 @@ private:
 
 double negligible_force(double carried_stress, double area) {
     return negligible_stress * carried_stress * std::sqrt(area); // (27c)
+}
+
+Vec2 weight_of(const LoadedBody& body, int b) {
+    const Block& block = body.system->blocks[b];
+    if (body.densities == nullptr || block.fixed) return Vec2::Zero();
+    return (*body.densities)[block.material] * block.area * body.loads->gravity;
 }
 
 void body_forces(const LoadedBody& body, const Eigen::VectorXd& q, BodyForces& result) {

@@ -4,14 +4,18 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "body_drawing.hpp"
 #include "body_page.hpp"
+#include "kluft/core/diagnostics.hpp"
+#include "kluft/core/nearest_name.hpp"
 #include "kluft/core/units.hpp"
 #include "kluft/output/atomic_file.hpp"
+#include "kluft/output/block_outline.hpp"
 #include "kluft/output/colour_scale.hpp"
 #include "kluft/output/vtu.hpp"
 #include "legend.hpp"
@@ -111,6 +115,34 @@ void append(std::vector<LegendEntry>& entries, std::vector<LegendEntry> more) {
     for (LegendEntry& entry : more) entries.push_back(std::move(entry));
 }
 
+/// What the fields of a block are made of: stresses positive in tension (Pa), displacement (m).
+struct BlockValues {
+    const Mat2& stress;
+    double stress_zz;
+    Vec2 displacement;
+};
+
+struct BlockFieldKind {
+    std::string_view name;
+    const char* label;
+    double (*value)(const BlockValues&);
+};
+constexpr double milli = 1e-3;
+constexpr std::array<BlockFieldKind, 9> block_field_kinds{{
+    {"sigma_1", "major principal stress (MPa, compression +)",
+     [](const BlockValues& at) { return principal_compression(at.stress).first / mega; }},
+    {"sigma_3", "minor principal stress (MPa, compression +)",
+     [](const BlockValues& at) { return principal_compression(at.stress).second / mega; }},
+    {"stress_xx", "stress xx (MPa, compression +)", [](const BlockValues& at) { return -at.stress(0, 0) / mega; }},
+    {"stress_yy", "stress yy (MPa, compression +)", [](const BlockValues& at) { return -at.stress(1, 1) / mega; }},
+    {"stress_xy", "stress xy (MPa, compression +)",
+     [](const BlockValues& at) { return -0.5 * (at.stress(0, 1) + at.stress(1, 0)) / mega; }},
+    {"stress_zz", "stress zz (MPa, compression +)", [](const BlockValues& at) { return -at.stress_zz / mega; }},
+    {"displacement", "displacement (mm)", [](const BlockValues& at) { return at.displacement.norm() / milli; }},
+    {"displacement_x", "displacement x (mm)", [](const BlockValues& at) { return at.displacement.x() / milli; }},
+    {"displacement_y", "displacement y (mm)", [](const BlockValues& at) { return at.displacement.y() / milli; }},
+}};
+
 /// Edges of each boundary in its colour.
 void draw_boundaries(Canvas& canvas, const Panel& panel, const BlockSystem& system) {
     for (std::size_t i = 0; i < system.boundaries.size(); ++i) {
@@ -176,6 +208,52 @@ std::string draw_blocks(const BlockSystem& system, const FieldRecord& fields, co
             draw_colour_bar(canvas, scale, corner, {13.0, bar_height}, "major principal stress (MPa, compression +)");
             draw_column(canvas, corner + Vec2(0.0, bar_height + bar_gap), entries);
         });
+}
+
+std::vector<std::string> block_field_names() {
+    std::vector<std::string> names;
+    for (const BlockFieldKind& kind : block_field_kinds) names.emplace_back(kind.name);
+    return names;
+}
+
+ColouredField block_field(const BlockSystem& system, const FieldRecord& fields, const std::string& name) {
+    const auto kind = std::ranges::find(block_field_kinds, name, &BlockFieldKind::name);
+    if (kind == block_field_kinds.end())
+        throw InputError(fmt::format("--field: expected one of {}, found '{}'{}", listed(block_field_names()), name,
+                                     suggestion(name, block_field_names())));
+    ColouredField field{kind->label, {}};
+    const auto first = first_vertices(system);
+    for (std::size_t b = 0; b < system.blocks.size(); ++b) {
+        Vec2 mean = Vec2::Zero();
+        for (std::size_t v = first[b]; v < first[b + 1]; ++v) mean += fields.displacement[v];
+        mean /= static_cast<double>(std::max<std::size_t>(1, first[b + 1] - first[b]));
+        field.values.push_back(kind->value({fields.stress[b], fields.stress_zz[b], mean}));
+    }
+    return field;
+}
+
+std::string draw_state(const BlockSystem& system, const FieldRecord& fields, const StatePlot& plot,
+                       PictureFormat format) {
+    refuse_large_svg(system, format);
+    DrawnBody body = body_after(system, fields, plot.magnification);
+    const ColourScale scale = scale_for(plot.field.values);
+    body.colour = [&](int block) { return scale(plot.field.values[block]); };
+    const Box box = plot.window.value_or(box_of(body));
+    const int n_outside = count_outside(box, body);
+    if (n_outside == system.n_blocks()) throw InputError("--window: expected a part of the body, found no block in it");
+    auto entries = interface_entries(body, body);
+    if (!plot.window) append(entries, outside_note(n_outside));
+    constexpr double bar_height = 190.0;
+    constexpr double bar_gap = 24.0;
+    const PageLayout layout = page_layout(box, 1, bar_height + bar_gap + column_height(entries), {560.0, 520.0});
+    return draw_picture(format, layout.page.x(), layout.page.y(), body_pixels_per_point(system, layout.scale),
+                        [&](Canvas& canvas) {
+                            draw_title(canvas, layout, plot.title);
+                            draw_panel(canvas, layout, 0, box, body, plot.heading);
+                            const Vec2 corner = layout.column_corner();
+                            draw_colour_bar(canvas, scale, corner, {13.0, bar_height}, plot.field.label);
+                            draw_column(canvas, corner + Vec2(0.0, bar_height + bar_gap), entries);
+                        });
 }
 
 std::string draw_geometry(const BlockSystem& system, const BlocksPlot& plot, PictureFormat format) {

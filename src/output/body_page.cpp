@@ -36,11 +36,11 @@ std::pair<double, std::string> round_length(double metres) {
 }
 
 void draw_scale_bar(Canvas& canvas, const Panel& panel, const BlockSystem& body) {
-    const double width = body.upper.x() - body.lower.x();
+    const double width = std::min(body.upper.x() - body.lower.x(), panel.box.upper.x() - panel.box.lower.x());
     if (!(width > 0.0)) return;
     const auto [length, label] = round_length(0.4 * width);
     const double y = panel.corner.y() + panel.size().y() + 13.0;
-    const double x = panel.place(body.lower).x();
+    const double x = std::max(panel.corner.x(), panel.place(body.lower).x());
     const double end = x + panel.scale * length;
     const Stroke stroke{ink::body, 1.2};
     canvas.segments({{{x, y}, {end, y}}, {{x, y - 3.0}, {x, y + 3.0}}, {{end, y - 3.0}, {end, y + 3.0}}}, stroke);
@@ -85,7 +85,8 @@ void draw_title(Canvas& canvas, const PageLayout& layout, const std::string& tit
 void draw_panel(Canvas& canvas, const PageLayout& layout, int index, const Box& box, const DrawnBody& body,
                 const std::string& heading) {
     const Panel panel{layout.corner(index), box, layout.scale};
-    canvas.text({panel.place(body.system.lower).x(), panel.corner.y() - 8.0}, heading, panel_style);
+    const double left = std::max(panel.corner.x(), panel.place(body.system.lower).x());
+    canvas.text({left, panel.corner.y() - 8.0}, heading, panel_style);
     draw_body(canvas, panel, body);
     if (index == 0) draw_scale_bar(canvas, panel, body.system);
 }
@@ -106,8 +107,8 @@ double column_height(const std::vector<LegendEntry>& entries) {
 }
 
 void refuse_large_svg(const BlockSystem& system, PictureFormat format) {
-    if (format == PictureFormat::svg && system.n_blocks() > most_blocks_in_svg)
-        throw InputError(fmt::format("an SVG picture of {} blocks would be too large (at most {}): take PNG",
+    if (format != PictureFormat::png && system.n_blocks() > most_blocks_in_svg)
+        throw InputError(fmt::format("an SVG or PDF picture of {} blocks would be too large (at most {}): take PNG",
                                      system.n_blocks(), most_blocks_in_svg));
 }
 

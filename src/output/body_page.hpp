@@ -38,7 +38,7 @@ void draw_panel(Canvas& canvas, const PageLayout& layout, int index, const Box& 
 void draw_column(Canvas& canvas, const Vec2& corner, const std::vector<LegendEntry>& entries);
 [[nodiscard]] double column_height(const std::vector<LegendEntry>& entries);
 
-/// Throws InputError for an SVG of more than most_blocks_in_svg blocks.
+/// Throws InputError for an SVG or PDF of more than most_blocks_in_svg blocks.
 void refuse_large_svg(const BlockSystem& system, PictureFormat format);
 
 } // namespace kluft

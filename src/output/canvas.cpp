@@ -6,6 +6,7 @@
 #include <memory>
 #include <numbers>
 
+#include <cairo-pdf.h>
 #include <cairo-svg.h>
 #include <cairo.h>
 
@@ -227,14 +228,17 @@ PictureFormat picture_format(const std::filesystem::path& path) {
     const std::string extension = path.extension();
     if (extension == ".png") return PictureFormat::png;
     if (extension == ".svg") return PictureFormat::svg;
-    throw InputError(path.string() + ": expected a picture's name that ends in .png or .svg");
+    if (extension == ".pdf") return PictureFormat::pdf;
+    throw InputError(path.string() + ": expected a picture's name that ends in .png, .svg or .pdf");
 }
 
 std::string draw_picture(PictureFormat format, double width, double height, double pixels_per_point,
                          const std::function<void(Canvas&)>& draw) {
     std::string bytes;
-    if (format == PictureFormat::svg) {
-        const Surface surface(cairo_svg_surface_create_for_stream(collect, &bytes, width, height));
+    if (format != PictureFormat::png) {
+        const auto create =
+            format == PictureFormat::svg ? cairo_svg_surface_create_for_stream : cairo_pdf_surface_create_for_stream;
+        const Surface surface(create(collect, &bytes, width, height));
         draw_on(surface.get(), width, height, 1.0, draw);
         cairo_surface_finish(surface.get());
         check(cairo_surface_status(surface.get()));

@@ -17,9 +17,9 @@
 #include "kluft/output/atomic_file.hpp"
 #include "kluft/output/blocks_picture.hpp"
 #include "kluft/output/curve_picture.hpp"
+#include "kluft/output/field_series.hpp"
 #include "kluft/output/history_table.hpp"
 #include "kluft/output/state_file.hpp"
-#include "kluft/output/vtu.hpp"
 
 namespace kluft {
 
@@ -139,6 +139,12 @@ double seconds_since(std::chrono::steady_clock::time_point then) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - then).count();
 }
 
+SeriesNames series_names(const RunWriterOptions& options) {
+    return {{options.material_names, options.interface_type_names, options.fracture_names},
+            options.law_names,
+            options.platen_stage.has_value()};
+}
+
 bool is_due(int step, int every) { return every > 0 && step % every == 0; }
 
 } // namespace
@@ -186,19 +192,20 @@ RunWriter::RunWriter(fs::path directory, const BlockSystem& system, RunWriterOpt
                                               {},
                                               {}});
     if (has_histories) tables_->histories.emplace(open(histories, histories_header(options_.history_columns)));
+    Rows rows_before;
     if (options_.resumed_step) {
         if (!has_histories) remove_file(directory_ / histories);
         remove_results_but_tables_and_state(directory_);
-        const Rows rows = read_history(directory_ / history);
-        if (rows.empty() || rows.back().step != *options_.resumed_step)
+        rows_before = read_history(directory_ / history);
+        if (rows_before.empty() || rows_before.back().step != *options_.resumed_step)
             throw InputError(fmt::format("{}: does not reach the saved load step {}", (directory_ / history).string(),
                                          *options_.resumed_step));
-        last_row_ = rows.back();
+        last_row_ = rows_before.back();
         write_scene_file();
     }
     if (options_.fields)
-        tables_->fields = options_.resumed_step ? FieldSeries::resume(directory_, *options_.resumed_step)
-                                                : FieldSeries::create(directory_);
+        tables_->fields = options_.resumed_step ? FieldSeries::resume(directory_, series_names(options_), rows_before)
+                                                : FieldSeries::create(directory_, series_names(options_));
 }
 
 RunWriter::~RunWriter() = default;
@@ -226,8 +233,10 @@ void RunWriter::step(const StepRecord& record, const State& state, const std::fu
     tables_->history.add(table_row(record));
     if (tables_->histories) tables_->histories->add(histories_row(record));
     last_row_ = record;
+    last_fields_ = nullptr;
     visit_tables(*tables_, [](const char*, StepTable& table) { table.commit(); }); // all rows of the step, or none
     visit_tables(*tables_, [](const char*, StepTable& table) { table.write(); });
+    if (options_.fields || options_.pictures) last_fields_ = fields;
     if (options_.fields && (record.step == 0 || last_of_stage || is_due(record.step, options_.fields_every)))
         write_fields(record, fields());
     const bool long_ago = options_.checkpoint_seconds > 0.0 && seconds_since(saved_) > options_.checkpoint_seconds;
@@ -241,7 +250,7 @@ void RunWriter::checkpoint(const State& state) {
 }
 
 void RunWriter::write_fields(const StepRecord& record, const FieldRecord& fields) {
-    tables_->fields->add(system_, fields, options_.material_names, record);
+    tables_->fields->add(system_, fields, record);
 }
 
 void RunWriter::write_pictures(const Rows& history, const Rows& equilibria, const FieldRecord& fields) const {
@@ -309,11 +318,10 @@ RunSummary RunWriter::finish(const RunOutcome& outcome, const State& state,
     errors.attempt([&] { write_summary(directory_ / "summary.json", summary); });
     errors.attempt([&] {
         if (memory_ran_out()) return; // what libraries draw and write there can be made of the state later
-        const bool fields_missing =
-            options_.fields && last_row_ &&
-            (tables_->fields->steps().empty() || tables_->fields->steps().back() != last_row_->step);
+        const bool is_told = last_fields_ && last_row_ && last_row_->step == state.at.step;
+        const bool fields_missing = options_.fields && is_told && !tables_->fields->ends_with(last_row_->step);
         if (!fields_missing && !options_.pictures) return;
-        const FieldRecord record = fields();
+        const FieldRecord record = is_told ? last_fields_() : fields();
         FirstError parts;
         if (fields_missing) parts.attempt([&] { write_fields(*last_row_, record); });
         if (options_.pictures) parts.attempt([&] { write_pictures(history, equilibria, record); });

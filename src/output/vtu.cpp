@@ -1,32 +1,38 @@
 #include "kluft/output/vtu.hpp"
 
-#include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <optional>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "file_descriptor.hpp"
-#include "kluft/output/atomic_file.hpp"
 #include "kluft/output/block_outline.hpp"
 #include "vtu_document.hpp"
 
 namespace kluft {
-
-namespace fs = std::filesystem;
 
 namespace {
 
 constexpr std::uint8_t vtk_line = 3;
 constexpr std::uint8_t vtk_polygon = 7;
 
-void add_stamp(VtuDocument& document, const StepRecord& record, std::string_view about) {
-    document.add_field("about", std::vector<std::string>{std::string(about)});
+/// Number `code` of `kind` is called so.
+void add_name(VtuDocument& document, std::string_view kind, std::string_view name, std::size_t code) {
+    document.add_field(fmt::format("{}: {}", kind, name), static_cast<std::int32_t>(code));
+}
+
+void add_names(VtuDocument& document, std::string_view kind, const std::vector<std::string>& names) {
+    for (std::size_t i = 0; i < names.size(); ++i) add_name(document, kind, names[i], i);
+}
+
+void add_units(VtuDocument& document, const std::vector<std::string>& units) {
+    for (const std::string& each : units) document.add_field("unit of " + each, 1);
+}
+
+void add_stamp(VtuDocument& document, const StepRecord& record) {
     document.add_field("step", static_cast<std::int32_t>(record.step));
+    document.add_field("stage", static_cast<std::int32_t>(record.stage));
+    document.add_field("load_factor", record.load_factor);
     document.add_field("axial_strain", record.axial_strain);
 }
 
@@ -70,7 +76,8 @@ void add_block_fields(VtuDocument& document, const BlockSystem& system, const Fi
     const auto& stress = fields.stress;
     {
         auto tensors = document.cell_tensors("stress");
-        for (const Mat2& each : stress) tensors.put(Mat2(-0.5 * (each + each.transpose())));
+        for (std::size_t b = 0; b < stress.size(); ++b)
+            tensors.put(Mat2(-0.5 * (stress[b] + stress[b].transpose())), 0.0 - fields.stress_zz[b]);
     }
     document.add_cell_field("sigma_1", [&](std::size_t b) { return principal_compression(stress[b]).first; });
     document.add_cell_field("sigma_3", [&](std::size_t b) { return principal_compression(stress[b]).second; });
@@ -132,34 +139,17 @@ void add_interface_fields(VtuDocument& document, const BlockSystem& system, cons
     document.add_cell_field("shear_traction", [&](std::size_t i) { return each[i].shear_traction; });
     document.add_cell_field("gap", [&](std::size_t i) { return each[i].gap; });
     document.add_cell_field("slip", [&](std::size_t i) { return each[i].slip; });
+    {
+        auto vectors = document.cell_vectors("relative_displacement");
+        for (const auto& interface : each) vectors.put(interface.relative);
+    }
+    {
+        auto vectors = document.cell_vectors("contact_force");
+        for (const auto& interface : each) vectors.put(interface.force);
+    }
+    document.add_cell_field("interface_type", [&](std::size_t i) { return system.interfaces[i].interface_type; });
     document.add_cell_field("mapped_fracture", [&](std::size_t i) { return system.interfaces[i].fracture; });
     document.add_cell_field("interface", [](std::size_t i) { return static_cast<std::int32_t>(i); });
-}
-
-std::string file_name(std::string_view part, int step) { return fmt::format("{}_{:06}.vtu", part, step); }
-
-/// The load step in the name of a field file of the given part.
-std::optional<int> step_of(const std::string& name, std::string_view part) {
-    const std::string prefix = std::string(part) + '_';
-    if (!name.starts_with(prefix)) return std::nullopt;
-    int step = 0;
-    const char* const end = name.data() + name.size();
-    const auto result = std::from_chars(name.data() + prefix.size(), end, step);
-    if (result.ec != std::errc()) return std::nullopt;
-    const std::string_view rest(result.ptr, end);
-    return rest == ".vtu" || rest == ".vtu.part" ? std::optional(step) : std::nullopt;
-}
-
-/// The files of a series in `directory`/fields with their load steps.
-std::vector<std::pair<fs::path, int>> field_files(const fs::path& directory) {
-    std::vector<std::pair<fs::path, int>> files;
-    std::error_code none;
-    for (const auto& entry : fs::directory_iterator(directory / "fields", none)) {
-        const std::string name = entry.path().filename();
-        for (const std::string_view part : {"blocks", "interfaces"})
-            if (const auto step = step_of(name, part)) files.emplace_back(entry.path(), *step);
-    }
-    return files;
 }
 
 } // namespace
@@ -171,79 +161,32 @@ std::pair<double, double> principal_compression(const Mat2& stress) {
     return {radius - mean, -radius - mean};
 }
 
-std::string blocks_vtu(const BlockSystem& system, const FieldRecord& fields,
-                       const std::vector<std::string>& material_names, const StepRecord& record) {
+std::string blocks_vtu(const BlockSystem& system, const FieldRecord& fields, const FieldNames& names,
+                       const StepRecord& record) {
     VtuDocument document(first_vertices(system).back(), system.blocks.size());
-    add_stamp(document, record,
-              "SI units. Stresses are positive in compression; sigma_1, sigma_3: principal stresses in the plane. "
-              "Points: before loading; warp by displacement to see the blocks deformed.");
-    document.add_field("material_names", material_names);
+    add_stamp(document, record);
+    add_names(document, "material", names.materials);
+    add_units(document, {"displacement: m", "stress: Pa, positive in compression",
+                         "sigma_1: Pa, positive in compression", "sigma_3: Pa, positive in compression"});
     add_block_shapes(document, system, fields);
     add_block_fields(document, system, fields);
     return document.content();
 }
 
-std::string interfaces_vtu(const BlockSystem& system, const FieldRecord& fields, const StepRecord& record) {
+std::string interfaces_vtu(const BlockSystem& system, const FieldRecord& fields, const FieldNames& names,
+                           const StepRecord& record) {
     VtuDocument document(2 * system.interfaces.size(), system.interfaces.size());
-    add_stamp(document, record,
-              "SI units. state: 0 open, 1 sliding, 2 locked; crack_mode: 0 none, 1 tension, 2 shear; normal_traction: "
-              "positive in compression; gap: positive when open. Points: before loading.");
+    add_stamp(document, record);
+    add_names(document, "state", {"open", "sliding", "locked"});
+    add_names(document, "crack_mode", {"none", "tension", "shear"});
+    add_names(document, "interface_type", names.interface_types);
+    add_names(document, "mapped_fracture", names.fractures);
+    add_units(document, {"displacement: m", "normal_traction: Pa, positive in compression", "shear_traction: Pa",
+                         "gap: m, positive when open", "slip: m", "relative_displacement: m, of side b against side a",
+                         "contact_force: N per metre of thickness, on side a"});
     add_interface_shapes(document, system, fields);
     add_interface_fields(document, system, fields);
     return document.content();
-}
-
-FieldSeries::FieldSeries(fs::path directory) : directory_(std::move(directory)) {}
-
-FieldSeries FieldSeries::create(const fs::path& directory) {
-    remove(directory);
-    make_directory(directory / "fields");
-    FieldSeries series(directory);
-    series.write_series();
-    return series;
-}
-
-FieldSeries FieldSeries::resume(const fs::path& directory, int last_step) {
-    make_directory(directory / "fields");
-    FieldSeries series(directory);
-    for (const auto& [file, step] : field_files(directory)) {
-        const bool whole = file.extension() == ".vtu";
-        if (step > last_step || !whole)
-            remove_file(file);
-        else if (file.filename().string().starts_with("interfaces")) // the later of the two
-            series.steps_.push_back(step);
-    }
-    std::sort(series.steps_.begin(), series.steps_.end());
-    series.write_series();
-    return series;
-}
-
-void FieldSeries::remove(const fs::path& directory) {
-    remove_file(directory / "fields.pvd");
-    for (const auto& [file, step] : field_files(directory)) remove_file(file);
-    std::error_code ignored;
-    const fs::path folder = directory / "fields";                      // a link to where there is more room stays
-    if (!fs::is_symlink(folder, ignored)) fs::remove(folder, ignored); // only when nothing else is in it
-}
-
-void FieldSeries::add(const BlockSystem& system, const FieldRecord& fields,
-                      const std::vector<std::string>& material_names, const StepRecord& record) {
-    const fs::path folder = directory_ / "fields";
-    write_file(folder / file_name("blocks", record.step), blocks_vtu(system, fields, material_names, record));
-    write_file(folder / file_name("interfaces", record.step), interfaces_vtu(system, fields, record));
-    if (steps_.empty() || steps_.back() != record.step) steps_.push_back(record.step);
-    write_series();
-}
-
-void FieldSeries::write_series() const {
-    std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n";
-    for (const int step : steps_) {
-        int part = 0;
-        for (const std::string_view name : {"blocks", "interfaces"})
-            text += fmt::format("<DataSet timestep=\"{}\" group=\"\" part=\"{}\" file=\"fields/{}\"/>\n", step, part++,
-                                file_name(name, step));
-    }
-    write_file(directory_ / "fields.pvd", text + "</Collection>\n</VTKFile>\n");
 }
 
 } // namespace kluft

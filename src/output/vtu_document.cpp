@@ -2,32 +2,68 @@
 
 #include <bit>
 #include <cmath>
-#include <cstring>
+#include <new>
 #include <utility>
 
 #include <fmt/format.h>
+#include <zlib.h>
 
 namespace kluft {
 
-VtuDocument::VtuDocument(std::size_t n_points, std::size_t n_cells) : n_points_(n_points), n_cells_(n_cells) {
-    constexpr std::size_t xml_bytes = 16384;
-    constexpr std::size_t bytes_per_point = 56; // place, motion, index
-    constexpr std::size_t bytes_per_cell = 64;
-    appended_.reserve(xml_bytes + bytes_per_point * n_points + bytes_per_cell * n_cells);
+namespace {
+
+constexpr std::size_t piece_bytes = 1U << 20U; ///< a multiple of the size of every number
+constexpr int compression = 1;                 ///< of 1 to 9: more takes longer and saves nothing
+
+std::string xml_text(std::string_view text) {
+    std::string result;
+    for (const char c : text) {
+        if (c == '&')
+            result += "&amp;";
+        else if (c == '<')
+            result += "&lt;";
+        else if (c == '"')
+            result += "&quot;";
+        else if (static_cast<unsigned char>(c) < ' ')
+            result += ' ';
+        else
+            result += c;
+    }
+    return result;
 }
 
-VtuDocument::Array::Array(VtuDocument& document) : document_(document), begin_(document.appended_.size()) {
-    constexpr std::uint64_t length_to_come = 0;
-    append(&length_to_come, sizeof length_to_come);
+} // namespace
+
+VtuDocument::VtuDocument(std::size_t n_points, std::size_t n_cells) : n_points_(n_points), n_cells_(n_cells) {}
+
+void VtuDocument::append(const void* bytes, std::size_t size) {
+    piece_.append(static_cast<const char*>(bytes), size);
+    if (piece_.size() == piece_bytes) compress_piece();
 }
 
-VtuDocument::Array::~Array() {
-    const std::uint64_t length = document_.appended_.size() - begin_ - sizeof length;
-    std::memcpy(&document_.appended_[begin_], &length, sizeof length);
+void VtuDocument::compress_piece() {
+    const std::size_t before = appended_.size();
+    uLongf size = ::compressBound(piece_.size());
+    appended_.resize(before + size);
+    const int result = ::compress2(reinterpret_cast<Bytef*>(&appended_[before]), &size, // NOLINT: bytes are bytes
+                                   reinterpret_cast<const Bytef*>(piece_.data()), piece_.size(), compression);
+    if (result != Z_OK) throw std::bad_alloc();
+    appended_.resize(before + size);
+    n_bytes_.push_back(size);
+    piece_.clear();
 }
 
-void VtuDocument::Array::append(const void* bytes, std::size_t size) {
-    document_.appended_.append(static_cast<const char*>(bytes), size);
+/// Puts the header before the pieces: their number, the size of a piece and of a last one that is smaller, and the sizes when
+/// compressed.
+void VtuDocument::end_array() {
+    if (!array_at_) return;
+    const std::uint64_t of_last = piece_.size();
+    if (!piece_.empty()) compress_piece();
+    std::vector<std::uint64_t> header{n_bytes_.size(), piece_bytes, of_last};
+    header.insert(header.end(), n_bytes_.begin(), n_bytes_.end());
+    appended_.insert(*array_at_, reinterpret_cast<const char*>(header.data()), // NOLINT: bytes are bytes
+                     header.size() * sizeof(std::uint64_t));
+    n_bytes_.clear();
 }
 
 void VtuDocument::Array::put(double number) {
@@ -41,9 +77,9 @@ void VtuDocument::Array::put(const Vec2& vector) {
     put(0.0);
 }
 
-void VtuDocument::Array::put(const Mat2& tensor) {
+void VtuDocument::Array::put(const Mat2& tensor, double across) {
     for (int row = 0; row < 2; ++row) put(Vec2(tensor.row(row)));
-    put(Vec2(0.0, 0.0));
+    for (const double number : {0.0, 0.0, across}) put(number);
 }
 
 double VtuDocument::finite(double number) {
@@ -53,6 +89,8 @@ double VtuDocument::finite(double number) {
 }
 
 VtuDocument::Array VtuDocument::begin(std::string& section, std::string_view attributes) {
+    end_array();
+    array_at_ = appended_.size();
     section += fmt::format("<DataArray {} format=\"appended\" offset=\"{}\"/>\n", attributes, appended_.size());
     return Array(*this);
 }
@@ -73,6 +111,10 @@ VtuDocument::Array VtuDocument::cell_tensors(std::string_view name) {
     return begin(cell_data_, fmt::format(R"(type="Float64" Name="{}" NumberOfComponents="9")", name));
 }
 
+VtuDocument::Array VtuDocument::cell_vectors(std::string_view name) {
+    return begin(cell_data_, fmt::format(R"(type="Float64" Name="{}" NumberOfComponents="3")", name));
+}
+
 VtuDocument::Array VtuDocument::cell_field(std::string_view name, std::string_view type) {
     return begin(cell_data_, fmt::format(R"(type="{}" Name="{}")", type, name));
 }
@@ -81,32 +123,24 @@ void VtuDocument::add_field(std::string_view name, double value) {
     const double checked = finite(value);
     field_data_ +=
         fmt::format("<DataArray type=\"Float64\" Name=\"{}\" NumberOfTuples=\"1\" format=\"ascii\">{}</DataArray>\n",
-                    name, checked);
+                    xml_text(name), checked);
 }
 
 void VtuDocument::add_field(std::string_view name, std::int32_t value) {
-    field_data_ += fmt::format(
-        "<DataArray type=\"Int32\" Name=\"{}\" NumberOfTuples=\"1\" format=\"ascii\">{}</DataArray>\n", name, value);
-}
-
-void VtuDocument::add_field(std::string_view name, const std::vector<std::string>& texts) {
-    field_data_ += fmt::format("<DataArray type=\"String\" Name=\"{}\" NumberOfTuples=\"{}\" format=\"ascii\">", name,
-                               texts.size());
-    for (const std::string& text : texts) {
-        for (const char character : text)
-            field_data_ += fmt::format("{} ", static_cast<int>(static_cast<unsigned char>(character)));
-        field_data_ += "0 ";
-    }
-    field_data_ += "</DataArray>\n";
+    field_data_ +=
+        fmt::format("<DataArray type=\"Int32\" Name=\"{}\" NumberOfTuples=\"1\" format=\"ascii\">{}</DataArray>\n",
+                    xml_text(name), value);
 }
 
 std::string VtuDocument::content() {
+    end_array();
+    array_at_.reset();
     add_field("replaced_values", n_replaced_);
     const std::string_view order = std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian";
     std::string text = std::move(appended_); // large: the rest goes around it
     text.insert(0, fmt::format("<?xml version=\"1.0\"?>\n"
                                "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"{}\" "
-                               "header_type=\"UInt64\">\n"
+                               "header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n"
                                "<UnstructuredGrid>\n<FieldData>\n{}</FieldData>\n"
                                "<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n"
                                "<PointData>\n{}</PointData>\n<CellData>\n{}</CellData>\n"

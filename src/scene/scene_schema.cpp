@@ -834,12 +834,14 @@ std::vector<KeyRule> option_rules() {
         {.path = "output.fields",
          .type = KeyType::boolean,
          .fallback = "true",
-         .doc = "Write `fields.pvd` and `fields/*.vtu` for ParaView."},
+         .doc =
+             "Write `fields.pvd` and `fields/*.vtu` for ParaView, and `contacts/*.csv` and `supports/*.csv` with every "
+             "force on every block (docs/files.md)."},
         {.path = "output.fields_every",
          .type = KeyType::integer,
          .range = natural,
          .fallback = "0",
-         .doc = "Load steps between two field files; 0: the first and the last state of each stage."},
+         .doc = "Load steps between two states that are kept so; 0: the first and the last state of each stage."},
         {.path = "output.pictures",
          .type = KeyType::boolean,
          .fallback = "true",

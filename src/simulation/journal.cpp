@@ -1,6 +1,7 @@
 #include "kluft/simulation/journal.hpp"
 
 #include <cmath>
+#include <memory>
 #include <utility>
 
 #include <fmt/format.h>
@@ -61,9 +62,9 @@ RunCosts Journal::costs() const {
     return costs;
 }
 
-void Journal::begin(StepRecord row, const State& state, const LoadedPlacement& in_place) {
+void Journal::begin(StepRecord row, const State& state, LoadedPlacement in_place) {
     row.step = 0;
-    tell_state(row, state, in_place, false);
+    tell_state(row, state, std::move(in_place), false);
 }
 
 void Journal::tell(const Step& step) {
@@ -78,12 +79,12 @@ void Journal::warn(const Step& step, int number) {
     report_.warnings.push_back(fmt::format("load step {}: a contact was lost, because {}", number, step.lost_contact));
 }
 
-void Journal::tell_state(const StepRecord& row, const State& state, const LoadedPlacement& in_place,
-                         bool last_of_stage) {
+void Journal::tell_state(const StepRecord& row, const State& state, LoadedPlacement in_place, bool last_of_stage) {
     last_row_ = row;
     const Stopwatch watch(report_.costs.seconds.observers);
-    const auto fields = [&] {
-        return field_record(model_, state, loaded_body(model_, in_place.placement, in_place.at));
+    const auto kept = std::make_shared<const LoadedPlacement>(std::move(in_place));
+    const auto fields = [&model = model_, &state, kept] {
+        return field_record(model, state, loaded_body(model, kept->placement, kept->at));
     };
     observer_.step(row, state, fields, last_of_stage);
 }
@@ -153,7 +154,7 @@ void commit(Step step, StepKind kind, State& state, Journal& journal) {
     state = std::move(next);
     journal.warn(step, state.at.step);
     journal.tell(step);
-    journal.tell_state(step.row, state, step.in_place, kind.last_of_stage);
+    journal.tell_state(step.row, state, std::move(step.in_place), kind.last_of_stage);
 }
 
 StageEnd commit_balanced_part(Step step, State& state, Journal& journal) {

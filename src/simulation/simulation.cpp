@@ -39,7 +39,7 @@ void begin_run(const StepBench& bench, const State& state) {
     MeasuredState start = measure_state(bench, state, state.at.load_factor);
     start.measured.row.step = state.at.step;
     if (state.at.step == 0 && state.at.stage == 0)
-        return bench.journal.begin(start.measured.row, state, start.in_place);
+        return bench.journal.begin(start.measured.row, state, std::move(start.in_place));
     bench.journal.go_on_from(std::move(start.measured.row));
 }
 

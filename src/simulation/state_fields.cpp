@@ -39,6 +39,7 @@ InterfaceFields interface_fields(const BlockSystem& system, int i, InterfaceStat
     const Vec2 along = (current_position(system, q, interface.block_a, edge.end) -
                         current_position(system, q, interface.block_a, edge.start))
                            .normalized();
+    record.relative = relative;
     record.gap = right_normal(along).dot(relative);
     record.slip = along.dot(relative);
     return record;
@@ -55,6 +56,8 @@ void add_contacts(const LoadedBody& body, const Eigen::VectorXd& q, std::vector<
         record.state = worse(record.state, traction.state);
         record.normal_traction += point.weight * traction.normal;
         record.shear_traction += point.weight * traction.shear;
+        const Vec2 on_a = point.weight * (traction.normal * point.normal + traction.shear * point.tangent);
+        record.force += point.block_a == body.system->interfaces[point.interface].block_a ? on_a : Vec2(-on_a);
         lengths[point.interface] += point.weight;
     }
     for (std::size_t i = 0; i < interfaces.size(); ++i) {
@@ -64,24 +67,45 @@ void add_contacts(const LoadedBody& body, const Eigen::VectorXd& q, std::vector<
     }
 }
 
+void add_bonds(const LoadedBody& body, const Eigen::VectorXd& q, std::vector<InterfaceFields>& interfaces) {
+    for (int i = 0; i < static_cast<int>(body.placement->bonds.size()); ++i) {
+        const Bond& bond = body.placement->bonds[i];
+        InterfaceFields& record = interfaces[bond.interface];
+        for (int k = 0; k < n_bond_points; ++k) {
+            const auto traction = bond_traction(body, i, k, q);
+            record.normal_traction += 0.5 * traction.normal;
+            record.shear_traction += 0.5 * traction.shear;
+            record.force += bond.weight * (traction.normal * bond.normal() + traction.shear * bond.tangent);
+        }
+    }
+}
+
+/// What keeps the strain across the plane at zero, or nothing in plane stress.
+std::vector<double> stresses_across(const Model& model, const std::vector<Mat2>& stresses) {
+    std::vector<double> across(stresses.size(), 0.0);
+    if (model.plane == Plane::stress) return across;
+    for (int b = 0; b < model.system.n_blocks(); ++b) {
+        const ElasticModuli& moduli = model.moduli[model.system.blocks[b].material];
+        across[b] = engineering_moduli(moduli, model.plane).poissons_ratio * stresses[b].trace();
+    }
+    return across;
+}
+
 } // namespace
 
 FieldRecord field_record(const Model& model, const State& state, const LoadedBody& body) {
     const Eigen::VectorXd& q = state.body.displacement;
     FieldRecord fields;
     fields.stress = block_stresses(body, q);
+    fields.stress_zz = stresses_across(model, fields.stress);
     fields.displacement = vertex_displacements(model.system, q);
-    const auto bonds = bond_tractions(model, body, q);
-    for (int i = 0; i < model.system.n_interfaces(); ++i) {
-        InterfaceFields record = interface_fields(model.system, i, state.body.interfaces[i], q);
-        if (record.bonded) {
-            record.normal_traction = bonds[i].normal;
-            record.shear_traction = bonds[i].shear;
-        }
-        fields.interfaces.push_back(record);
-    }
+    for (int i = 0; i < model.system.n_interfaces(); ++i)
+        fields.interfaces.push_back(interface_fields(model.system, i, state.body.interfaces[i], q));
+    add_bonds(body, q, fields.interfaces);
     add_contacts(body, q, fields.interfaces);
     fields.platens = faces_of(model.system, *body.loads, q);
+    fields.contacts = contact_forces(body, q);
+    fields.supports = support_forces(body, q);
     return fields;
 }
 

@@ -14,6 +14,7 @@
 
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/output/atomic_file.hpp"
+#include "kluft/output/csv_text.hpp"
 #include "kluft/output/directory_lock.hpp"
 #include "kluft/output/history_table.hpp"
 #include "kluft/output/progress_line.hpp"
@@ -241,13 +242,6 @@ StudyCase row_of(const Study& study, const PlannedCase& one, const CaseResult& r
 }
 
 // ---- CSV -----------------------------------------------------------------------------------------------------------
-
-std::string csv_text(const std::string& text) {
-    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-    std::string quoted = "\"";
-    for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-    return quoted + '"';
-}
 
 std::string csv_number(const std::optional<double>& value) { return value ? fmt::format("{}", *value) : ""; }
 

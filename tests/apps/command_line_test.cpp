@@ -1284,6 +1284,30 @@ TEST_F(CommandLine, DrawMakesPicturesOfScenesAndRuns) {
     EXPECT_THAT(content_of(path("both.svg")), HasSubstr("</svg>"));
 }
 
+TEST_F(CommandLine, DrawMakesAPictureOfAKeptStateByAField) {
+    write("tiny.yaml", tiny_scene);
+    ASSERT_EQ(kluft({"run", "tiny.yaml", "-o", "r", "--set", "output.pictures=false"}).code, 0);
+    EXPECT_EQ(kluft({"draw", "r", "--step", "0", "--field", "displacement", "-o", "first.png"}).code, 0);
+    EXPECT_THAT(content_of(path("first.png")), StartsWith("\x89PNG"));
+    EXPECT_EQ(
+        kluft({"draw", "r", "--step", "peak", "--scale", "20", "--window", "0,0,5 cm,0.05", "-o", "peak.pdf"}).code, 0);
+    EXPECT_THAT(content_of(path("peak.pdf")), StartsWith("%PDF"));
+    const Result last = kluft({"draw", "r", "--field", "sigma_3"});
+    EXPECT_EQ(last.code, 0);
+    EXPECT_THAT(last.out, HasSubstr("r-sigma_3-"));
+    expect_refused({"draw", "r", "--step", "1"},
+                   HasSubstr("--step: expected a load step whose fields are kept, the nearest"));
+    expect_refused({"draw", "r", "--step", "peek"}, HasSubstr("did you mean 'peak'?"));
+    expect_refused({"draw", "r", "--field", "sigma1"}, HasSubstr("did you mean 'sigma_1'?"));
+    expect_refused({"draw", "r", "--scale", "big"}, HasSubstr("--scale: expected a number >= 0, found 'big'"));
+    for (const char* window : {"0,0,1", "1,0,0,1", "a,0,1,1", "0,0,1,1,"})
+        expect_refused({"draw", "r", "--window", window}, HasSubstr("--window: expected x0,y0,x1,y1"));
+    expect_refused({"draw", "r", "--window", "50,50,60,60"}, HasSubstr("--window: expected a part of the body"));
+    expect_refused({"draw", "tiny.yaml", "--step", "last"},
+                   HasSubstr("expected one directory of results, found a scene file"));
+    expect_refused({"draw", "r", "--curve", "--step", "last"}, HasSubstr("found one of a curve"));
+}
+
 TEST_F(CommandLine, DrawRefusesWhatItCannotDraw) {
     write("tiny.yaml", tiny_scene);
     fs::create_directory(path("empty"));

@@ -27,6 +27,7 @@ from fields import data_arrays  # noqa: E402
 DONE, MISSED, BAD_INPUT, NO_EQUILIBRIUM, NO_RESOURCES = range(5)
 TIME_LIMIT = 120.0  # s of a process; it hangs after that
 TABLES = ["history.csv", "equilibria.csv", "cracks.csv", "jumps.csv", "histories.csv"]
+FOLDERS_OF_TABLES = {"contacts", "supports"}  # one table per kept state, written at once
 COLUMNS_OF_TIME = {"elapsed_s"}
 STATUS = {0: {"done", "collapsed"}, 3: {"no_equilibrium", "unbalanced"}, 4: {"out_of_resources", None}}
 NOT_A_NUMBER = re.compile(r"(?<![A-Za-z_])[-+]?(nan|inf|infinity)(?![A-Za-z_])", re.IGNORECASE)
@@ -136,6 +137,7 @@ class Bench:
             "check": ["check", self.model("quick.yaml")],
             "draw": ["draw", self.model("quick.yaml"), "-o", "scene.png"],
             "draw a run": ["draw", str(self.reference(self.run())), "-o", "run.png"],
+            "draw a state": ["draw", str(self.reference(self.run())), "--step", "last", "--field", "sigma_3", "-o", "state.pdf"],
             "compare": ["compare", *[str(self.reference(self.run()))] * 2, "-o", "compared"],
             "envelope": ["envelope", self.model("tests.csv"), "-o", "envelope.png"],
         }
@@ -243,6 +245,9 @@ def differences(out, reference, words):
         found, known = (json.loads((each / "summary.json").read_text())["factor_of_safety"] for each in (out, reference))
         return [] if abs(found / known - 1) < 0.01 else [f"factor of safety {found} instead of {known}"]
     paths = {path.relative_to(each) for each in (out, reference) for path in each.rglob("*.csv") if path.name in TABLES}
+    # A run that was stopped keeps the state where it was; resumed, it keeps that of the reference too.
+    kept = [path.relative_to(reference) for folder in FOLDERS_OF_TABLES for path in reference.glob(f"{folder}/*.csv")]
+    paths |= set(kept)
     return [f"another {path}" for path in sorted(paths) if rows(out / path) != rows(reference / path)] + other_scenes(out, reference)
 
 
@@ -282,11 +287,22 @@ def is_whole(path):
             return False
     if path.suffix == ".png":
         return data.startswith(b"\x89PNG") and b"IEND" in data[-12:]
+    if path.suffix == ".pdf":
+        return data.startswith(b"%PDF") and b"%%EOF" in data[-16:]
     if path.suffix in (".svg", ".vtu", ".pvd", ".html"):
         return data.rstrip().endswith(b">")
     if path.suffix == ".yaml":  # JSON is YAML too
         return data.endswith((b"\n", b"}")) and b"\0" not in data
     return True
+
+
+def is_table(path):
+    return is_appended_to(path) or (path.suffix == ".csv" and path.parent.name in FOLDERS_OF_TABLES)
+
+
+def is_appended_to(path):
+    """Whether it is a table that grows row by row, which a kill may leave with half a row."""
+    return path.name in TABLES
 
 
 def is_whole_table(path):
@@ -302,8 +318,8 @@ def torn_files(cwd, killed=False):
     for path in sorted(p for p in cwd.rglob("*.*") if p.is_file()):
         if path.suffix == ".part":
             problems += [] if killed else [f"left {path.name}"]
-        elif not is_whole(path) or (path.name in TABLES and not killed and not is_whole_table(path)):
-            problems.append(f"torn {path.name}")
+        elif not is_whole(path) or (is_table(path) and not (killed and is_appended_to(path)) and not is_whole_table(path)):
+            problems.append(f"torn {path.relative_to(cwd)}")
     return problems
 
 

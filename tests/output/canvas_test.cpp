@@ -45,7 +45,8 @@ TEST(Canvas, ShrinksTextThatWouldBeTooWide) {
 TEST(Canvas, KnowsTheFormatFromTheNameOfTheFile) {
     EXPECT_EQ(picture_format("a/b.png"), PictureFormat::png);
     EXPECT_EQ(picture_format("b.svg"), PictureFormat::svg);
-    EXPECT_THROW((void)picture_format("b.pdf"), InputError);
+    EXPECT_EQ(picture_format("b.pdf"), PictureFormat::pdf);
+    EXPECT_THROW((void)picture_format("b.gif"), InputError);
     EXPECT_THROW((void)picture_format("png"), InputError);
 }
 

@@ -96,7 +96,7 @@ TEST(CurvePicture, ListsThePeaksOfSeveralRunsInTheLegend) {
     EXPECT_THAT(all, ::testing::Not(HasSubstr("height=\"350"))); // the legend stands below
 }
 
-TEST(CurvePicture, IsWrittenAsPngAndSvg) {
+TEST(CurvePicture, IsWrittenAsPngSvgAndPdf) {
     const TemporaryDirectory directory;
     auto history = synthetic_history(1.405e6);
     history[95].balanced = history[96].balanced = false;
@@ -107,7 +107,9 @@ TEST(CurvePicture, IsWrittenAsPngAndSvg) {
     write_curves(directory / "curve.svg", plot);
     EXPECT_THAT(read_file(directory / "curve.png"), StartsWith("\x89PNG\r\n"));
     EXPECT_THAT(read_file(directory / "curve.svg"), HasSubstr("</svg>"));
-    EXPECT_THROW(write_curves(directory / "curve.pdf", plot), InputError);
+    write_curves(directory / "curve.pdf", plot);
+    EXPECT_THAT(read_file(directory / "curve.pdf"), StartsWith("%PDF"));
+    EXPECT_THROW(write_curves(directory / "curve.gif", plot), InputError);
 }
 
 TEST(CurvePicture, IsDrawnWithATitleThatIsNotUtf8OrTooLong) {

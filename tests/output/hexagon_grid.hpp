@@ -66,6 +66,7 @@ inline FieldRecord affine_fields(const BlockSystem& system, const Mat2& gradient
     for (const Block& block : system.blocks) {
         for (const Edge& edge : block.edges) fields.displacement.push_back(gradient * edge_start(system, edge));
         fields.stress.push_back(stress);
+        fields.stress_zz.push_back(0.0);
     }
     fields.interfaces.resize(system.interfaces.size());
     for (auto& interface : fields.interfaces) interface.bonded = true;

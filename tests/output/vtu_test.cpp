@@ -7,6 +7,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <zlib.h>
 
 #include "kluft/output/atomic_file.hpp"
 #include "kluft/output/block_outline.hpp"
@@ -21,17 +22,36 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using testing::TemporaryDirectory;
 
-/// Reads a named array of a VTU file by the offset in its XML, as ParaView does.
+/// Reads a named array of a VTU file by the offset in its XML, as ParaView does: number of pieces, size of a piece and of a
+/// smaller last one, compressed sizes, compressed pieces.
 template <class Number> std::vector<Number> array_of(const std::string& file, const std::string& name) {
     const std::size_t appended = file.find("<AppendedData");
     const std::size_t named = file.find("Name=\"" + name + "\"");
     if (named >= appended) return {};
     const std::size_t offset = file.find("offset=\"", named) + std::strlen("offset=\"");
-    const std::size_t begin = file.find("\n_", appended) + 2 + std::stoul(file.substr(offset, 20));
-    std::uint64_t size = 0;
-    std::memcpy(&size, &file[begin], sizeof size);
-    std::vector<Number> values(size / sizeof(Number));
-    std::memcpy(values.data(), &file[begin + sizeof size], size);
+    std::size_t at = file.find("\n_", appended) + 2 + std::stoul(file.substr(offset, 20));
+    const auto next = [&] {
+        std::uint64_t number = 0;
+        std::memcpy(&number, &file[at], sizeof number);
+        at += sizeof number;
+        return number;
+    };
+    const std::uint64_t n_pieces = next();
+    const std::uint64_t piece = next();
+    const std::uint64_t last = next();
+    std::vector<std::uint64_t> sizes(n_pieces);
+    for (auto& size : sizes) size = next();
+    std::vector<Number> values;
+    for (std::size_t i = 0; i < n_pieces; ++i) {
+        uLongf size = i + 1 == n_pieces && last > 0 ? last : piece;
+        std::vector<Number> part(size / sizeof(Number));
+        EXPECT_EQ(uncompress(reinterpret_cast<Bytef*>(part.data()), &size, reinterpret_cast<const Bytef*>(&file[at]),
+                             sizes[i]),
+                  Z_OK);
+        EXPECT_EQ(size, part.size() * sizeof(Number));
+        values.insert(values.end(), part.begin(), part.end());
+        at += sizes[i];
+    }
     return values;
 }
 
@@ -49,7 +69,7 @@ double area_of_cell(const std::vector<double>& points, const std::vector<std::in
 TEST(Vtu, HoldsTheBlocksAsPolygonsOfTheirArea) {
     const BlockSystem system = testing::hexagon_grid(4, 3, 0.1, {2.0, 1.0});
     const auto fields = testing::affine_fields(system, Mat2::Zero(), Mat2::Zero());
-    const std::string file = blocks_vtu(system, fields, {"sandstone"}, StepRecord{});
+    const std::string file = blocks_vtu(system, fields, {{"sandstone"}, {}, {}}, StepRecord{});
     EXPECT_THAT(file, HasSubstr("NumberOfPoints=\"72\" NumberOfCells=\"12\""));
     EXPECT_THAT(file, HasSubstr("header_type=\"UInt64\""));
     EXPECT_THAT(file, HasSubstr("type=\"Float64\" Name=\"Points\""));
@@ -72,8 +92,9 @@ TEST(Vtu, HoldsStressesWithTheirSigns) {
     const BlockSystem system = testing::hexagon_grid(2, 1, 0.1);
     const double angle = std::numbers::pi / 6.0;
     const Vec2 axis(std::cos(angle), std::sin(angle));
-    const auto fields = testing::affine_fields(system, Mat2::Zero(), -2e6 * axis * axis.transpose());
-    const std::string file = blocks_vtu(system, fields, {"rock"}, StepRecord{});
+    auto fields = testing::affine_fields(system, Mat2::Zero(), -2e6 * axis * axis.transpose());
+    fields.stress_zz.assign(2, -5e5);
+    const std::string file = blocks_vtu(system, fields, {{"rock"}, {}, {}}, StepRecord{});
     const auto stress = array_of<double>(file, "stress"); // nine numbers a block, positive in compression
     ASSERT_EQ(stress.size(), 18U);
     EXPECT_DOUBLE_EQ(stress[9], 2e6 * std::pow(std::cos(angle), 2));
@@ -81,7 +102,8 @@ TEST(Vtu, HoldsStressesWithTheirSigns) {
     EXPECT_EQ(stress[11], 0.0);
     EXPECT_EQ(stress[12], stress[10]);
     EXPECT_DOUBLE_EQ(stress[13], 2e6 * std::pow(std::sin(angle), 2));
-    EXPECT_EQ(stress[17], 0.0);
+    EXPECT_EQ(stress[14], 0.0);
+    EXPECT_EQ(stress[17], 5e5);
     EXPECT_NEAR(array_of<double>(file, "sigma_1")[1], 2e6, 1e-8);
     EXPECT_NEAR(array_of<double>(file, "sigma_3")[1], 0.0, 1e-8);
     EXPECT_THAT(array_of<std::int32_t>(file, "block"), ElementsAre(0, 1));
@@ -98,7 +120,7 @@ TEST(Vtu, HoldsDisplacementsOfEachBlocksOwnVertices) {
     EXPECT_EQ(displacement[3 * 11 + 1], -0.5);
     EXPECT_EQ(displacement[3 * 11 + 2], 0.0);
     // The only interface moves with the mean of its sides.
-    const auto mean = array_of<double>(interfaces_vtu(system, fields, StepRecord{}), "displacement");
+    const auto mean = array_of<double>(interfaces_vtu(system, fields, {}, StepRecord{}), "displacement");
     EXPECT_THAT(mean, ElementsAre(0.125, -0.25, 0.0, 0.125, -0.25, 0.0));
 }
 
@@ -106,10 +128,13 @@ TEST(Vtu, HoldsInterfacesAsLinesWithTheirStates) {
     const BlockSystem system = testing::hexagon_grid(2, 2, 0.1);
     auto fields = testing::affine_fields(system, Mat2::Zero(), Mat2::Zero());
     ASSERT_EQ(fields.interfaces.size(), 5U);
-    fields.interfaces[0] = {false, true, CrackMode::tension, ContactState::open, 0.0, 0.0, 1e-4, 2e-5};
-    fields.interfaces[1] = {false, true, CrackMode::shear, ContactState::sliding, -3e5, 1e5, -1e-6, 3e-4};
-    fields.interfaces[2] = {false, false, CrackMode::shear, ContactState::locked, -1e5, 0.0, 0.0, 0.0};
-    const std::string file = interfaces_vtu(system, fields, StepRecord{});
+    fields.interfaces[0] = {false, true, CrackMode::tension, ContactState::open, 0.0, 0.0,
+                            1e-4,  2e-5, Vec2(1e-4, -2e-5),  Vec2::Zero()};
+    fields.interfaces[1] = {false, true, CrackMode::shear, ContactState::sliding, -3e5, 1e5,
+                            -1e-6, 3e-4, Vec2::Zero(),     Vec2(2.0, -3.0)};
+    fields.interfaces[2] = {false, false, CrackMode::shear, ContactState::locked, -1e5, 0.0,
+                            0.0,   0.0,   Vec2::Zero(),     Vec2::Zero()};
+    const std::string file = interfaces_vtu(system, fields, {}, StepRecord{});
     EXPECT_EQ(array_of<std::uint8_t>(file, "types"), std::vector<std::uint8_t>(5, 3));
     EXPECT_THAT(array_of<std::int64_t>(file, "connectivity"), ElementsAre(0, 1, 2, 3, 4, 5, 6, 7, 8, 9));
     EXPECT_THAT(array_of<std::int32_t>(file, "state"), ElementsAre(0, 1, 2, 2, 2));
@@ -119,6 +144,9 @@ TEST(Vtu, HoldsInterfacesAsLinesWithTheirStates) {
     EXPECT_EQ(array_of<double>(file, "slip")[1], 3e-4);
     EXPECT_EQ(array_of<double>(file, "normal_traction")[1], 3e5);
     EXPECT_EQ(array_of<double>(file, "shear_traction")[1], 1e5);
+    EXPECT_THAT(array_of<double>(file, "relative_displacement"), ::testing::Contains(-2e-5));
+    const auto force = array_of<double>(file, "contact_force");
+    EXPECT_THAT(std::vector(force.begin() + 3, force.begin() + 6), ElementsAre(2.0, -3.0, 0.0));
     // Edges of a regular hexagon of width d have the length d/sqrt(3).
     const auto points = array_of<double>(file, "Points");
     for (std::size_t i = 0; i < 5; ++i)
@@ -136,7 +164,35 @@ TEST(Vtu, ReplacesWhatIsNotANumberAndCountsIt) {
     const std::string blocks = blocks_vtu(system, fields, {}, record);
     EXPECT_THAT(blocks, HasSubstr("Name=\"replaced_values\" NumberOfTuples=\"1\" format=\"ascii\">2<"));
     for (const double value : array_of<double>(blocks, "displacement")) EXPECT_TRUE(std::isfinite(value));
-    EXPECT_EQ(array_of<double>(interfaces_vtu(system, fields, record), "gap")[0], 0.0);
+    EXPECT_EQ(array_of<double>(interfaces_vtu(system, fields, {}, record), "gap")[0], 0.0);
+}
+
+TEST(Vtu, HasNamesAndUnitsInTheNamesOfFieldData) {
+    const BlockSystem system = testing::hexagon_grid(2, 1, 0.1);
+    const auto fields = testing::affine_fields(system, Mat2::Zero(), Mat2::Zero());
+    const FieldNames names{{"rock"}, {"joint", "a < \"b\""}, {"main"}};
+    EXPECT_THAT(blocks_vtu(system, fields, names, StepRecord{}),
+                HasSubstr("Name=\"material: rock\" NumberOfTuples=\"1\""));
+    const std::string file = interfaces_vtu(system, fields, names, StepRecord{});
+    EXPECT_THAT(file,
+                HasSubstr("Name=\"interface_type: a &lt; &quot;b&quot;\" NumberOfTuples=\"1\" format=\"ascii\">1<"));
+    EXPECT_THAT(file, HasSubstr("Name=\"mapped_fracture: main\""));
+    EXPECT_THAT(file, HasSubstr("Name=\"unit of gap: m, positive when open\""));
+}
+
+// An array of more than one piece: 20 000 hexagons have 120 000 points with three numbers of eight bytes each.
+TEST(Vtu, CompressesLargeArraysPieceByPiece) {
+    const BlockSystem system = testing::hexagon_grid(200, 100, 0.1);
+    Mat2 gradient = Mat2::Zero();
+    gradient(1, 0) = 0.25;
+    const auto fields = testing::affine_fields(system, gradient, Mat2::Zero());
+    const std::string file = blocks_vtu(system, fields, {}, StepRecord{});
+    const auto points = array_of<double>(file, "Points");
+    const auto displacement = array_of<double>(file, "displacement");
+    ASSERT_EQ(points.size(), 360000U);
+    ASSERT_EQ(displacement.size(), points.size());
+    for (std::size_t i = 0; i < points.size(); i += 3) ASSERT_EQ(displacement[i + 1], 0.25 * points[i]);
+    EXPECT_LT(file.size(), 4 * (points.size() + displacement.size()));
 }
 
 TEST(BlockOutline, JoinsAHoleByTwoCoincidentBridges) {
@@ -149,64 +205,6 @@ TEST(BlockOutline, JoinsAHoleByTwoCoincidentBridges) {
     EXPECT_DOUBLE_EQ(area, 8.0);
     EXPECT_EQ(next_edge(system.blocks[0], 3), 0);
     EXPECT_EQ(next_edge(system.blocks[0], 7), 4);
-}
-
-std::vector<std::string> names_in(const fs::path& directory) {
-    std::vector<std::string> names;
-    for (const auto& entry : fs::directory_iterator(directory)) names.push_back(entry.path().filename());
-    std::sort(names.begin(), names.end());
-    return names;
-}
-
-TEST(FieldSeries, ListsTheTwoFilesOfEachStep) {
-    const TemporaryDirectory directory;
-    const BlockSystem system = testing::hexagon_grid(2, 1, 0.1);
-    const auto fields = testing::affine_fields(system, Mat2::Zero(), Mat2::Zero());
-    auto series = FieldSeries::create(directory.path());
-    StepRecord record;
-    series.add(system, fields, {"rock"}, record);
-    record.step = 20;
-    series.add(system, fields, {"rock"}, record);
-    EXPECT_THAT(names_in(directory / "fields"), ElementsAre("blocks_000000.vtu", "blocks_000020.vtu",
-                                                            "interfaces_000000.vtu", "interfaces_000020.vtu"));
-    const std::string pvd = read_file(directory / "fields.pvd");
-    EXPECT_THAT(pvd, HasSubstr(R"(timestep="20" group="" part="1" file="fields/interfaces_000020.vtu")"));
-    EXPECT_THAT(read_file(directory / "fields/blocks_000020.vtu"), HasSubstr("Name=\"step\" NumberOfTuples=\"1\" "
-                                                                             "format=\"ascii\">20<"));
-}
-
-TEST(FieldSeries, GoesOnFromASavedStepWithoutTheLaterFiles) {
-    const TemporaryDirectory directory;
-    const BlockSystem system = testing::hexagon_grid(2, 1, 0.1);
-    const auto fields = testing::affine_fields(system, Mat2::Zero(), Mat2::Zero());
-    auto first = FieldSeries::create(directory.path());
-    for (const int step : {0, 5, 10, 15}) {
-        StepRecord record;
-        record.step = step;
-        first.add(system, fields, {}, record);
-    }
-    const auto series = FieldSeries::resume(directory.path(), 10);
-    EXPECT_THAT(series.steps(), ElementsAre(0, 5, 10));
-    EXPECT_EQ(names_in(directory / "fields").size(), 6U);
-    EXPECT_THAT(read_file(directory / "fields.pvd"), ::testing::Not(HasSubstr("000015")));
-}
-
-TEST(FieldSeries, KeepsALinkToWhereThereIsMoreRoom) {
-    const TemporaryDirectory directory;
-    std::filesystem::create_directory(directory / "elsewhere");
-    std::filesystem::create_symlink("elsewhere", directory / "fields");
-    (void)FieldSeries::create(directory.path());
-    EXPECT_TRUE(std::filesystem::is_symlink(directory / "fields"));
-}
-
-TEST(FieldSeries, ReplacesAnEarlierRunButNotOtherPeoplesFiles) {
-    const TemporaryDirectory directory;
-    make_directory(directory / "fields");
-    write_file(directory / "fields/blocks_000007.vtu", "old");
-    write_file(directory / "fields/blocks_mine.vtu", "mine");
-    const auto series = FieldSeries::create(directory.path());
-    EXPECT_TRUE(series.steps().empty());
-    EXPECT_THAT(names_in(directory / "fields"), ElementsAre("blocks_mine.vtu"));
 }
 
 } // namespace

@@ -48,9 +48,9 @@ def keep_run(results, target, words, done, places):
     for name in TABLES:
         if (results / name).exists():
             shutil.copyfile(results / name, target / name)
-    fields = sorted((results / "fields").glob("*.vtu"))
+    fields = sorted(file for kind in ("fields/*.vtu", "contacts/*.csv", "supports/*.csv") for file in results.glob(kind))
     if fields:
-        sums = "".join(f"{hashlib.sha256(file.read_bytes()).hexdigest()}  {file.name}\n" for file in fields)
+        sums = "".join(f"{hashlib.sha256(file.read_bytes()).hexdigest()}  {file.relative_to(results)}\n" for file in fields)
         (target / "fields.txt").write_text(sums, encoding="utf-8")
     (target / "log.txt").write_text(log_lines(results / "run.log", places), encoding="utf-8")
     (target / "stderr.txt").write_text(plain("".join(text for _, text in done), places), encoding="utf-8")

@@ -1,6 +1,7 @@
-"""Reads the field files (VTU, raw appended) that a run writes."""
+"""Reads the field files (VTU, arrays appended and compressed) that a run writes."""
 
 import xml.etree.ElementTree as ElementTree
+import zlib
 
 import numpy as np
 
@@ -18,9 +19,11 @@ def data_arrays(path):
 
     def array(node):
         begin = base + int(node.get("offset"))
-        length = int(np.frombuffer(content, order + "u8", 1, begin)[0])
-        kind = np.dtype(order + TYPES[node.get("type")])
-        values = np.frombuffer(content, kind, length // kind.itemsize, begin + 8)
+        n_pieces = int(np.frombuffer(content, order + "u8", 1, begin)[0])
+        sizes = np.frombuffer(content, order + "u8", 3 + n_pieces, begin)[3:]
+        ends = begin + 8 * (3 + n_pieces) + np.concatenate([[0], np.cumsum(sizes)]).astype(int)
+        data = b"".join(zlib.decompress(content[at:end]) for at, end in zip(ends[:-1], ends[1:]))
+        values = np.frombuffer(data, order + TYPES[node.get("type")])
         columns = int(node.get("NumberOfComponents", 1))
         return values.reshape(-1, columns) if columns > 1 else values
 

@@ -60,6 +60,10 @@ struct LoadedBody {
 /// What counts as no force on a part of the body of `area` (m2), beside those that it has carried (N/m). Source: (27c).
 [[nodiscard]] double negligible_force(double carried_stress, double area);
 
+/// The weight of block `b` under the gravity of the loads (N/m); zero of a fixed one, whose weight nothing but its support
+/// feels.
+[[nodiscard]] Vec2 weight_of(const LoadedBody& body, int b);
+
 struct BodyForces {
     Eigen::VectorXd forces;     ///< internal + interface - external, size 6 n_blocks (N/m)
     Eigen::VectorXd magnitudes; ///< sums of the magnitudes of what `forces` is made of; their norm is F_ref

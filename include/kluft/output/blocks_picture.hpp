@@ -2,10 +2,12 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "kluft/blocks/block_system.hpp"
+#include "kluft/geometry/polygon.hpp"
 #include "kluft/output/canvas.hpp"
 #include "kluft/simulation/step_record.hpp"
 
@@ -22,6 +24,31 @@ struct BlocksPlot {
 
 /// The words above the deformed body after the given load steps.
 [[nodiscard]] std::string after_title(const std::vector<StepRecord>& history);
+
+/// A field of blocks by which a picture is coloured.
+struct ColouredField {
+    std::string label;          ///< with its unit
+    std::vector<double> values; ///< one per block, in that unit
+};
+/// The fields that blocks can be coloured by: sigma_1, sigma_3, stress_xx, stress_yy, stress_xy, stress_zz, displacement,
+/// displacement_x, displacement_y.
+[[nodiscard]] std::vector<std::string> block_field_names();
+/// Stresses in MPa, positive in compression; displacements are means of the corners, in mm. Throws InputError for any other
+/// name.
+[[nodiscard]] ColouredField block_field(const BlockSystem& system, const FieldRecord& fields, const std::string& name);
+
+/// What a picture of one state says.
+struct StatePlot {
+    std::string title;
+    std::string heading;        ///< above the body
+    double magnification = 1.0; ///< of displacements
+    ColouredField field;
+    std::optional<Box> window; ///< the part of the body that is shown, local coordinates (m); without: all of it
+};
+/// The deformed body in one panel, blocks filled by the field, with fractures and cracks as in draw_blocks.
+/// Throws InputError where no block reaches into the window, and for an SVG or PDF of too many blocks.
+[[nodiscard]] std::string draw_state(const BlockSystem& system, const FieldRecord& fields, const StatePlot& plot,
+                                     PictureFormat format);
 
 /// Bodies with more blocks than this are drawn as PNG only: an SVG would take longer to open than to compute.
 inline constexpr int most_blocks_in_svg = 20000;

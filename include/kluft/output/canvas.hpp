@@ -1,4 +1,4 @@
-// A drawing surface for pictures: the same drawing code gives PNG and SVG.
+// A drawing surface for pictures: the same drawing code gives PNG, SVG and PDF.
 #pragma once
 
 #include <filesystem>
@@ -90,9 +90,9 @@ private:
     double height_;
 };
 
-enum class PictureFormat { png, svg };
+enum class PictureFormat { png, svg, pdf };
 
-/// The format that the file's extension names. Throws InputError when it is neither .png nor .svg.
+/// The format that the file's extension names. Throws InputError when it is none of .png, .svg and .pdf.
 [[nodiscard]] PictureFormat picture_format(const std::filesystem::path& path);
 
 /// Bytes of a picture of the given size in points on a white page; a PNG has `pixels_per_point`.

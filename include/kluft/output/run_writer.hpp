@@ -20,7 +20,7 @@
 namespace kluft {
 
 struct RunWriterOptions {
-    bool fields = true;              ///< fields.pvd and fields/*.vtu
+    bool fields = true;              ///< fields.pvd, fields/*.vtu, contacts/*.csv and supports/*.csv
     int fields_every = 0;            ///< load steps between two of them; 0: only step 0 and the end of each stage
     bool pictures = true;            ///< curve.png, curve.svg, blocks.png, blocks.svg
     int checkpoint_every = 0;        ///< load steps between two state.h5; 0: at the end of each stage and of the run
@@ -33,6 +33,9 @@ struct RunWriterOptions {
     std::optional<int> platen_stage; ///< the first stage that moves a platen
     Plane plane = Plane::strain;
     std::vector<std::string> material_names;
+    std::vector<std::string> interface_type_names;
+    std::vector<std::string> fracture_names;  ///< mapped ones
+    std::vector<std::string> law_names;       ///< the interface of each law of the model
     bool strength_factor = false;             ///< the rows have that column
     bool motion = false;                      ///< the rows have the columns of an explicit run
     std::vector<std::string> history_columns; ///< of StepRecord::histories; without any there is no histories.csv
@@ -73,7 +76,8 @@ public:
     void checkpoint(const State& state);
 
     /// Ends the run, however it ended: last state, field files of the last step, summary, pictures. `fields` computes
-    /// the fields of `state`. Tries everything, also after a part failed; then gives up and throws the first ResourceError.
+    /// the fields of `state` for pictures where no load step was told: contacts that are detected anew are not those that
+    /// balanced it. Tries everything, also after a part failed; then gives up and throws the first ResourceError.
     RunSummary finish(const RunOutcome& outcome, const State& state, const std::function<FieldRecord()>& fields);
 
     /// Makes the summary say that disk or memory ran out at the end, and why.
@@ -96,8 +100,9 @@ private:
     const BlockSystem& system_;
     RunWriterOptions options_;
     std::unique_ptr<Tables> tables_;
-    std::optional<StepRecord> last_row_;     ///< of history.csv; the others are on the disk only
-    Clock::time_point saved_ = Clock::now(); ///< when the last state was
+    std::optional<StepRecord> last_row_;       ///< of history.csv; the others are on the disk only
+    std::function<FieldRecord()> last_fields_; ///< of the same load step
+    Clock::time_point saved_ = Clock::now();   ///< when the last state was
 };
 
 /// The first file in the directory that remove_results would remove; "" if there is none.

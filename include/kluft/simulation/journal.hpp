@@ -62,7 +62,7 @@ public:
     [[nodiscard]] const StepRecord& last_row() const { return last_row_; }
 
     /// Tells the state before any load.
-    void begin(StepRecord row, const State& state, const LoadedPlacement& in_place);
+    void begin(StepRecord row, const State& state, LoadedPlacement in_place);
     /// A resumed run goes on from the load step of this row, which was told before.
     void go_on_from(StepRecord row) { last_row_ = std::move(row); }
     /// Tells the equilibria, the cracks and the jumps of a step.
@@ -70,7 +70,7 @@ public:
     /// Keeps the warning of a load step with this number, the first of a run.
     void warn(const Step& step, int number);
     /// Tells the row and the state of a committed load step.
-    void tell_state(const StepRecord& row, const State& state, const LoadedPlacement& in_place, bool last_of_stage);
+    void tell_state(const StepRecord& row, const State& state, LoadedPlacement in_place, bool last_of_stage);
     /// Tells where a load step stands: at `load_factor` on its way from the state, `row` being the last equilibrium's.
     void progress(const State& state, const StepRecord& row, double load_factor, int n_solves);
 

@@ -29,7 +29,8 @@ public:
     virtual void equilibrium(const StepRecord& /*record*/) {}
     virtual void crack(const CrackRecord& /*crack*/) {}
     virtual void jump(const JumpRecord& /*jump*/) {}
-    /// A load step was committed (step 0: the initial state). `fields` computes the fields on demand.
+    /// A load step was committed (step 0: the initial state). `fields` computes the fields on demand, in the contacts and under
+    /// the loads of its equilibrium; until the next load step is committed, model and state living on, later too.
     virtual void step(const StepRecord& /*record*/, const State& /*state*/,
                       const std::function<FieldRecord()>& /*fields*/, bool /*last_of_stage*/) {}
     /// Several times a step.

@@ -8,6 +8,7 @@
 
 #include "kluft/contact/contact.hpp"
 #include "kluft/core/vector.hpp"
+#include "kluft/loading/acting_forces.hpp"
 #include "kluft/loading/platen.hpp"
 
 namespace kluft {
@@ -82,10 +83,11 @@ struct JumpRecord {
     int blocks = 0;               ///< that moved by more than a hundredth of their motion_scale
 };
 
-/// Fields at an equilibrium, for pictures and ParaView.
+/// Fields at an equilibrium, for pictures, ParaView and programs that balance the blocks.
 struct FieldRecord {
     std::vector<Vec2> displacement; ///< of each block's vertices, block after block in the order of Block::edges (m)
     std::vector<Mat2> stress;       ///< Cauchy, positive in tension, one per block (Pa)
+    std::vector<double> stress_zz;  ///< across the plane: nu (s_xx + s_yy) in plane strain, 0 in plane stress (Pa)
     struct InterfaceFields {
         bool bonded = false;
         bool broken = false; ///< a potential crack that failed
@@ -95,9 +97,13 @@ struct FieldRecord {
         double shear_traction = 0.0;  ///< mean (Pa)
         double gap = 0.0;             ///< at the middle, positive when open (m)
         double slip = 0.0;            ///< tangential relative displacement at the middle (m)
+        Vec2 relative = Vec2::Zero(); ///< displacement of side b against side a at the middle (m)
+        Vec2 force = Vec2::Zero();    ///< that side b exerts on side a (N per metre of thickness)
     };
     std::vector<InterfaceFields> interfaces; ///< one per interface of the block system
     std::vector<PlatenFace> platens;         ///< of the stage
+    std::vector<ContactForce> contacts;      ///< of all points where blocks meet
+    std::vector<SupportForce> supports;      ///< forces from outside the body
 };
 
 } // namespace kluft
