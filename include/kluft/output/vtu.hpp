@@ -20,8 +20,8 @@ namespace kluft {
 
 /// The interfaces as lines at their places before loading, displaced by the mean of their sides. Cell fields `state`
 /// (0 open, 1 sliding, 2 locked), `bonded` (0, 1), `crack_mode` (0 none, 1 tension, 2 shear), `normal_traction`
-/// (Pa, positive in tension), `shear_traction` (Pa), `gap` (m, positive when open), `slip` (m), `mapped_fracture`
-/// (index, -1 on a tessellation edge), `interface`.
+/// (Pa, positive in tension), `shear_traction` (Pa), `gap` (m, positive when open), `slip` (m), `block_a`, `block_b` (the
+/// normal of tractions points from a to b), `mapped_fracture` (index, -1 on a tessellation edge), `interface`.
 [[nodiscard]] std::string interfaces_vtu(const BlockSystem& system, const FieldRecord& fields,
                                          const StepRecord& record);
 
