@@ -20,6 +20,8 @@ install(FILES scripts/completions/kluft.bash DESTINATION ${CMAKE_INSTALL_DATADIR
 install(PROGRAMS scripts/validate scripts/python DESTINATION ${CMAKE_INSTALL_DATADIR}/kluft/scripts)
 install(DIRECTORY validation DESTINATION ${CMAKE_INSTALL_DATADIR}/kluft
   PATTERN triaxial EXCLUDE PATTERN __pycache__ EXCLUDE PATTERN "report.md" EXCLUDE PATTERN "report.html" EXCLUDE)
+# The readers of the package, which need NumPy only.
+install(DIRECTORY python/kluft DESTINATION ${CMAKE_INSTALL_DATADIR}/kluft/python FILES_MATCHING PATTERN "*.py")
 install(DIRECTORY docs/schema DESTINATION ${CMAKE_INSTALL_DATADIR}/kluft)
 install(FILES README.md LICENSE docs/licences.md TYPE DOC)
 

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 const std::map<std::string, int> rank_of_layer{
     {"core", 0},    {"geometry", 1},   {"blocks", 2},      {"kinematics", 3},   {"constitutive", 4}, {"contact", 5},
     {"loading", 6}, {"assembly", 7},   {"equilibrium", 8}, {"fracture", 9},     {"simulation", 10},  {"scene", 11},
-    {"output", 11}, {"reference", 11}, {"studies", 12},    {"calibration", 13}, {"apps", 14},
+    {"output", 11}, {"reference", 11}, {"studies", 12},    {"calibration", 13}, {"apps", 14},        {"python", 14},
 };
 
 /// Which layers may include a header of another project, by the start of its name. What is not listed is free.
@@ -42,14 +42,16 @@ const std::map<std::string, std::set<std::string>> layers_of_library{
     {"H5", {"output"}},
     {"cairo", {"output"}},
     {"CLI/", {"apps"}},
+    {"pybind11/", {"python"}},
     {"coin", {"calibration"}},
     {"Ip", {"calibration"}},
 };
 
 /// Heavy headers have no place in what everyone includes.
 const std::vector<std::string> never_in_public_headers{
-    "cholmod", "umfpack", "SuiteSparse", "suitesparse/", "metis", "cblas",     "openblas", "yaml-cpp/", "CGAL/", "hdf5",
-    "H5",      "cairo",   "CLI/",        "coin",         "Ip",    "nlohmann/", "spdlog/",  "fmt/",      "boost/"};
+    "cholmod",   "umfpack",   "SuiteSparse", "suitesparse/", "metis",  "cblas",    "openblas",
+    "yaml-cpp/", "CGAL/",     "hdf5",        "H5",           "cairo",  "CLI/",     "coin",
+    "Ip",        "nlohmann/", "spdlog/",     "fmt/",         "boost/", "pybind11/"};
 
 struct Include {
     std::string name;
@@ -92,7 +94,7 @@ std::string first_folder(const fs::path& path) { return path.begin()->string(); 
 
 std::string layer_of_file(const fs::path& file) {
     const fs::path relative = file.lexically_relative(source_folder);
-    if (first_folder(relative) == "apps") return "apps";
+    if (const std::string first = first_folder(relative); first == "apps" || first == "python") return first;
     const fs::path base =
         first_folder(relative) == "include" ? source_folder / "include" / "kluft" : source_folder / "src";
     return first_folder(file.lexically_relative(base));
@@ -105,7 +107,7 @@ std::string complaint(const fs::path& file, const Include& include, const std::s
 
 std::vector<fs::path> all_sources() {
     std::vector<fs::path> files;
-    for (const char* const folder : {"include", "src", "apps"})
+    for (const char* const folder : {"include", "src", "apps", "python"})
         for (const fs::path& file : sources_under(source_folder / folder)) files.push_back(file);
     return files;
 }

@@ -16,6 +16,7 @@
 // NOLINTBEGIN(readability-identifier-naming): names of the BLAS
 extern "C" {
 void openblas_set_num_threads(int n_threads);
+int openblas_get_num_threads();
 char* openblas_get_corename();
 void omp_set_max_active_levels(int n_levels);
 void dtrsm_(const char* side, const char* uplo, const char* trans, const char* diag, const int* m, const int* n,
@@ -111,6 +112,8 @@ void prepare_blas() {
 }
 
 void set_blas_threads(int n_threads) { openblas_set_num_threads(n_threads); }
+
+int blas_threads() { return openblas_get_num_threads(); }
 
 std::string blas_core() { return openblas_get_corename(); }
 

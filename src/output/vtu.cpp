@@ -139,6 +139,8 @@ void add_interface_fields(VtuDocument& document, const BlockSystem& system, cons
     document.add_cell_field("shear_traction", [&](std::size_t i) { return each[i].shear_traction; });
     document.add_cell_field("gap", [&](std::size_t i) { return each[i].gap; });
     document.add_cell_field("slip", [&](std::size_t i) { return each[i].slip; });
+    document.add_cell_field("block_a", [&](std::size_t i) { return std::int32_t{system.interfaces[i].block_a}; });
+    document.add_cell_field("block_b", [&](std::size_t i) { return std::int32_t{system.interfaces[i].block_b}; });
     {
         auto vectors = document.cell_vectors("relative_displacement");
         for (const auto& interface : each) vectors.put(interface.relative);

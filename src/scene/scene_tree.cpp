@@ -229,6 +229,11 @@ std::string SceneSources::place(const TextPosition& at) const {
     return source.lines.empty() ? source.name : fmt::format("{}:{}:{}", source.name, at.line, at.column);
 }
 
+std::string SceneSources::file(const TextPosition& at) const {
+    const Source& source = sources_.at(at.source);
+    return source.lines.empty() ? std::string{} : source.name;
+}
+
 const std::filesystem::path& SceneSources::directory(const TextPosition& at) const {
     return sources_.at(at.source).directory;
 }
@@ -250,7 +255,9 @@ void SceneErrors::add(const TextPosition& at, const std::string& path, const std
     message += what;
     const std::string line = sources_.line(at);
     if (!line.empty()) message += fmt::format("\n  {}", line);
-    errors_.push_back({at, std::move(message)});
+    InputProblem problem{std::move(message), what, printable(path), sources_.file(at)};
+    if (!problem.file.empty()) std::tie(problem.line, problem.column) = std::pair(at.line, at.column);
+    errors_.push_back({at, std::move(problem)});
 }
 
 void SceneErrors::throw_if_any() const {
@@ -259,15 +266,15 @@ void SceneErrors::throw_if_any() const {
     std::stable_sort(sorted.begin(), sorted.end(), [](const Error& a, const Error& b) {
         return std::tie(a.at.source, a.at.line, a.at.column) < std::tie(b.at.source, b.at.line, b.at.column);
     });
-    std::vector<std::string> messages;
+    std::vector<InputProblem> problems;
     for (auto& error : sorted) {
-        if (messages.size() == most_messages) {
-            messages.push_back(fmt::format("and {} more", sorted.size() - most_messages));
+        if (problems.size() == most_messages) {
+            problems.push_back({.message = fmt::format("and {} more", sorted.size() - most_messages)});
             break;
         }
-        messages.push_back(std::move(error.message));
+        problems.push_back(std::move(error.problem));
     }
-    throw InputError(std::move(messages));
+    throw InputError(std::move(problems));
 }
 
 std::string in_quotes(std::string_view text) {

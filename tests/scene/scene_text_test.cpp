@@ -276,5 +276,27 @@ TEST(SceneYaml, ManyErrorsAreCounted) {
     EXPECT_EQ(errors.back(), "and 4000 more");
 }
 
+TEST(SceneProblems, HaveKeyFileLineAndColumn) {
+    std::string text = test::short_scene;
+    text.replace(text.find("1 GPa"), 5, "1 m");
+    try {
+        (void)read_scene_text(text, {"stages.0.steps=x"}, "folder/test.yaml");
+        FAIL();
+    } catch (const InputError& error) {
+        ASSERT_EQ(error.problems().size(), 2U);
+        const InputProblem& first = error.problems().front();
+        EXPECT_EQ(first.path, "materials.rock.youngs_modulus");
+        EXPECT_EQ(first.file, "folder/test.yaml");
+        EXPECT_EQ(first.line, 3);
+        EXPECT_EQ(first.column, 26);
+        EXPECT_EQ(first.message.substr(0, first.message.find('\n')),
+                  "folder/test.yaml:3:26: materials.rock.youngs_modulus: " + first.what);
+        const InputProblem& last = error.problems().back();
+        EXPECT_EQ(last.path, "stages.0.steps");
+        EXPECT_EQ(last.file, "");
+        EXPECT_EQ(last.line, 0);
+    }
+}
+
 } // namespace
 } // namespace kluft

@@ -1,6 +1,5 @@
 """What a check.py works with: runs of the program, expected against found values, a figure."""
 
-import csv
 import json
 import math
 import shutil
@@ -13,6 +12,8 @@ import yaml
 
 from suite import figures
 from suite.fields import Fields
+
+from kluft.tables import read_table as Table
 
 NO_EQUILIBRIUM = 3
 DEFAULT_TOLERANCE = 5e-3  # of rows with the program's defaults
@@ -39,27 +40,6 @@ class Row:
 
     def as_dict(self):
         return asdict(self)
-
-
-class Table:
-    """A CSV table by columns: table["step"] is an array; texts stay texts."""
-
-    def __init__(self, path):
-        with open(path, newline="", encoding="utf-8") as file:
-            rows = list(csv.reader(file))
-        self.names = rows[0]
-        self._columns = {}
-        for name, cells in zip(self.names, zip(*rows[1:]) if len(rows) > 1 else [()] * len(self.names)):
-            try:
-                self._columns[name] = np.array([float(cell) for cell in cells])
-            except ValueError:
-                self._columns[name] = np.array(cells)
-
-    def __getitem__(self, name):
-        return self._columns[name]
-
-    def __len__(self):
-        return len(self._columns[self.names[0]])
 
 
 class Run:

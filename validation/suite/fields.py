@@ -1,34 +1,13 @@
-"""Reads the field files (VTU, arrays appended and compressed) that a run writes."""
+"""Fields of a load step as cases look at them."""
 
-import xml.etree.ElementTree as ElementTree
-import zlib
+import sys
+from pathlib import Path
 
 import numpy as np
 
-TYPES = {"Float64": "f8", "Int64": "i8", "Int32": "i4", "UInt8": "u1"}
-START = b'<AppendedData encoding="raw">\n_'
+sys.path.append(str(Path(__file__).resolve().parents[2] / "python"))  # its readers need NumPy only
 
-
-def data_arrays(path):
-    """The arrays of a field file, {section: {name: array}} with the sections Points, PointData, CellData and Cells: (n, columns), or (n,)
-    with one column."""
-    content = path.read_bytes()
-    at = content.index(START)
-    order = "<" if b'byte_order="LittleEndian"' in content[:at] else ">"
-    base = at + len(START)
-
-    def array(node):
-        begin = base + int(node.get("offset"))
-        n_pieces = int(np.frombuffer(content, order + "u8", 1, begin)[0])
-        sizes = np.frombuffer(content, order + "u8", 3 + n_pieces, begin)[3:]
-        ends = begin + 8 * (3 + n_pieces) + np.concatenate([[0], np.cumsum(sizes)]).astype(int)
-        data = b"".join(zlib.decompress(content[at:end]) for at, end in zip(ends[:-1], ends[1:]))
-        values = np.frombuffer(data, order + TYPES[node.get("type")])
-        columns = int(node.get("NumberOfComponents", 1))
-        return values.reshape(-1, columns) if columns > 1 else values
-
-    piece = ElementTree.fromstring(content[:at].decode() + "</VTKFile>").find("UnstructuredGrid/Piece")
-    return {section.tag: {node.get("Name"): array(node) for node in section} for section in piece}
+from kluft.vtu import data_arrays  # noqa: E402
 
 
 class Fields:

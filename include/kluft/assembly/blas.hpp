@@ -21,6 +21,7 @@ void prepare_blas();
 
 /// Number of threads of the BLAS (OpenBLAS) for the whole process.
 void set_blas_threads(int n_threads);
+[[nodiscard]] int blas_threads();
 
 /// The processor for which the kernels in use were written, by OpenBLAS's name, e.g. "Haswell".
 [[nodiscard]] std::string blas_core();

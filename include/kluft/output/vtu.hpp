@@ -29,8 +29,8 @@ struct FieldNames {
 /// The interfaces as lines at their places before loading, displaced by the mean of their sides. Cell fields `state`
 /// (0 open, 1 sliding, 2 locked), `bonded` (0, 1), `crack_mode` (0 none, 1 tension, 2 shear), `normal_traction`
 /// (Pa, positive in compression), `shear_traction` (Pa), `gap` (m, positive when open), `slip` (m), the vectors
-/// `relative_displacement` of side b against side a (m) and `contact_force` on side a (N/m), `interface_type`,
-/// `mapped_fracture` (index, -1 on a tessellation edge), `interface`. Names and units as above.
+/// `relative_displacement` of side b against side a (m) and `contact_force` on side a (N/m), `block_a`, `block_b` (the
+/// normal of tractions points from a to b), `interface_type`, `mapped_fracture` (index, -1 on a tessellation edge), `interface`. Names and units as above.
 [[nodiscard]] std::string interfaces_vtu(const BlockSystem& system, const FieldRecord& fields, const FieldNames& names,
                                          const StepRecord& record);
 

@@ -8,6 +8,8 @@
 #include <tuple>
 #include <vector>
 
+#include "kluft/core/diagnostics.hpp"
+
 namespace kluft {
 
 /// Where something was written; line and column from 1.
@@ -52,6 +54,8 @@ public:
 
     /// "scene.yaml:12:5", or "--set stages.1.steps=0" for an override.
     [[nodiscard]] std::string place(const TextPosition& at) const;
+    /// The source's file; "" for an override.
+    [[nodiscard]] std::string file(const TextPosition& at) const;
     /// The source's line, shortened to a window around the position; "" for an override.
     [[nodiscard]] std::string line(const TextPosition& at) const;
     /// What relative paths written there start from: the file's directory; for an override the first file's.
@@ -81,7 +85,7 @@ public:
 private:
     struct Error {
         TextPosition at;
-        std::string message;
+        InputProblem problem;
     };
     const SceneSources& sources_;
     std::vector<Error> errors_;

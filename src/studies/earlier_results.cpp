@@ -1,4 +1,4 @@
-#include "earlier_results.hpp"
+#include "kluft/studies/earlier_results.hpp"
 
 #include <optional>
 #include <string>

@@ -1,0 +1,35 @@
+// What a scene amounts to, without running it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kluft/scene/scene.hpp"
+#include "kluft/scene/scene_model.hpp"
+
+namespace kluft {
+
+struct SceneAccount {
+    int blocks = 0;
+    int interfaces = 0;
+    int unknowns = 0;
+    double smallest_area = 0.0;  ///< m2
+    double smallest_edge = 0.0;  ///< m
+    double smallest_angle = 0.0; ///< between successive edges of a block (radians)
+    int merged = 0;              ///< slivers that went into a neighbour
+    double memory_bytes = 0.0;   ///< largest memory of a run, about
+
+    struct Line {
+        std::string name; ///< empty where the line goes on with what the one before says
+        std::string text;
+    };
+    std::vector<Line> lines; ///< all of it in words
+    std::vector<std::string> warnings;
+};
+
+[[nodiscard]] SceneAccount account_of(const Scene& scene, const SceneModel& built);
+
+/// The account as `kluft check` says it, one line each.
+[[nodiscard]] std::string text_of(const SceneAccount& account);
+
+} // namespace kluft

@@ -1,0 +1,46 @@
+// A run of a scene that leaves its results in a directory: what the program and the Python package share.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <string>
+
+#include "kluft/output/run_writer.hpp"
+#include "kluft/output/summary.hpp"
+#include "kluft/scene/scene.hpp"
+#include "kluft/simulation/model.hpp"
+#include "kluft/simulation/run_report.hpp"
+#include "kluft/simulation/state.hpp"
+#include "kluft/simulation/step_observer.hpp"
+
+namespace kluft {
+
+/// Whether the BLAS is to have one thread: more make small bodies slower (measured), and one repeats to the bit.
+[[nodiscard]] bool needs_one_blas_thread(const Scene& scene, const Model& model);
+
+/// What the scene says of the files that its run writes.
+[[nodiscard]] RunWriterOptions run_writer_options(const Scene& scene, const Model& model);
+
+/// Content of the scene.yaml to be written; "" where the directory has one of the user's own, which stays. Throws InputError where the
+/// directory has results of another scene, unless they may be replaced.
+[[nodiscard]] std::string scene_file_for(const std::filesystem::path& directory, const Scene& scene, bool may_replace);
+
+/// Processor time of the runs that a resumed one goes on from (s): that of the last one that said so.
+[[nodiscard]] double earlier_cpu_s(const std::filesystem::path& directory);
+
+/// Runs the stages from `state` on with the integrator of the scene, as run_simulation and run_explicit do.
+RunReport run_stages(const Model& model, const Scene& scene, State& state, StepObserver& observer,
+                     const std::atomic<bool>& stop);
+
+/// Adds a warning of contacts that are pressed far more than the loads apply; `largest_stress` was measured on the boundaries
+/// during the run (Pa). Where memory has run out, what was run is all that counts.
+void warn_of_contacts(const Model& model, const State& state, double largest_stress, RunReport& report);
+
+/// Puts the warnings of the scene and of its body before those of the run, as the summary has them.
+void add_earlier_warnings(const Scene& scene, const Model& model, RunReport& report);
+
+/// What a run has come to, in one line.
+[[nodiscard]] std::string closing_line(const RunReport& report, const RunSummary& summary,
+                                       const std::filesystem::path& directory);
+
+} // namespace kluft

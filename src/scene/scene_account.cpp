@@ -1,0 +1,158 @@
+#include "kluft/scene/scene_account.hpp"
+
+#include <algorithm>
+#include <numbers>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "kluft/assembly/block_matrix.hpp"
+#include "kluft/assembly/linear_solver.hpp"
+#include "kluft/constitutive/lattice_stiffness.hpp"
+#include "kluft/kinematics/affine.hpp"
+
+namespace kluft {
+
+namespace {
+
+constexpr double degrees = 180.0 / std::numbers::pi;
+
+using Lines = std::vector<SceneAccount::Line>;
+
+void say_blocks(const Scene& scene, const SceneModel& built, Lines& lines) {
+    const BlockSystem& system = built.model.system;
+    const Vec2 extent = system.upper - system.lower;
+    lines.push_back({"body", fmt::format("{:.6g} m x {:.6g} m, plane {}", extent.x(), extent.y(),
+                                         scene.plane == Plane::strain ? "strain" : "stress")});
+    lines.push_back({"blocks", fmt::format("{}", system.n_blocks())});
+    lines.push_back({"unknowns", fmt::format("{}", unknowns_per_block(scene.kinematics) * system.n_blocks())});
+    lines.push_back({"interfaces", fmt::format("{}", system.n_interfaces())});
+    for (std::size_t t = 0; t < scene.interface_types.size(); ++t) {
+        const auto count = std::ranges::count(system.interfaces, static_cast<int>(t), &Interface::interface_type);
+        if (count == 0) continue;
+        lines.push_back({{},
+                         fmt::format("  {:<16} {:>7}  {}", scene.interface_types[t].name, count,
+                                     built.model.bonds[t] ? "potential crack" : "fracture")});
+    }
+}
+
+void say_cut(const CutReport& cut, Lines& lines) {
+    lines.push_back({"smallest", fmt::format("area {:.4g} m2, edge {:.4g} m, angle {:.4g} deg", cut.smallest_area,
+                                             cut.smallest_edge, cut.smallest_angle * degrees)});
+    lines.push_back({"mended", fmt::format("{} slivers merged, {} short edges collapsed, {} ends pruned",
+                                           cut.merged.size(), cut.collapsed_edges, cut.pruned_ends)});
+    constexpr std::size_t most_listed = 10;
+    for (std::size_t i = 0; i < std::min(most_listed, cut.merged.size()); ++i) {
+        lines.push_back({{},
+                         fmt::format("  merged {:.3g} m2 at ({:.6g}, {:.6g})", cut.merged[i].area, cut.merged[i].at.x(),
+                                     cut.merged[i].at.y())});
+    }
+    if (cut.merged.size() > most_listed)
+        lines.push_back({{}, fmt::format("  and {} more", cut.merged.size() - most_listed)});
+}
+
+void say_stiffness(const Scene& scene, const Model& model, Lines& lines) {
+    const double d = model.system.spacing;
+    for (std::size_t t = 0; t < scene.interface_types.size(); ++t) {
+        const auto& [normal, shear] = model.given_stiffness[t];
+        lines.push_back({"stiffness", fmt::format("{}: k_n {:.4g} Pa/m, k_s {:.4g} Pa/m, k_n d/E {:.4g}",
+                                                  scene.interface_types[t].name, normal, shear,
+                                                  normal * d / scene.materials.front().youngs_modulus)});
+    }
+    for (std::size_t t = 0; t < model.laws.size(); ++t) {
+        const InterfaceLaw& law = model.laws[t];
+        if (t >= scene.interface_types.size() && model.net.kind == NetKind::triangles) break; // of other spacings
+        if (law.normal_stiffness == model.given_stiffness[t].normal) continue;
+        lines.push_back(
+            {{},
+             fmt::format("             {}{}: k_n {:.4g} Pa/m, k_s {:.4g} Pa/m with the compliance of the rigid blocks",
+                         scene.interface_types[model.law_types[t]].name,
+                         t < scene.interface_types.size() ? "" : " of a broken hexagon edge", law.normal_stiffness,
+                         law.shear_stiffness)});
+    }
+    if (!scene.geometry.tessellation) return;
+    const InterfaceLaw& net = model.laws[scene.geometry.tessellation->interface_type];
+    for (std::size_t m = 0; m < model.moduli.size(); ++m) {
+        const InterfaceStiffness stiffness{.normal = net.normal_stiffness, .shear = net.shear_stiffness};
+        const auto lattice = model.kinematics == Kinematics::rigid
+                                 ? rigid_lattice_moduli(stiffness, model.net, model.plane)
+                                 : lattice_moduli(model.moduli[m], stiffness, model.net, model.plane);
+        lines.push_back({"lattice", fmt::format("{}: E {:.4g} Pa, nu {:.4g}", scene.materials[m].name,
+                                                lattice.youngs_modulus, lattice.poissons_ratio)});
+    }
+}
+
+/// Largest memory of a run with a factor of so many bytes, fitted to measured ones: "Memory" in docs/theory.md.
+double estimated_memory(const Scene& scene, const Model& model, double factor) {
+    constexpr double program = 28e6;
+    constexpr double per_block = 7.4e3;
+    constexpr double per_fracture = 2.2e3; // interface that is no bond
+    constexpr double pictures = 48e6;      // with the program; they are drawn when the factor is gone
+    constexpr double pictures_per_block = 2.6e3;
+    const BlockSystem& system = model.system;
+    const auto n_fractures = std::ranges::count_if(
+        system.interfaces, [&](const Interface& interface) { return model.bonds[law_of(interface)] == 0; });
+    const double run =
+        program + per_block * system.n_blocks() + per_fracture * static_cast<double>(n_fractures) + factor;
+    return scene.output.pictures ? std::max(run, pictures + pictures_per_block * system.n_blocks()) : run;
+}
+
+double say_memory(const Scene& scene, const Model& model, Lines& lines) {
+    std::vector<std::pair<int, int>> pairs;
+    for (const Interface& interface : model.system.interfaces) pairs.emplace_back(interface.block_a, interface.block_b);
+    const FactorCost cost = factor_cost(BlockPattern(model.system.n_blocks(), pairs, model.kinematics));
+    const bool unsymmetric_factors = scene.solver.tangent == Tangent::unsymmetric && !scene.solver.reuse;
+    const double factor = (unsymmetric_factors ? 3.0 : 1.0) * cost.bytes;
+    const double memory = estimated_memory(scene, model, factor);
+    lines.push_back(
+        {"memory", fmt::format("about {:.3g} MB, of which the factor {:.3g} MB ({:.3g} flops by Cholesky's method)",
+                               1e-6 * memory, 1e-6 * factor, cost.flops)});
+    return memory;
+}
+
+/// A laterally loaded body under a platen is most often a cylinder.
+bool looks_like_a_triaxial_test(const Scene& scene) {
+    const bool platen = std::ranges::any_of(scene.loads.stages, [](const Stage& s) { return s.motion.has_value(); });
+    const bool pressed = std::ranges::any_of(scene.loads.stages, [](const Stage& s) { return s.pressure.size() >= 2; });
+    return platen && pressed;
+}
+
+} // namespace
+
+SceneAccount account_of(const Scene& scene, const SceneModel& built) {
+    SceneAccount account;
+    Lines& lines = account.lines;
+    account.blocks = built.model.system.n_blocks();
+    account.interfaces = built.model.system.n_interfaces();
+    account.unknowns = unknowns_per_block(scene.kinematics) * account.blocks;
+    account.smallest_area = built.cut.smallest_area;
+    account.smallest_edge = built.cut.smallest_edge;
+    account.smallest_angle = built.cut.smallest_angle;
+    account.merged = static_cast<int>(built.cut.merged.size());
+    lines.push_back({"scene", scene.name + (scene.title.empty() ? "" : ": " + scene.title)});
+    say_blocks(scene, built, lines);
+    say_cut(built.cut, lines);
+    say_stiffness(scene, built.model, lines);
+    account.memory_bytes = say_memory(scene, built.model, lines);
+    for (const Stage& stage : scene.loads.stages)
+        lines.push_back({"stage", fmt::format("{}: {} steps", stage.name, stage.steps)});
+    account.warnings = scene.warnings;
+    account.warnings.insert(account.warnings.end(), built.model.warnings.begin(), built.model.warnings.end());
+    if (looks_like_a_triaxial_test(scene)) {
+        account.warnings.push_back(
+            fmt::format("a triaxial test is run in plane {}; a cylinder has the lateral pressure all around and no "
+                        "plane of the section is free of the others",
+                        scene.plane == Plane::strain ? "strain" : "stress"));
+    }
+    return account;
+}
+
+std::string text_of(const SceneAccount& account) {
+    std::string text;
+    for (const auto& [name, line] : account.lines)
+        text += name.empty() ? fmt::format("{}\n", line) : fmt::format("{:<13}{}\n", name, line);
+    for (const std::string& warning : account.warnings) text += fmt::format("warning: {}\n", warning);
+    return text;
+}
+
+} // namespace kluft

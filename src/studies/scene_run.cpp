@@ -1,0 +1,122 @@
+#include "kluft/studies/scene_run.hpp"
+
+#include <new>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "kluft/core/diagnostics.hpp"
+#include "kluft/kinematics/affine.hpp"
+#include "kluft/reference/explicit_simulation.hpp"
+#include "kluft/scene/scene_as_run.hpp"
+#include "kluft/simulation/contact_pressure.hpp"
+#include "kluft/simulation/fingerprint.hpp"
+#include "kluft/simulation/measurements.hpp"
+#include "kluft/simulation/simulation.hpp"
+#include "kluft/simulation/strength_reduction.hpp"
+#include "kluft/studies/earlier_results.hpp"
+
+namespace kluft {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr int unknowns_worth_threads = 20000;
+
+std::string peak_in_words(const CurveNumbers& numbers) {
+    if (numbers.net_locked)
+        return " before the net locked (its loose cells carry more without a bond: no strength of the rock)";
+    return numbers.peak_reached ? "" : fmt::format(" ({})", peak_remark(numbers));
+}
+
+} // namespace
+
+bool needs_one_blas_thread(const Scene& scene, const Model& model) {
+    const int unknowns = unknowns_per_block(model.kinematics) * model.system.n_blocks();
+    return scene.solver.repeatable || unknowns < unknowns_worth_threads;
+}
+
+RunWriterOptions run_writer_options(const Scene& scene, const Model& model) {
+    RunWriterOptions options;
+    options.fields = scene.output.fields;
+    options.fields_every = scene.output.fields_every;
+    options.pictures = scene.output.pictures;
+    options.checkpoint_every = scene.output.checkpoint_every;
+    options.checkpoint_seconds = scene.output.checkpoint_seconds;
+    options.title = scene.title.empty() ? scene.name : scene.title;
+    options.fingerprint = fingerprint(model);
+    options.scene_text = scene.text;
+    const int platen_stage = make_gauges(model).first_platen_stage;
+    if (platen_stage >= 0) options.platen_stage = platen_stage;
+    options.plane = scene.plane;
+    options.strength_factor = reduction_of(model.loads, 0) != nullptr;
+    options.motion = scene.integrator == Integrator::explicit_motion;
+    options.history_columns = history_columns(model);
+    for (const Material& material : scene.materials) options.material_names.push_back(material.name);
+    for (const InterfaceType& type : scene.interface_types) options.interface_type_names.push_back(type.name);
+    for (const FractureTrace& fracture : scene.geometry.fractures) options.fracture_names.push_back(fracture.name);
+    for (const int type : model.law_types) options.law_names.push_back(scene.interface_types[type].name);
+    return options;
+}
+
+std::string scene_file_for(const fs::path& directory, const Scene& scene, bool may_replace) {
+    if (!may_replace) require_no_other_results(directory, scene);
+    return has_own_scene_file(directory, scene) ? "" : write_scene_as_run(scene);
+}
+
+double earlier_cpu_s(const fs::path& directory) {
+    try {
+        return read_summary(directory / "summary.json").cpu_s;
+    } catch (const InputError&) {
+        return 0.0; // the run before was killed
+    }
+}
+
+RunReport run_stages(const Model& model, const Scene& scene, State& state, StepObserver& observer,
+                     const std::atomic<bool>& stop) {
+    if (scene.integrator == Integrator::explicit_motion) {
+        return run_explicit(model, scene.cracks, scene.solver, scene.explicit_options, state, observer, stop);
+    }
+    return run_simulation(model, scene.cracks, scene.solver, state, observer, stop);
+}
+
+void warn_of_contacts(const Model& model, const State& state, double largest_stress, RunReport& report) {
+    if (report.status == RunStatus::out_of_resources || report.status == RunStatus::interrupted) return;
+    try {
+        const std::string warning = contact_pressure_warning(model, state, largest_stress);
+        if (!warning.empty()) report.warnings.push_back(warning);
+    } catch (const std::bad_alloc&) {
+        return;
+    }
+}
+
+void add_earlier_warnings(const Scene& scene, const Model& model, RunReport& report) {
+    std::vector<std::string> warnings = scene.warnings;
+    warnings.insert(warnings.end(), model.warnings.begin(), model.warnings.end());
+    report.warnings.insert(report.warnings.begin(), warnings.begin(), warnings.end());
+}
+
+std::string closing_line(const RunReport& report, const RunSummary& summary, const fs::path& directory) {
+    std::string text = status_name(report.status);
+    if (summary.platen_stage && summary.numbers.peak_stress) {
+        text += fmt::format(": peak axial stress {:.4g} MPa at {:.4g} %{}", 1e-6 * *summary.numbers.peak_stress,
+                            100.0 * summary.numbers.peak_strain.value_or(0.0), peak_in_words(summary.numbers));
+        if (const int n = summary.numbers.jumps_to_peak; n > 0)
+            text += fmt::format(" after {} {}", n, n == 1 ? "jump" : "jumps");
+    }
+    if (!report.remark.empty()) text += ", " + report.remark;
+    if (report.results.factor_of_safety)
+        text += fmt::format(", factor of safety {:.6g}", *report.results.factor_of_safety);
+    if (summary.results.estimated_error)
+        text += fmt::format(", estimated error {:.2g} %", 100.0 * *summary.results.estimated_error);
+    const std::string work = report.motion ? fmt::format("{} time steps", report.motion->time_steps)
+                                           : fmt::format("{} solves", summary.costs.open_close_iterations);
+    text += fmt::format(", {} tension and {} shear cracks, {}, {:.1f} s; results in {}", summary.numbers.cracks_tension,
+                        summary.numbers.cracks_shear, work, summary.costs.elapsed_s, directory.string());
+    if (summary.numbers.unbalanced_steps > 0)
+        text += fmt::format("; {} steps unbalanced", summary.numbers.unbalanced_steps);
+    return text;
+}
+
+} // namespace kluft
