@@ -190,8 +190,10 @@ public:
             const FieldRecord record = fields_of_state(model(), state_);
             StepRecord row;
             row.step = state_.at.step;
-            blocks = blocks_vtu(model().system, record, writer_options_.material_names, row);
-            interfaces = interfaces_vtu(model().system, record, row);
+            const FieldNames names{writer_options_.material_names, writer_options_.interface_type_names,
+                                   writer_options_.fracture_names};
+            blocks = blocks_vtu(model().system, record, names, row);
+            interfaces = interfaces_vtu(model().system, record, names, row);
         }
         return {py::bytes(blocks), py::bytes(interfaces)};
     }

@@ -109,9 +109,7 @@ def trials_of(bench, kind, options, seconds):
 
 
 def version(bench):
-    text = subprocess.run([bench.kluft, "--version"], capture_output=True, text=True).stdout.strip()
-    commit = subprocess.run(["git", "-C", ROOT, "rev-parse", "--short", "HEAD"], capture_output=True, text=True).stdout.strip()
-    return f"{text}{f' ({commit})' if commit else ''}"
+    return subprocess.run([bench.kluft, "--version"], capture_output=True, text=True).stdout.strip()
 
 
 def main():

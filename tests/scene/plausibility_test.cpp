@@ -32,34 +32,37 @@ stages:
   - {strain: {boundary: top, value: 1 %}}
 )";
 
-std::vector<std::string> warnings_with(const std::vector<std::string>& changes) {
+std::vector<std::string> warnings_of_block_with(const std::vector<std::string>& changes) {
     return read_scene_text(pressed_block, changes).warnings;
 }
 
 TEST(ImplausibleValues, RockAndJointsOfUsualValuesAreTakenWithoutAWord) {
-    EXPECT_THAT(warnings_with({}), IsEmpty());
-    EXPECT_THAT(warnings_with({"materials.rock.youngs_modulus=20 MPa", "materials.rock.density=1500"}), IsEmpty());
-    EXPECT_THAT(warnings_with({"interfaces.joint.normal_stiffness=1e13"}), IsEmpty());
+    EXPECT_THAT(warnings_of_block_with({}), IsEmpty());
+    EXPECT_THAT(warnings_of_block_with({"materials.rock.youngs_modulus=20 MPa", "materials.rock.density=1500"}),
+                IsEmpty());
+    EXPECT_THAT(warnings_of_block_with({"interfaces.joint.normal_stiffness=1e13"}), IsEmpty());
 }
 
 TEST(ImplausibleValues, LostUnitsAreTold) {
-    EXPECT_THAT(warnings_with({"materials.rock.youngs_modulus=15"}),
+    EXPECT_THAT(warnings_of_block_with({"materials.rock.youngs_modulus=15"}),
                 ElementsAre(AllOf(HasSubstr("materials.rock.youngs_modulus: 15 Pa is softer than any rock or soil"),
                                   HasSubstr("15 GPa?"))));
-    EXPECT_THAT(warnings_with({"materials.rock.youngs_modulus=15e6 MPa"}), ElementsAre(HasSubstr("than diamond")));
-    EXPECT_THAT(warnings_with({"materials.rock.density=2.6"}), ElementsAre(HasSubstr("the density of no rock")));
-    EXPECT_THAT(warnings_with({"interfaces.joint.normal_stiffness=1e15"}),
+    EXPECT_THAT(warnings_of_block_with({"materials.rock.youngs_modulus=15e6 MPa"}),
+                ElementsAre(HasSubstr("than diamond")));
+    EXPECT_THAT(warnings_of_block_with({"materials.rock.density=2.6"}),
+                ElementsAre(HasSubstr("the density of no rock")));
+    EXPECT_THAT(warnings_of_block_with({"interfaces.joint.normal_stiffness=1e15"}),
                 ElementsAre(HasSubstr("interfaces.joint.normal_stiffness: 1e+15 Pa/m is stiffer than a millimetre")));
 }
 
 TEST(ImplausibleValues, PressureOnOneSideIsToldWhereNothingStandsAgainstIt) {
-    EXPECT_THAT(warnings_with({"stages.0.pressure.right=null"}),
+    EXPECT_THAT(warnings_of_block_with({"stages.0.pressure.right=null"}),
                 ElementsAre(AllOf(StartsWith("scene.yaml:12:"), HasSubstr("stages.0.pressure.left: nothing stands"),
                                   HasSubstr("right has neither a pressure nor a support"))));
-    EXPECT_THAT(warnings_with({"stages.0.pressure.right=null", "boundaries.right.support=smooth"}), IsEmpty());
-    EXPECT_THAT(warnings_with({"stages.0.pressure.right=null", "boundaries.bottom.support=fixed"}), IsEmpty());
-    EXPECT_THAT(warnings_with({"stages.0.pressure.right=null", "stages.1.platens=rough"}), IsEmpty());
-    EXPECT_THAT(warnings_with({"stages.0.pressure.left=0", "stages.0.pressure.right=0"}), IsEmpty());
+    EXPECT_THAT(warnings_of_block_with({"stages.0.pressure.right=null", "boundaries.right.support=smooth"}), IsEmpty());
+    EXPECT_THAT(warnings_of_block_with({"stages.0.pressure.right=null", "boundaries.bottom.support=fixed"}), IsEmpty());
+    EXPECT_THAT(warnings_of_block_with({"stages.0.pressure.right=null", "stages.1.platens=rough"}), IsEmpty());
+    EXPECT_THAT(warnings_of_block_with({"stages.0.pressure.left=0", "stages.0.pressure.right=0"}), IsEmpty());
 }
 
 } // namespace
