@@ -9,7 +9,9 @@ namespace kluft {
 
 ExitCode check(const CheckArguments& arguments) {
     const Scene scene = read_scene(arguments.scene, arguments.overrides);
-    say_text(text_of(account_of(scene, build_scene_model(scene))));
+    const SceneModel built = build_scene_model(scene);
+    const SceneAccount account = account_of(scene, built);
+    say_text(arguments.json ? json_of(account, scene, built) : text_of(account));
     return ExitCode::done;
 }
 

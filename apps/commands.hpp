@@ -35,6 +35,7 @@ struct RunArguments {
 struct CheckArguments {
     std::string scene;
     std::vector<std::string> overrides;
+    bool json = false;
 };
 
 [[nodiscard]] ExitCode check(const CheckArguments& arguments);

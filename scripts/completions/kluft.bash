@@ -41,7 +41,7 @@ _kluft() {
     local options="--help"
     case "$command" in
     run) options+=" -o --output --set --threads --quiet --resume --force" ;;
-    check) options+=" --set" ;;
+    check) options+=" --set --json" ;;
     draw) options+=" -o --output --curve --blocks --step --field --scale --window --mark --limit --title --set" ;;
     compare) options+=" -o --output --tolerance" ;;
     envelope) options+=" -o --output --tension --compare --title" ;;

@@ -23,6 +23,7 @@
 #include "kluft/blocks/voronoi_cells.hpp"
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/core/memory.hpp"
+#include "kluft/core/place_text.hpp"
 #include "kluft/geometry/polygon.hpp"
 #include "kluft/geometry/predicates.hpp"
 #include "kluft/geometry/segment_grid.hpp"
@@ -209,8 +210,8 @@ std::string flaw_of_outline(const GeometrySpec& spec, const std::vector<SourceSe
             if (!local) continue;
             const Vec2 at = origin + *local;
             const bool same = sides[i].polygon == sides[j].polygon;
-            return fmt::format("{} crosses or touches {} at ({:.6g}, {:.6g})", sides[i].name(),
-                               same ? "itself" : sides[j].name(), at.x(), at.y());
+            return fmt::format("{} crosses or touches {} at {}", sides[i].name(), same ? "itself" : sides[j].name(),
+                               place_text(at));
         }
     }
     return "the outline or a hole crosses or touches itself or another";
@@ -222,8 +223,8 @@ void check_outline(const GeometrySpec& spec, const std::vector<SourceSegment>& s
     for (std::size_t i = 0; i < segments.size(); ++i) {
         if (segments[i].a != segments[i].b) continue;
         const Vec2 at = origin + segments[i].a;
-        throw InputError(fmt::format("{}: two successive points of {} are the same, ({:.6g}, {:.6g})",
-                                     spec.places.domain, sides[i].name(), at.x(), at.y()));
+        throw InputError(fmt::format("{}: two successive points of {} are the same, {}", spec.places.domain,
+                                     sides[i].name(), place_text(at)));
     }
     const PlanarMap map = arrange(segments);
     const int n_vertices = static_cast<int>(map.positions.size());
@@ -243,9 +244,8 @@ void check_outline(const GeometrySpec& spec, const std::vector<SourceSegment>& s
         const auto [a, b] = faces_of(first);
         const Vec2& at = spec.holes[i].front();
         if (a != body && b != body)
-            throw InputError(
-                fmt::format("{}: hole {}, from ({:.6g}, {:.6g}) on, lies outside the outline or inside another",
-                            spec.places.domain, i, at.x(), at.y()));
+            throw InputError(fmt::format("{}: hole {}, from {} on, lies outside the outline or inside another",
+                                         spec.places.domain, i, place_text(at)));
         first += static_cast<int>(spec.holes[i].size());
     }
 }

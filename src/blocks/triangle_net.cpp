@@ -27,6 +27,7 @@
 
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/core/mixed_bits.hpp"
+#include "kluft/core/place_text.hpp"
 
 namespace kluft {
 
@@ -437,8 +438,8 @@ void refine(Triangulation& triangulation, const std::vector<Kernel::Point_2>& ho
         if (triangulation.number_of_vertices() <= most) continue;
         const Vec2 last = frame.origin + place_of(std::prev(triangulation.finite_vertices_end()));
         throw InputError(fmt::format("{}: lines lie so close to each other that triangles without small angles are too "
-                                     "many, at about ({:.6g}, {:.6g})",
-                                     frame.places.net, last.x(), last.y()));
+                                     "many, at about {}",
+                                     frame.places.net, place_text(last)));
     }
 }
 

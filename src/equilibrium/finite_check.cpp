@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "kluft/blocks/block_search.hpp"
+#include "kluft/core/place_text.hpp"
 
 namespace kluft {
 
@@ -13,7 +14,7 @@ namespace {
 
 std::string placed_block(const BlockSystem& system, int b) {
     const Vec2 at = system.origin + system.blocks[b].centroid;
-    return fmt::format("block {} at ({:.6g}, {:.6g})", block_label(system, b), at.x(), at.y());
+    return fmt::format("block {} at {}", block_label(system, b), place_text(at));
 }
 
 NumberFlaw flaw_of_block(const BlockSystem& system, const char* quantity, int b) {

@@ -5,10 +5,12 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "kluft/assembly/block_matrix.hpp"
 #include "kluft/assembly/linear_solver.hpp"
 #include "kluft/constitutive/lattice_stiffness.hpp"
+#include "kluft/core/place_text.hpp"
 #include "kluft/kinematics/affine.hpp"
 
 namespace kluft {
@@ -43,9 +45,8 @@ void say_cut(const CutReport& cut, Lines& lines) {
                                            cut.merged.size(), cut.collapsed_edges, cut.pruned_ends)});
     constexpr std::size_t most_listed = 10;
     for (std::size_t i = 0; i < std::min(most_listed, cut.merged.size()); ++i) {
-        lines.push_back({{},
-                         fmt::format("  merged {:.3g} m2 at ({:.6g}, {:.6g})", cut.merged[i].area, cut.merged[i].at.x(),
-                                     cut.merged[i].at.y())});
+        lines.push_back(
+            {{}, fmt::format("  merged {:.3g} m2 at {}", cut.merged[i].area, place_text(cut.merged[i].at))});
     }
     if (cut.merged.size() > most_listed)
         lines.push_back({{}, fmt::format("  and {} more", cut.merged.size() - most_listed)});
@@ -153,6 +154,38 @@ std::string text_of(const SceneAccount& account) {
         text += name.empty() ? fmt::format("{}\n", line) : fmt::format("{:<13}{}\n", name, line);
     for (const std::string& warning : account.warnings) text += fmt::format("warning: {}\n", warning);
     return text;
+}
+
+std::string json_of(const SceneAccount& account, const Scene& scene, const SceneModel& built) {
+    using Json = nlohmann::ordered_json;
+    Json json{{"scene", scene.name},
+              {"title", scene.title},
+              {"plane", scene.plane == Plane::strain ? "strain" : "stress"},
+              {"kinematics", scene.kinematics == Kinematics::affine ? "affine" : "rigid"},
+              {"blocks", account.blocks},
+              {"interfaces", account.interfaces},
+              {"unknowns", account.unknowns},
+              {"smallest_area", account.smallest_area},
+              {"smallest_edge", account.smallest_edge},
+              {"smallest_angle", account.smallest_angle * degrees},
+              {"merged", Json::array()},
+              {"interface_types", Json::array()},
+              {"stages", Json::array()},
+              {"memory_bytes", account.memory_bytes},
+              {"warnings", account.warnings}};
+    for (const auto& sliver : built.cut.merged)
+        json["merged"].push_back({{"area", sliver.area}, {"x", sliver.at.x()}, {"y", sliver.at.y()}});
+    const Model& model = built.model;
+    for (std::size_t t = 0; t < scene.interface_types.size(); ++t)
+        json["interface_types"].push_back(
+            {{"name", scene.interface_types[t].name},
+             {"kind", model.bonds[t] ? "potential_crack" : "fracture"},
+             {"count", std::ranges::count(model.system.interfaces, static_cast<int>(t), &Interface::interface_type)},
+             {"normal_stiffness", model.given_stiffness[t].normal},
+             {"shear_stiffness", model.given_stiffness[t].shear}});
+    for (const Stage& stage : scene.loads.stages)
+        json["stages"].push_back({{"name", stage.name}, {"steps", stage.steps}});
+    return json.dump(2) + "\n";
 }
 
 } // namespace kluft

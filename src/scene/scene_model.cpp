@@ -11,6 +11,7 @@
 
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/core/memory.hpp"
+#include "kluft/core/place_text.hpp"
 #include "kluft/geometry/polygon.hpp"
 
 namespace kluft {
@@ -80,11 +81,11 @@ std::vector<std::string> fine_details(const GeometrySpec& geometry, const CutRep
         const std::string what = detail.is_whole_hole ? hole
                                  : detail.hole < 0    ? std::string("a side of the outline")
                                                       : "a side of " + hole;
-        warnings.push_back(fmt::format(
-            "{}: {} at ({:.6g}, {:.6g}) is {:.3g} m {}, less than {:.3g} m, the smallest length that the net "
-            "resolves: triangles as small as that lie around it, and the run may fail there",
-            geometry.places.domain, what, detail.at.x(), detail.at.y(), detail.size,
-            detail.is_whole_hole ? "wide" : "long", report.resolution));
+        warnings.push_back(
+            fmt::format("{}: {} at {} is {:.3g} m {}, less than {:.3g} m, the smallest length that the net "
+                        "resolves: triangles as small as that lie around it, and the run may fail there",
+                        geometry.places.domain, what, place_text(detail.at), detail.size,
+                        detail.is_whole_hole ? "wide" : "long", report.resolution));
     }
     return warnings;
 }

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "kluft/blocks/block_search.hpp"
+#include "kluft/core/place_text.hpp"
 #include "kluft/kinematics/affine.hpp"
 #include "kluft/loading/loaded_body.hpp"
 #include "kluft/simulation/state_fields.hpp"
@@ -71,11 +72,11 @@ std::string contact_pressure_warning(const Model& model, const State& state, dou
     const PressedContact found = largest_contact_pressure(model, state);
     if (!(applied > 0.0) || !(found.value > plausible_ratio * applied)) return {};
     return fmt::format(
-        "the contact of blocks {} and {} at about ({:.6g}, {:.6g}) is pressed with {:.3g} MPa, {:.0f} "
+        "the contact of blocks {} and {} at about {} is pressed with {:.3g} MPa, {:.0f} "
         "times the largest stress that is applied ({:.3g} MPa): look whether these blocks overlap or are "
         "wedged, or whether a load or a stiffness has a wrong unit",
-        block_label(model.system, found.block_a), block_label(model.system, found.block_b), found.place.x(),
-        found.place.y(), 1e-6 * found.value, found.value / applied, 1e-6 * applied);
+        block_label(model.system, found.block_a), block_label(model.system, found.block_b), place_text(found.place),
+        1e-6 * found.value, found.value / applied, 1e-6 * applied);
 }
 
 } // namespace kluft

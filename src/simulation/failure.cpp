@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "kluft/blocks/block_search.hpp"
+#include "kluft/core/place_text.hpp"
 #include "kluft/kinematics/affine.hpp"
 #include "kluft/kinematics/rigid.hpp"
 
@@ -21,8 +22,8 @@ constexpr double clear_turn =
 std::string block_description(const BlockSystem& system, int index) {
     const Block& block = system.blocks[index];
     const Vec2 at = system.origin + block.centroid;
-    std::string text = fmt::format("block {} at ({:.6g}, {:.6g}), area {:.3g} m2, interfaces",
-                                   block_label(system, index), at.x(), at.y(), block.area);
+    std::string text = fmt::format("block {} at {}, area {:.3g} m2, interfaces", block_label(system, index),
+                                   place_text(at), block.area);
     for (const Edge& edge : block.edges) {
         if (edge.interface >= 0) text += fmt::format(" {}", edge.interface);
     }

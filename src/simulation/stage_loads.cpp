@@ -11,6 +11,7 @@
 
 #include "kluft/blocks/block_search.hpp"
 #include "kluft/core/diagnostics.hpp"
+#include "kluft/core/place_text.hpp"
 #include "kluft/kinematics/affine.hpp"
 #include "kluft/loading/boundary_geometry.hpp"
 #include "kluft/simulation/strength_reduction.hpp"
@@ -226,9 +227,9 @@ std::string shared_block_message(const Model& model, const Stage& stage, int opp
     const Vec2 at = system.origin + system.blocks[block].centroid;
     return fmt::format(
         "{}: expected a boundary that shares no block with '{}', which rests on the fixed platen opposite to it; found "
-        "'{}' in {}, and the block {} at ({:.6g}, {:.6g}) on both, which cannot follow the one and stay on the other",
+        "'{}' in {}, and the block {} at {} on both, which cannot follow the one and stay on the other",
         stage.motion->place.empty() ? stage.name : stage.motion->place, system.boundaries[opposite].name,
-        system.boundaries[stage.motion->boundary].name, stage.name, block_label(system, block), at.x(), at.y());
+        system.boundaries[stage.motion->boundary].name, stage.name, block_label(system, block), place_text(at));
 }
 
 } // namespace
@@ -253,10 +254,10 @@ void refuse_contradicting_supports(const Model& model) {
         }
         const Vec2 at = system.origin + system.blocks[row->block].centroid;
         throw InputError(fmt::format(
-            "boundaries.{}.support: expected one that leaves the block {} at ({:.6g}, {:.6g}) "
+            "boundaries.{}.support: expected one that leaves the block {} at {} "
             "free to follow the platen on '{}' in {}, as smooth sides do; found one that holds "
             "it",
-            holding, block_label(system, row->block), at.x(), at.y(), system.boundaries[moved].name, stage.name));
+            holding, block_label(system, row->block), place_text(at), system.boundaries[moved].name, stage.name));
     }
 }
 

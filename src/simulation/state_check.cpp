@@ -8,6 +8,7 @@
 
 #include "kluft/blocks/block_search.hpp"
 #include "kluft/contact/detection.hpp"
+#include "kluft/core/place_text.hpp"
 #include "kluft/kinematics/affine.hpp"
 
 namespace kluft {
@@ -16,7 +17,7 @@ namespace {
 
 std::string block_text(const BlockSystem& system, int b) {
     const Vec2 at = system.origin + system.blocks[b].centroid;
-    return fmt::format("block {} at ({:.6g}, {:.6g})", block_label(system, b), at.x(), at.y());
+    return fmt::format("block {} at {}", block_label(system, b), place_text(at));
 }
 
 /// Of the extent of a block across an interface: the face of its neighbour is about to leave on the other side.

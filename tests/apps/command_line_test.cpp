@@ -366,6 +366,18 @@ TEST_F(CommandLine, CheckSaysWhatTheQuickStartAmountsTo) {
     EXPECT_FALSE(fs::exists(path("results")));
 }
 
+TEST_F(CommandLine, CheckSaysTheSameToPrograms) {
+    const Result result = kluft({"check", model("triaxial/case-1.yaml"), "--json"});
+    EXPECT_EQ(result.code, 0) << result.err;
+    const auto json = nlohmann::json::parse(result.out);
+    EXPECT_EQ(json.at("blocks"), 4);
+    EXPECT_EQ(json.at("unknowns"), 24);
+    EXPECT_EQ(json.at("plane"), "strain");
+    EXPECT_EQ(json.at("stages").size(), 2U);
+    EXPECT_EQ(json.at("interface_types").at(0).at("kind"), "fracture");
+    EXPECT_FALSE(json.at("warnings").empty());
+}
+
 TEST_F(CommandLine, CheckAcceptsEveryTriaxialCase) {
     int n_cases = 0;
     for (const auto& entry : fs::directory_iterator(model("triaxial"))) {
