@@ -50,7 +50,7 @@ bool DampedIteration::find(StoppingTest& stopping, int patience, int& n_solves, 
         newton_.forget_factor();
         const double largest_residual = std::min(stopping.largest_residual(), damped_linear_residual * at.norm);
         const NewtonPoint point{equations_.evaluator, equations_.border, q,      at.residual, at.prescribed,
-                                options_.tolerance,   largest_residual,  damping};
+                                stopping.tolerance(), largest_residual,  damping};
         if (!newton_.find(point, options_.tangent)) break;
         ++n_solves;
         Eigen::VectorXd next;

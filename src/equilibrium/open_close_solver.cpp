@@ -104,8 +104,8 @@ OpenCloseSummary OpenCloseSolver::solve(const EquilibriumProblem& problem, const
         const bool first = summary.iterations == 0;
         const bool touching =
             first && goal.unloaded && !problem.body.placement->contacts.empty(); // a bonded body has its stiffness
-        const NewtonPoint point{equations.evaluator, equations.border,           q, at.residual, at.prescribed,
-                                options_.tolerance,  stopping.largest_residual()};
+        const NewtonPoint point{equations.evaluator,  equations.border,           q, at.residual, at.prescribed,
+                                stopping.tolerance(), stopping.largest_residual()};
         if (!newton_.find(point, touching ? TangentKind::touching : options_.tangent)) {
             summary.termination = Termination::singular;
             return summary;

@@ -54,7 +54,7 @@ UnbalancedBlocks unbalanced_blocks(const Equations& equations, const Eigen::Vect
 } // namespace
 
 StoppingTest::StoppingTest(const OpenCloseOptions& options, const IterationGoal& goal, OpenCloseSummary& summary)
-    : summary_(summary), tolerance_(options.tolerance), block_tolerance_(goal.block_tolerance),
+    : summary_(summary), tolerance_(goal.tolerance_share * options.tolerance), block_tolerance_(goal.block_tolerance),
       relaxed_share_(relaxed_share * std::min(1.0, tolerance_ / usual_tolerance)),
       max_iterations_(options.max_iterations), relaxes_(goal.aim == Aim::relaxation) {
     if (relaxes_) max_iterations_ = std::min(relaxation_iterations, max_iterations_);

@@ -27,6 +27,8 @@ public:
     /// Of the iterate that was judged last, where the body as a whole meets the tolerance.
     [[nodiscard]] const UnbalancedBlocks& unbalanced() const { return unbalanced_; }
 
+    /// Of the forces of all blocks, over F_ref.
+    [[nodiscard]] double tolerance() const { return tolerance_; }
     /// What a linear solve may leave where only single blocks are not balanced (N/m).
     [[nodiscard]] double largest_residual() const;
     /// Forces that need not be put right before the next linear solve (N/m).

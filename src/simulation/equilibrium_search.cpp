@@ -14,6 +14,8 @@ namespace {
 constexpr double eta_decay = 0.1;    ///< from round to round: what a body that stands leaves over falls with it
 constexpr int rounds_with_decay = 3; ///< then it stays: what nothing else holds needs it
 constexpr int max_rounds = 40;       ///< of one search, as long as what is left over falls
+constexpr double sharpening = 0.1;   ///< of the tolerance, where what a solve leaves adds up over a group of blocks
+constexpr double sharpest = 1e-5;    ///< of the tolerance
 constexpr int rounds_that_open = 12; ///< points of platens: then they may only close
 constexpr int max_platen_rounds = 24;
 constexpr double share_of_solve = 0.1; ///< of what may be left over on a block: largest residual of a solve
@@ -140,13 +142,13 @@ Equilibrium EquilibriumSearch::find_held(EquilibriumProblem problem, Eigen::Vect
     return found;
 }
 
-/// The mass-like term must not change the answer: solve again from the result until what is left over on each block is
-/// small, or does not fall any more.
+/// The mass-like term must not change the answer: solve again from the result until what is left over on each block and
+/// group is small, or does not fall any more. Where a solve finds nothing to do, a tenth of its tolerance is asked for.
 void EquilibriumSearch::settle(EquilibriumProblem& problem, const BlockGoal& balance, Equilibrium& found) {
     found.viscous_share = viscous_share(problem, found.displacement, found.summary.force_scale);
     found.blocks = block_balance(problem.body, found.displacement);
     found.verdict = judge_blocks(found.blocks, nullptr, balance);
-    const IterationGoal goal{.block_tolerance = share_of_solve * balance.share};
+    IterationGoal goal{.block_tolerance = share_of_solve * balance.share};
     for (int round = 0; round < max_rounds && !is_balanced(found, balance); ++round) {
         problem.start = found.displacement;
         if (round < rounds_with_decay)
@@ -155,6 +157,10 @@ void EquilibriumSearch::settle(EquilibriumProblem& problem, const BlockGoal& bal
         OpenCloseSummary summary = open_close_.solve(problem, pattern_, next, goal);
         found.iterations += summary.iterations;
         if (!summary.converged()) break;
+        if (next == found.displacement && goal.tolerance_share > sharpest) {
+            goal.tolerance_share *= sharpening;
+            continue;
+        }
         BlockBalance blocks = block_balance(problem.body, next);
         found.verdict = judge_blocks(blocks, &found.blocks, balance);
         if (!found.verdict.balanced() && !found.verdict.falls) break;

@@ -104,6 +104,21 @@ TEST(OpenCloseSolver, SymmetricTangentLeadsToTheSameEquilibrium) {
     }
 }
 
+// What a solve has nothing to do about is put right by one that is asked for a share of the tolerance, however coarse that is.
+TEST(OpenCloseSolver, AskedForAShareOfItsToleranceItLeavesAShareOfTheForces) {
+    const PressedBody body(false, {1, 0});
+    const BlockPattern pattern = pattern_of(body.problem);
+    LinearSolver linear;
+    linear.analyze(pattern);
+    OpenCloseSolver solver(linear, {.tolerance = 1e-2});
+    Eigen::VectorXd q = at_rest(body.system);
+    ASSERT_TRUE(solver.solve(body.problem, pattern, q, {.unloaded = true}).converged());
+    EXPECT_EQ(solver.solve(body.problem, pattern, q, {}).iterations, 0);
+    const OpenCloseSummary sharper = solver.solve(body.problem, pattern, q, {.tolerance_share = 1e-7});
+    EXPECT_TRUE(sharper.converged());
+    EXPECT_LE(sharper.residual_ratio, 1e-9);
+}
+
 // A block beside the fracture is moved by so little that the body as a whole still meets the tolerance; it and those that it
 // pushes do not. They are put right without a linear solve of all blocks, to the equilibrium that is found without the move.
 TEST(OpenCloseSolver, SingleBlocksAreBalancedByThemselves) {

@@ -36,6 +36,7 @@ struct IterationGoal {
     bool given_loads = false;
     /// Largest residual of a block over its own force (block_balance.hpp), beside the tolerance for all together.
     double block_tolerance = std::numeric_limits<double>::infinity();
+    double tolerance_share = 1.0; ///< of the tolerance for all together, that is asked for
 };
 
 enum class Termination {
