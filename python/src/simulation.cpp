@@ -23,6 +23,7 @@
 
 #include "kluft/assembly/blas.hpp"
 #include "kluft/core/diagnostics.hpp"
+#include "kluft/core/processor_time.hpp"
 #include "kluft/core/version.hpp"
 #include "kluft/kinematics/affine.hpp"
 #include "kluft/output/directory_lock.hpp"

@@ -217,6 +217,8 @@ RunSummary summary_in(const Json& json) {
         count = json.value(name, 0); // an earlier version has fewer
     });
     summary.costs.elapsed_s = optional_number(json, "elapsed_s").value_or(0.0);
+    if (json.contains("loading_cpu_s"))
+        summary.costs.loading_cpu_s = optional_number(json, "loading_cpu_s").value_or(0.0);
     if (json.contains("cpu_s")) summary.cpu_s = optional_number(json, "cpu_s").value_or(0.0);
     json.at("peak_memory_bytes").get_to(summary.peak_memory_bytes);
     json.at("version").get_to(summary.version);
@@ -340,6 +342,7 @@ std::string summary_json(const RunSummary& summary) {
         json["energy_error"] = json_number(summary.motion->energy_error);
     }
     json["elapsed_s"] = json_number(summary.costs.elapsed_s);
+    json["loading_cpu_s"] = json_number(summary.costs.loading_cpu_s);
     json["cpu_s"] = json_number(summary.cpu_s);
     json["peak_memory_bytes"] = summary.peak_memory_bytes;
     json["falling_blocks"] = Json::array();
@@ -373,14 +376,6 @@ RunSummary read_summary(const std::filesystem::path& path) {
     } catch (const InputError& error) {
         throw InputError(path.string() + ": " + error.what());
     }
-}
-
-double processor_seconds() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    constexpr double micro = 1e-6;
-    return static_cast<double>(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
-           micro * static_cast<double>(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
 }
 
 /// Not the maximum of getrusage, in which the program that started this one counts as well.

@@ -59,6 +59,7 @@ RunCosts Journal::costs() const {
     RunCosts costs = report_.costs;
     if (search_ != nullptr) search_->add_costs(costs);
     costs.elapsed_s = elapsed();
+    costs.loading_cpu_s += processor_seconds() - cpu_at_start_;
     return costs;
 }
 

@@ -65,6 +65,7 @@ public:
         read_replicas();
         read_quantities();
         study_.curve = choice("curve", {"true", "false"}) == "true";
+        study_.pictures = choice("pictures", {"false", "true"}) == "true";
         read_along();
         read_reference();
         read_time_limit();

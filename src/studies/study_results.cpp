@@ -329,7 +329,8 @@ CaseResult read_case(const Study& study, const PlannedCase& one, const fs::path&
     if (!is_described(directory, one)) return result;
     const Json summary = json_of(directory / "summary.json");
     const auto outcome = read_outcome(directory);
-    result.cpu_s = outcome && outcome->cpu_s ? outcome->cpu_s : number_in(summary, "cpu_s");
+    result.cpu_s = number_in(summary, "loading_cpu_s");
+    if (!result.cpu_s && outcome) result.cpu_s = outcome->cpu_s; // of a run that was killed
     result.elapsed_s = outcome && outcome->elapsed_s ? outcome->elapsed_s : number_in(summary, "elapsed_s");
     if (judge_summary(summary, result)) {
         result.quantities = quantities_in(summary, study.quantities);

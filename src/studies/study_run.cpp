@@ -159,6 +159,7 @@ std::string study_progress_text(const StudyProgress& progress) {
 std::vector<std::string> case_command(const ReadStudy& read, const PlannedCase& one, const fs::path& program,
                                       const fs::path& directory) {
     std::vector<std::string> words{program, "run", read.study.scene, "-o", case_directory(directory, one)};
+    words.insert(words.end(), {"--set", fmt::format("output.pictures={}", read.study.pictures)});
     for (const auto& setting : one.set) words.insert(words.end(), {"--set", setting.assignment()});
     words.insert(words.end(), {"--threads", "1", "--quiet"});
     return words;

@@ -50,7 +50,7 @@ State state_of(int n_blocks) {
     state.control = {0.01, 2.0, 0.5, 1e-3, 2e-3, 3e-3, 2, {2, 0}};
     state.stresses = {1.2e6, 1.5e6, 1e6, 1, 1.4e6};
     state.is_settled = false;
-    state.costs = {179, 180, 2, 150, 40, 2000, 3, 5, 4, 12.5, {1, 2, 3, 4, 5, 6, 7, 8, 9}};
+    state.costs = {179, 180, 2, 150, 40, 2000, 3, 5, 4, 12.5, 11.5, {1, 2, 3, 4, 5, 6, 7, 8, 9}};
     return state;
 }
 
@@ -102,6 +102,7 @@ void expect_same(const State& a, const State& b) {
     EXPECT_EQ(a.costs.rejected_steps, b.costs.rejected_steps);
     EXPECT_EQ(a.control, b.control);
     EXPECT_EQ(a.costs.elapsed_s, b.costs.elapsed_s);
+    EXPECT_EQ(a.costs.loading_cpu_s, b.costs.loading_cpu_s);
     EXPECT_EQ(a.costs.seconds.detection, b.costs.seconds.detection);
     EXPECT_EQ(a.costs.seconds.observers, b.costs.seconds.observers);
 }

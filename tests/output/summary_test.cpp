@@ -234,6 +234,7 @@ TEST(Summary, HasTheKeysOfTheContractAndNullForWhatIsUnknown) {
                             "factorizations",
                             "analyses",
                             "elapsed_s",
+                            "loading_cpu_s",
                             "cpu_s",
                             "peak_memory_bytes",
                             "version",

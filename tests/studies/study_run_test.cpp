@@ -70,7 +70,7 @@ case $steps in
 88) sleep 100 & trap 'kill $!; exit 130' INT; wait ;;
 99) if [[ ${*: -1} != --resume ]]; then touch "$directory/state.h5"; exit 130; fi ;;
 esac
-echo "{\"status\": \"done\", \"peak_stress\": $steps, \"peak_strain\": null, \"cpu_s\": 1.5}" >"$directory/summary.json"
+echo "{\"status\": \"done\", \"peak_stress\": $steps, \"peak_strain\": null, \"loading_cpu_s\": 1.5}" >"$directory/summary.json"
 )";
 
 std::string content_of(const fs::path& path) {
@@ -276,6 +276,21 @@ TEST_F(StudyRuns, MakefileRunsWhatHasNotEndedAndGathersTheSameTable) {
     EXPECT_EQ(statuses[3], CaseStatus::done);
 }
 
+TEST_F(StudyRuns, CasesHaveTheirPicturesOnlyWhereTheStudyAsksForThem) {
+    const auto words = [&](const std::string& study) {
+        const ReadStudy read_study = read(steps("10") + study);
+        return case_command(read_study, read_study.cases[0], "/opt/kluft", results_);
+    };
+    EXPECT_THAT(words(""), ::testing::Contains("output.pictures=false"));
+    EXPECT_THAT(words("pictures: true\n"), ::testing::Contains("output.pictures=true"));
+}
+
+// What start-up, the cut of the net and pictures take is none of what the load steps cost.
+TEST_F(StudyRuns, CostOfACaseIsThatOfItsLoadSteps) {
+    const StudyTable table = run(steps("10"));
+    EXPECT_EQ(table.cases[0].cpu_s, 1.5);
+}
+
 TEST_F(StudyRuns, JobArrayHasOneJobForEachLineOfCommands) {
     const ReadStudy study = read("vary: {stages.1.steps: [10, 20], interfaces.bond.kind: [potential_crack, fracture], "
                                  "title: [\"it's\", \"$HOME\"]}\n");
@@ -283,7 +298,7 @@ TEST_F(StudyRuns, JobArrayHasOneJobForEachLineOfCommands) {
     const auto lines = lines_of(content_of(results_ / "cases.txt"));
     ASSERT_THAT(lines, SizeIs(4)); // without those that the scene's reader refuses
     EXPECT_EQ(lines[0],
-              fmt::format("/opt/kluft run {} -o {}/cases/{} --set stages.1.steps=10 --set "
+              fmt::format("/opt/kluft run {} -o {}/cases/{} --set output.pictures=false --set stages.1.steps=10 --set "
                           "interfaces.bond.kind=potential_crack --set 'title=\"it'\\''s\"' --threads 1 --quiet",
                           (directory_ / "scene.yaml").string(), results_.string(), study.cases[0].name));
     const std::string next = emit_study("slurm", study, results_, 3, {"collect"});

@@ -94,9 +94,6 @@ void write_summary(const std::filesystem::path& path, const RunSummary& summary)
 /// Reads summary.json back. Throws InputError.
 [[nodiscard]] RunSummary read_summary(const std::filesystem::path& path);
 
-/// Processor time that this program has taken so far, that of the system for it included (s).
-[[nodiscard]] double processor_seconds();
-
 /// Largest memory that this program has had so far (bytes).
 [[nodiscard]] std::int64_t peak_memory_bytes();
 

@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 
 #include "kluft/core/diagnostics.hpp"
+#include "kluft/core/processor_time.hpp"
 #include "kluft/simulation/measurements.hpp"
 #include "kluft/simulation/model.hpp"
 #include "kluft/simulation/run_report.hpp"
@@ -88,6 +89,7 @@ private:
     StepRecord last_row_;
     RunReport report_;
     std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
+    double cpu_at_start_ = processor_seconds();
 };
 
 /// Makes the end of the step the state, which only this changes during a stage, and tells what happened in the step.

@@ -27,9 +27,10 @@ struct RunCosts {
     int largest_rank = 0; ///< of the changes on top of a factor
     int refinements = 0;  ///< Krylov vectors in all linear solves
     int relaxations = 0;
-    int events = 0;         ///< equilibria at which potential cracks failed
-    int rejected_steps = 0; ///< load steps taken again with a smaller size, for the accuracy's sake
-    double elapsed_s = 0.0; ///< wall-clock time
+    int events = 0;             ///< equilibria at which potential cracks failed
+    int rejected_steps = 0;     ///< load steps taken again with a smaller size, for the accuracy's sake
+    double elapsed_s = 0.0;     ///< wall-clock time of the load steps
+    double loading_cpu_s = 0.0; ///< processor time of the same, without start-up and pictures
     RunSeconds seconds;
 };
 

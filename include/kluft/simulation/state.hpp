@@ -150,6 +150,7 @@ template <class Members, class Visit> void visit_saved(Members& state, Visit&& v
     visit("moving", state.imbalance.moving);
     visit("jumps", state.jumps);
     visit("elapsed_s", state.costs.elapsed_s);
+    visit("loading_cpu_s", state.costs.loading_cpu_s);
     visit_counts(state.costs, visit);
     visit_seconds(state.costs.seconds, visit);
 }

@@ -75,6 +75,7 @@ struct Study {
     ReplicaPlan replicas;
     std::vector<std::string> quantities;
     bool curve = true;
+    bool pictures = false; ///< of each case
     StudyReference reference;
     std::optional<std::size_t> along; ///< parameter with numbers as values
     double time_limit = 0.0;          ///< of a case (s); 0: none
