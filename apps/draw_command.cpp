@@ -20,6 +20,7 @@
 #include "kluft/output/field_reader.hpp"
 #include "kluft/output/field_series.hpp"
 #include "kluft/output/history_table.hpp"
+#include "kluft/output/kept_states.hpp"
 #include "kluft/output/state_file.hpp"
 #include "kluft/output/summary.hpp"
 #include "kluft/scene/quantity.hpp"
@@ -175,16 +176,13 @@ int nearest_of(const std::vector<int>& steps, int step) {
     return *std::ranges::min_element(steps, {}, [&](int each) { return std::abs(each - step); });
 }
 
-/// The load step of the largest stress along the platen's axis, in its stage or later.
+/// The load step with the largest axial stress at its end.
 int peak_step(const fs::path& directory) {
-    const auto history = read_curve(directory, {}).history;
     const auto platen_stage = heading_of(directory).platen_stage;
-    if (!platen_stage)
+    const auto step = platen_stage ? step_of_peak(read_curve(directory, {}).history, platen_stage) : std::nullopt;
+    if (!step)
         throw InputError("--step peak: expected a finished run that moves a platen, found " + directory.string());
-    const auto stress = [&](const StepRecord& row) {
-        return row.stage < *platen_stage ? -1.0 : std::abs(row.axial_stress);
-    };
-    return std::ranges::max_element(history, {}, stress)->step;
+    return *step;
 }
 
 /// Of the states that a run keeps, the one that is asked for.
@@ -206,7 +204,7 @@ int step_asked_for(const std::string& text, const fs::path& directory) {
     const int step = static_cast<int>(std::clamp<long long>(*number, 0, steps.back()));
     if (*number != step || std::ranges::find(steps, step) == steps.end())
         throw InputError(fmt::format("--step: expected a load step whose fields are kept, the nearest of which is {}, "
-                                     "found {} (output.fields_every keeps more)",
+                                     "found {} (output.fields_every: 1 keeps all)",
                                      nearest_of(steps, step), text));
     return step;
 }

@@ -132,25 +132,35 @@ class Results:
         return sorted(int(path.stem.split("_")[1]) for path in files)
 
     def fields(self, step: int | str = "last") -> Fields:
-        """The fields of a load step that was kept: its number, "last", or "peak" for the one nearest to the largest axial stress
-        (with a warning where that is another one). Throws InputError where none is kept, or not this one."""
+        """The fields of a load step that was kept: its number, "last", or "peak" for that with the largest axial stress at its end
+        (the nearest one, with a warning, where that was not kept). Throws InputError where none is kept, or not this one."""
         steps = self.steps
         if not steps:
             raise InputError(f"{self.directory}: expected fields of load steps, found none (output.fields is false?)")
         if step == "last":
             return Fields.of_run(self.directory, steps[-1])
         if step == "peak":
-            peak = int(self.peak["step"])
+            peak = self._step_of_peak()
             nearest = min(steps, key=lambda each: abs(each - peak))
             if nearest != peak:
                 warnings.warn(f"the fields of load step {peak}, where the peak is, were not kept; these are of step {nearest} "
-                              "(output.fields_every keeps more)", stacklevel=2)
+                              "(output.fields_every: 1 keeps all)", stacklevel=2)
             return Fields.of_run(self.directory, nearest)
         if step not in steps:
             words = [str(kept) for kept in steps]
             kept = ", ".join(words if len(words) < 20 else [*words[:10], "...", *words[-5:]])
             raise InputError(f'{self.directory}: expected "last", "peak" or one of the load steps {kept}, found {step!r}')
         return Fields.of_run(self.directory, int(step))
+
+    def _step_of_peak(self) -> int:
+        """The load step with the largest axial stress at its end."""
+        rows = self.history[self.history["balanced"].astype(bool)]
+        rows = rows[rows["stage"] >= (self.summary.get("platen_stage") or 0)]
+        if len(rows) == 0 or not self.moves_platen:
+            raise InputError(f"{self.directory}: expected a run with a peak of the axial stress, found none")
+        whole = rows[~(rows["net_broken"] >= 0.95)]  # a net that is all but broken may have locked
+        rows = whole if len(whole) > 0 else rows[:1]
+        return int(rows["step"][np.argmax(np.abs(rows["axial_stress"]))])
 
     @property
     def peak(self) -> np.void:

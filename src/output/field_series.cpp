@@ -126,9 +126,17 @@ void FieldSeries::add(const BlockSystem& system, const FieldRecord& fields, cons
     write(supports_file, supports_csv(system, fields.supports));
     write(blocks_file, blocks_vtu(system, fields, names_.fields, record));
     write(interfaces_file, interfaces_vtu(system, fields, names_.fields, record));
-    if (!ends_with(record.step)) keep(record);
+    if (!has(record.step)) keep(record);
     write_series();
 }
+
+void FieldSeries::drop(int step) {
+    std::erase_if(kept_, [&](const Kept& each) { return each.step == step; });
+    write_series();
+    for (const KeptFile& kind : kept_files) remove_file(directory_ / name_of(kind, step));
+}
+
+bool FieldSeries::has(int step) const { return std::ranges::find(kept_, step, &Kept::step) != kept_.end(); }
 
 std::vector<int> kept_steps(const fs::path& directory) {
     std::vector<int> steps;
@@ -145,7 +153,8 @@ std::vector<int> FieldSeries::steps() const {
 }
 
 void FieldSeries::keep(const StepRecord& record) {
-    kept_.push_back({record.step, record.axial_strain, record.stage + record.load_factor});
+    const Kept added{record.step, record.axial_strain, record.stage + record.load_factor};
+    kept_.insert(std::ranges::upper_bound(kept_, added.step, {}, &Kept::step), added);
 }
 
 void FieldSeries::write_series() const {

@@ -167,7 +167,8 @@ void remove_results(const fs::path& directory) {
 }
 
 RunWriter::RunWriter(fs::path directory, const BlockSystem& system, RunWriterOptions options)
-    : directory_(std::move(directory)), system_(system), options_(std::move(options)) {
+    : directory_(std::move(directory)), system_(system), options_(std::move(options)),
+      kept_states_({options_.fields_every, options_.fields_at_cracks, options_.platen_stage}) {
     make_directory(directory_);
     std::string header = history_header();
     if (options_.strength_factor) header += ",strength_factor";
@@ -201,6 +202,7 @@ RunWriter::RunWriter(fs::path directory, const BlockSystem& system, RunWriterOpt
             throw InputError(fmt::format("{}: does not reach the saved load step {}", (directory_ / history).string(),
                                          *options_.resumed_step));
         last_row_ = rows_before.back();
+        for (const StepRecord& row : rows_before) kept_states_.add(row);
         write_scene_file();
     }
     if (options_.fields)
@@ -237,16 +239,41 @@ void RunWriter::step(const StepRecord& record, const State& state, const std::fu
     visit_tables(*tables_, [](const char*, StepTable& table) { table.commit(); }); // all rows of the step, or none
     visit_tables(*tables_, [](const char*, StepTable& table) { table.write(); });
     if (options_.fields || options_.pictures) last_fields_ = fields;
-    if (options_.fields && (record.step == 0 || last_of_stage || is_due(record.step, options_.fields_every)))
-        write_fields(record, fields());
+    if (options_.fields) keep_state(record, fields, last_of_stage);
     const bool long_ago = options_.checkpoint_seconds > 0.0 && seconds_since(saved_) > options_.checkpoint_seconds;
     if (last_of_stage || long_ago || is_due(record.step, options_.checkpoint_every)) checkpoint(state);
 }
 
 void RunWriter::checkpoint(const State& state) {
+    FirstError errors;
+    errors.attempt([&] { write_held_state(); });
     visit_tables(*tables_, [](const char*, StepTable& table) { table.sync(); });
     write_state(directory_ / "state.h5", state, options_.fingerprint, options_.scene_text, marks_in_words(*tables_));
     saved_ = Clock::now();
+    errors.rethrow();
+}
+
+/// Writes the state of a load step if it is kept, and removes what is no longer. One that is kept for its stress waits in
+/// memory until a state is saved: up to a peak each one is the largest.
+void RunWriter::keep_state(const StepRecord& record, const std::function<FieldRecord()>& fields, bool last_of_stage) {
+    std::vector<int> kept = tables_->fields->steps();
+    std::erase_if(kept, [&](int step) { return !kept_states_.keeps(step); });
+    kept_states_.add(record);
+    if (last_of_stage) kept_states_.end_stage();
+    if (held_ && !kept_states_.keeps(held_->record.step)) held_.reset();
+    for (const int step : kept)
+        if (!kept_states_.keeps(step)) tables_->fields->drop(step);
+    if (!kept_states_.keeps(record.step)) return;
+    if (kept_states_.for_its_stress() == record.step)
+        held_ = {record, fields()};
+    else
+        write_fields(record, fields());
+}
+
+void RunWriter::write_held_state() {
+    if (!held_) return;
+    write_fields(held_->record, held_->fields);
+    held_.reset();
 }
 
 void RunWriter::write_fields(const StepRecord& record, const FieldRecord& fields) {
@@ -316,10 +343,11 @@ RunSummary RunWriter::finish(const RunOutcome& outcome, const State& state,
     });
     RunSummary summary = summary_of(outcome, history, equilibria);
     errors.attempt([&] { write_summary(directory_ / "summary.json", summary); });
+    errors.attempt([&] { write_held_state(); });
     errors.attempt([&] {
         if (memory_ran_out()) return; // what libraries draw and write there can be made of the state later
         const bool is_told = last_fields_ && last_row_ && last_row_->step == state.at.step;
-        const bool fields_missing = options_.fields && is_told && !tables_->fields->ends_with(last_row_->step);
+        const bool fields_missing = options_.fields && is_told && !tables_->fields->has(last_row_->step);
         if (!fields_missing && !options_.pictures) return;
         const FieldRecord record = is_told ? last_fields_() : fields();
         FirstError parts;

@@ -111,6 +111,7 @@ OutputOptions read_output_options(const SceneSection& section) {
     OutputOptions options;
     options.fields = section.boolean("fields");
     options.fields_every = section.count("fields_every");
+    options.fields_at_cracks = section.count("fields_at_cracks");
     options.pictures = section.boolean("pictures");
     options.checkpoint_every = section.count("checkpoint_every");
     options.checkpoint_seconds = section.number("checkpoint_seconds");

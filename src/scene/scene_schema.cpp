@@ -841,7 +841,16 @@ std::vector<KeyRule> option_rules() {
          .type = KeyType::integer,
          .range = natural,
          .fallback = "0",
-         .doc = "Load steps between two states that are kept so; 0: the first and the last state of each stage."},
+         .doc = "Load steps between two states that are kept so. Always kept are the first state, the last one of each "
+                "stage, and that of the load step with the largest axial stress at its end; 0: no others for their "
+                "number."},
+        {.path = "output.fields_at_cracks",
+         .type = KeyType::integer,
+         .range = natural,
+         .fallback = "10",
+         .doc = "The most states that are kept so because potential cracks failed in their load step: where there are "
+                "more "
+                "such load steps, every second, fourth ... of them."},
         {.path = "output.pictures",
          .type = KeyType::boolean,
          .fallback = "true",

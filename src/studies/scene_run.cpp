@@ -41,6 +41,7 @@ RunWriterOptions run_writer_options(const Scene& scene, const Model& model) {
     RunWriterOptions options;
     options.fields = scene.output.fields;
     options.fields_every = scene.output.fields_every;
+    options.fields_at_cracks = scene.output.fields_at_cracks;
     options.pictures = scene.output.pictures;
     options.checkpoint_every = scene.output.checkpoint_every;
     options.checkpoint_seconds = scene.output.checkpoint_seconds;

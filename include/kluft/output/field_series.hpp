@@ -36,8 +36,12 @@ public:
     /// Writes the files of a load step, then the series with them in it. Throws ResourceError.
     void add(const BlockSystem& system, const FieldRecord& fields, const StepRecord& record);
 
-    /// Whether the last state of the series is that of the load step.
-    [[nodiscard]] bool ends_with(int step) const { return !kept_.empty() && kept_.back().step == step; }
+    /// Takes the state of a load step out of the series, then removes its files. Throws ResourceError.
+    void drop(int step);
+
+    /// Whether the state of the load step is in the series.
+    [[nodiscard]] bool has(int step) const;
+    /// Ascending.
     [[nodiscard]] std::vector<int> steps() const;
 
 private:

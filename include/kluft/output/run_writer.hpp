@@ -13,6 +13,7 @@
 
 #include "kluft/blocks/block_system.hpp"
 #include "kluft/constitutive/material.hpp"
+#include "kluft/output/kept_states.hpp"
 #include "kluft/output/summary.hpp"
 #include "kluft/simulation/run_report.hpp"
 #include "kluft/simulation/step_observer.hpp"
@@ -21,7 +22,8 @@ namespace kluft {
 
 struct RunWriterOptions {
     bool fields = true;              ///< fields.pvd, fields/*.vtu, contacts/*.csv and supports/*.csv
-    int fields_every = 0;            ///< load steps between two of them; 0: only step 0 and the end of each stage
+    int fields_every = 0;            ///< load steps between two of them (kept_states.hpp); 0: none for that reason
+    int fields_at_cracks = 10;       ///< the most of them for cracks that failed
     bool pictures = true;            ///< curve.png, curve.svg, blocks.png, blocks.svg
     int checkpoint_every = 0;        ///< load steps between two state.h5; 0: at the end of each stage and of the run
     double checkpoint_seconds = 0.0; ///< after so much time by the clock a state is saved too; 0: not for that reason
@@ -85,6 +87,10 @@ public:
 
 private:
     struct Tables;
+    struct HeldState {
+        StepRecord record;
+        FieldRecord fields;
+    };
     using Clock = std::chrono::steady_clock;
 
     /// Whether the tables of a resumed run have the row already.
@@ -93,6 +99,8 @@ private:
     void write_pictures(const std::vector<StepRecord>& history, const std::vector<StepRecord>& equilibria,
                         const FieldRecord& fields) const;
     void write_fields(const StepRecord& record, const FieldRecord& fields);
+    void keep_state(const StepRecord& record, const std::function<FieldRecord()>& fields, bool last_of_stage);
+    void write_held_state();
     [[nodiscard]] RunSummary summary_of(const RunOutcome& outcome, const std::vector<StepRecord>& history,
                                         const std::vector<StepRecord>& equilibria) const;
 
@@ -100,6 +108,8 @@ private:
     const BlockSystem& system_;
     RunWriterOptions options_;
     std::unique_ptr<Tables> tables_;
+    KeptStates kept_states_;
+    std::optional<HeldState> held_;            ///< of the load step with the largest stress so far; not on the disk yet
     std::optional<StepRecord> last_row_;       ///< of history.csv; the others are on the disk only
     std::function<FieldRecord()> last_fields_; ///< of the same load step
     Clock::time_point saved_ = Clock::now();   ///< when the last state was

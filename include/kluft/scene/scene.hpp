@@ -15,9 +15,10 @@ namespace kluft {
 
 /// What a run writes beside history.csv, cracks.csv, equilibria.csv and summary.json.
 struct OutputOptions {
-    int fields_every = 0; ///< load steps between two field files; 0: only the first and the last state of each stage
-    bool fields = true;   ///< write fields.pvd and fields/*.vtu
-    bool pictures = true; ///< write curve and blocks pictures
+    int fields_every = 0;                  ///< load steps between two field files; 0: none for that reason
+    int fields_at_cracks = 10;             ///< the most field files for cracks that failed
+    bool fields = true;                    ///< write fields.pvd and fields/*.vtu
+    bool pictures = true;                  ///< write curve and blocks pictures
     std::vector<HistoryRequest> histories; ///< the columns of histories.csv
     int checkpoint_every = 0; ///< load steps between two state.h5; 0: at the end of each stage and when the run ends
     double checkpoint_seconds = 60.0; ///< after so much time by the clock a state is saved too; 0: not for that reason
