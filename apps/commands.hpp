@@ -52,6 +52,7 @@ struct DrawArguments {
     std::vector<std::string> overrides;
     bool curve = false;
     bool blocks = false;
+    bool histories = false;
     std::string step;   ///< of the kept state that is drawn: a load step, peak or last; empty: the last saved state
     std::string field;  ///< that blocks are coloured by
     std::string scale;  ///< of displacements

@@ -19,6 +19,7 @@
 #include "kluft/output/curve_picture.hpp"
 #include "kluft/output/field_reader.hpp"
 #include "kluft/output/field_series.hpp"
+#include "kluft/output/histories_picture.hpp"
 #include "kluft/output/history_table.hpp"
 #include "kluft/output/kept_states.hpp"
 #include "kluft/output/state_file.hpp"
@@ -125,6 +126,23 @@ void draw_curve(const DrawArguments& arguments, const std::vector<fs::path>& pic
     if (!arguments.limit.empty()) plot.y_limit = limit_of(arguments.limit);
     for (const auto& picture : pictures) {
         write_curves(picture, plot);
+        announce(picture);
+    }
+}
+
+void draw_histories(const DrawArguments& arguments, const std::vector<fs::path>& pictures) {
+    const fs::path directory = arguments.sources.front();
+    const fs::path table = directory / "histories.csv";
+    if (!fs::exists(table))
+        throw InputError(directory.string() +
+                         ": --histories: expected a run that follows something (output.histories), found no " +
+                         table.filename().string());
+    const RunHeading heading = heading_of(directory);
+    const std::string title = arguments.title.empty() ? heading.title : arguments.title;
+    const auto plots =
+        histories_plots(title, read_histories(table), read_curve(directory, {}).history, heading.platen_stage);
+    for (const auto& picture : pictures) {
+        write_curves(picture, plots);
         announce(picture);
     }
 }
@@ -247,7 +265,7 @@ std::string heading_of_state(const fs::path& directory, int step, double scale) 
 /// One kept state by its field files.
 void draw_state_of_run(const DrawArguments& arguments) {
     const fs::path directory = arguments.sources.front();
-    if (arguments.curve || !arguments.marks.empty())
+    if (arguments.curve || arguments.histories || !arguments.marks.empty())
         throw InputError("--step, --field, --scale and --window: expected a picture of blocks, found one of a curve");
     const int step = step_asked_for(arguments.step, directory);
     const DrawnRun run = read_run(directory);
@@ -275,6 +293,10 @@ std::vector<fs::path> pictures_of(const DrawArguments& arguments, const char* st
 
 void draw_run(const DrawArguments& arguments) {
     const bool one_file = !arguments.picture.empty();
+    if (arguments.histories) return draw_histories(arguments, pictures_of(arguments, "histories"));
+    const bool all = !one_file && !arguments.curve && !arguments.blocks && arguments.marks.empty();
+    if (all && fs::exists(fs::path(arguments.sources.front()) / "histories.csv"))
+        draw_histories(arguments, pictures_of(arguments, "histories"));
     if (moves_no_platen(arguments.sources.front())) {
         if (arguments.curve || !arguments.marks.empty())
             throw InputError(arguments.sources.front() +
@@ -289,13 +311,15 @@ void draw_run(const DrawArguments& arguments) {
 }
 
 void draw_several_runs(const DrawArguments& arguments) {
-    if (arguments.blocks) throw InputError("--blocks: expected one directory of results, found several");
+    if (arguments.blocks || arguments.histories)
+        throw InputError(fmt::format("--{}: expected one directory of results, found several",
+                                     arguments.blocks ? "blocks" : "histories"));
     draw_curve(arguments, {arguments.picture.empty() ? fs::path("curves.png") : fs::path(arguments.picture)});
 }
 
 void draw_scene(const DrawArguments& arguments) {
     const fs::path source = arguments.sources.front();
-    if (arguments.curve || !arguments.marks.empty()) {
+    if (arguments.curve || arguments.histories || !arguments.marks.empty()) {
         throw InputError(source.string() + ": expected a directory of results to draw a curve, found a file");
     }
     const Scene scene = read_scene(source, arguments.overrides);

@@ -167,13 +167,17 @@ void add_schema_command(CLI::App& app, Command& command) {
 void add_draw_command(CLI::App& app, Command& command) {
     auto arguments = std::make_shared<kluft::DrawArguments>();
     CLI::App* sub = app.add_subcommand(
-        "draw", "Draw a scene's blocks; the blocks and the curve of a run; the curves of several runs");
+        "draw", "Draw a scene's blocks; blocks, curve and histories of a run; the curves of several runs");
     sub->add_option("source", arguments->sources, "Scene file, or directories of results")->required();
-    sub->add_option("-o,--output", arguments->picture,
-                    "One picture, .png, .svg or .pdf; of a single run that of its blocks (default: <scene name>.png; "
-                    "DIR/curve and DIR/blocks, each .png and .svg; curves.png; <run>-<field>-<step>.png)");
+    sub->add_option(
+        "-o,--output", arguments->picture,
+        "One picture, .png, .svg or .pdf; of a single run that of its blocks (default: <scene name>.png; "
+        "DIR/curve, DIR/blocks and DIR/histories, each .png and .svg; curves.png; <run>-<field>-<step>.png)");
     CLI::Option* curve = sub->add_flag("--curve", arguments->curve, "Of a run only the curve");
-    sub->add_flag("--blocks", arguments->blocks, "Of a run only the blocks")->excludes(curve);
+    CLI::Option* blocks = sub->add_flag("--blocks", arguments->blocks, "Of a run only the blocks")->excludes(curve);
+    sub->add_flag("--histories", arguments->histories, "Of a run only what its scene follows (output.histories)")
+        ->excludes(curve)
+        ->excludes(blocks);
     sub->add_option("--mark", arguments->marks,
                     "A published value in the plot of curves: LABEL=STRESS is a level, LABEL=STRESS at STRAIN a point; "
                     "RUN:LABEL=... takes the colour of a run")

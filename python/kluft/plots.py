@@ -6,7 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .errors import InputError
+
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from .fields import Fields
     from .results import Results
 
@@ -66,14 +70,39 @@ def draw_fields(fields: Fields, field: str, scale: float, ax: Any) -> Any:
     return ax
 
 
+def animate(states: list[Fields], path: Path, field: str, scale: float, fps: float) -> None:
+    """The states one after the other, all with the colours and the window of their whole range."""
+    import matplotlib.pyplot as plt
+    from matplotlib import animation
+
+    if path.suffix == ".gif":
+        writer: Any = animation.PillowWriter(fps=fps)
+    elif not animation.FFMpegWriter.isAvailable():
+        raise InputError(f"{path}: expected a .gif, or the program ffmpeg for another kind of film, found none")
+    else:
+        writer = animation.FFMpegWriter(fps=fps)
+    values = np.concatenate([_values(state, field)[0] for state in states])
+    corners = np.concatenate([corner for state in states for corner in state.deformed(scale)])
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    figure = plt.figure(figsize=(6.4, 6.4), layout="constrained")
+    try:
+        with writer.saving(figure, str(path), dpi=100):
+            for state in states:
+                figure.clear()
+                ax = draw_fields(state, field, scale, figure.add_subplot())
+                ax.collections[0].set_clim(*np.percentile(values, (0.5, 99.5)))
+                ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]))
+                writer.grab_frame()
+    finally:
+        plt.close(figure)
+
+
 def _values(fields: Fields, field: str) -> tuple[np.ndarray, str]:
     if field == "displacement":
         return np.hypot(*fields.displacement.T), "displacement (m)"
     names = fields.blocks.dtype.names or ()
     if field not in names:
         from difflib import get_close_matches
-
-        from .errors import InputError
 
         near = get_close_matches(field, names, 1)
         raise InputError(f"field: expected displacement or one of {', '.join(names)}, found '{field}'"

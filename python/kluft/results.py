@@ -184,6 +184,16 @@ class Results:
 
         return draw_curve(self, ax, label) if self.moves_platen else self.fields().plot(ax=ax)
 
+    def animate(self, path: str | Path, *, field: str = "sigma_1", scale: float = 1.0, fps: float = 4.0) -> Path:
+        """Writes the kept states (`output.fields_every: 1` keeps all) one after the other as a film: .gif, or with the program
+        ffmpeg .mp4. Blocks are coloured by `field` as in `Fields.plot`, with displacements times `scale`; `fps` states each second.
+        Returns the path. Throws InputError where no state is kept."""
+        from .plots import animate
+
+        states = [self.fields(step) for step in self.steps] or [self.fields()]
+        animate(states, Path(path), field, scale, fps)
+        return Path(path)
+
     def headline(self) -> Iterable[tuple[str, str]]:
         """What is worth a look in the summary, as (name, value with unit)."""
         for key, name, unit, factor in _HEADLINE:

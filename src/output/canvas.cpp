@@ -9,6 +9,7 @@
 #include <cairo-pdf.h>
 #include <cairo-svg.h>
 #include <cairo.h>
+#include <fmt/format.h>
 
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/core/memory.hpp"
@@ -66,13 +67,52 @@ std::string printable(const std::string& text) {
     return shown;
 }
 
+/// Characters that have a meaning in XML are written by their names.
+std::string xml_text(const std::string& text) {
+    std::string written;
+    for (const char c : text) {
+        if (c == '&')
+            written += "&amp;";
+        else if (c == '<')
+            written += "&lt;";
+        else
+            written += c;
+    }
+    return written;
+}
+
+std::string hex_colour(const Colour& colour) {
+    const auto byte = [](double share) { return std::lround(255.0 * std::clamp(share, 0.0, 1.0)); };
+    return fmt::format("#{:02x}{:02x}{:02x}", byte(colour.red), byte(colour.green), byte(colour.blue));
+}
+
+/// The text as an element of an SVG. Its anchor keeps it in place where the reader's font is another one.
+std::string svg_text(const Vec2& at, const std::string& text, const TextStyle& style, double capital_height) {
+    constexpr double degree = std::numbers::pi / 180.0;
+    const auto anchor = [](Align align) {
+        return align == Align::low ? "start" : align == Align::middle ? "middle" : "end";
+    };
+    const double y = style.down == Align::high ? 0.0 : (style.down == Align::middle ? 0.5 : 1.0) * capital_height;
+    std::string attributes =
+        fmt::format("transform=\"translate({:.2f} {:.2f}) rotate({:.3g})\" y=\"{:.2f}\" font-size=\"{:.3g}\" "
+                    "text-anchor=\"{}\" fill=\"{}\" fill-opacity=\"{:.3g}\"",
+                    at.x(), at.y(), style.angle / degree, y, style.size, anchor(style.across), hex_colour(style.colour),
+                    style.colour.alpha);
+    if (style.bold) attributes += " font-weight=\"bold\"";
+    if (style.halo > 0.0)
+        attributes += fmt::format(" stroke=\"#ffffff\" stroke-opacity=\"0.85\" stroke-width=\"{:.3g}\" "
+                                  "stroke-linejoin=\"round\" paint-order=\"stroke\"",
+                                  2.0 * style.halo);
+    return fmt::format("<text {}>{}</text>\n", attributes, xml_text(text));
+}
+
 void draw_on(cairo_surface_t* surface, double width, double height, double scale,
-             const std::function<void(Canvas&)>& draw) {
+             const std::function<void(Canvas&)>& draw, std::string* svg_texts = nullptr) {
     require_memory(); // the libraries below wait for ever or crash where there is none
     check(cairo_surface_status(surface));
     const Context context(cairo_create(surface));
     cairo_scale(context.get(), scale, scale);
-    Canvas canvas(context.get(), width, height);
+    Canvas canvas(context.get(), width, height, svg_texts);
     canvas.fill_page({1.0, 1.0, 1.0, 1.0});
     draw(canvas);
     check(cairo_status(context.get()));
@@ -185,6 +225,12 @@ void Canvas::text(const Vec2& at, const std::string& text, const TextStyle& styl
     set(style.colour);
     const auto share = [](Align align) { return align == Align::low ? 0.0 : align == Align::middle ? 0.5 : 1.0; };
     constexpr double capital_height = 0.73; // of DejaVu Sans, as a fraction of the font size
+    if (svg_texts_ != nullptr) {
+        Vec2 on_page = at;
+        cairo_user_to_device(context_, &on_page.x(), &on_page.y());
+        *svg_texts_ += svg_text(on_page, shown, style, capital_height * style.size);
+        return;
+    }
     cairo_save(context_);
     cairo_translate(context_, at.x(), at.y());
     cairo_rotate(context_, style.angle);
@@ -224,6 +270,13 @@ void Canvas::begin_clip(const Vec2& corner, const Vec2& size) {
 
 void Canvas::end_clip() { cairo_restore(context_); }
 
+void Canvas::begin_part(const Vec2& corner) {
+    cairo_save(context_);
+    cairo_translate(context_, corner.x(), corner.y());
+}
+
+void Canvas::end_part() { cairo_restore(context_); }
+
 PictureFormat picture_format(const std::filesystem::path& path) {
     const std::string extension = path.extension();
     if (extension == ".png") return PictureFormat::png;
@@ -235,13 +288,18 @@ PictureFormat picture_format(const std::filesystem::path& path) {
 std::string draw_picture(PictureFormat format, double width, double height, double pixels_per_point,
                          const std::function<void(Canvas&)>& draw) {
     std::string bytes;
+    std::string svg_texts;
     if (format != PictureFormat::png) {
         const auto create =
             format == PictureFormat::svg ? cairo_svg_surface_create_for_stream : cairo_pdf_surface_create_for_stream;
         const Surface surface(create(collect, &bytes, width, height));
-        draw_on(surface.get(), width, height, 1.0, draw);
+        draw_on(surface.get(), width, height, 1.0, draw, format == PictureFormat::svg ? &svg_texts : nullptr);
         cairo_surface_finish(surface.get());
         check(cairo_surface_status(surface.get()));
+        if (!svg_texts.empty())
+            bytes.insert(bytes.rfind("</svg>"),
+                         "<g font-family=\"'DejaVu Sans', Verdana, sans-serif\" xml:space=\"preserve\">\n" + svg_texts +
+                             "</g>\n");
     } else {
         const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24,
                                                          static_cast<int>(std::lround(width * pixels_per_point)),

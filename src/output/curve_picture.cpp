@@ -481,15 +481,36 @@ CurvePlot stress_strain_plot(const std::string& title, const std::vector<RunCurv
     return plot;
 }
 
-std::string draw_curves(const CurvePlot& given, PictureFormat format) {
-    const CurvePlot plot = drawable(given);
-    const LegendGrid below = legend_below(plot);
-    return draw_picture(format, page_width, plot_height + below.height(), plot_pixels_per_point,
-                        [&](Canvas& canvas) { draw_plot(canvas, plot, below); });
+std::string draw_curves(const std::vector<CurvePlot>& given, PictureFormat format) {
+    std::vector<CurvePlot> plots;
+    std::vector<LegendGrid> below;
+    double height = 0.0;
+    for (const CurvePlot& each : given) {
+        plots.push_back(drawable(each));
+        below.push_back(legend_below(plots.back()));
+        height += plot_height + below.back().height();
+    }
+    return draw_picture(format, page_width, height, plot_pixels_per_point, [&](Canvas& canvas) {
+        double top = 0.0;
+        for (std::size_t i = 0; i < plots.size(); ++i) {
+            canvas.begin_part({0.0, top});
+            draw_plot(canvas, plots[i], below[i]);
+            canvas.end_part();
+            top += plot_height + below[i].height();
+        }
+    });
+}
+
+std::string draw_curves(const CurvePlot& plot, PictureFormat format) {
+    return draw_curves(std::vector<CurvePlot>{plot}, format);
+}
+
+void write_curves(const std::filesystem::path& path, const std::vector<CurvePlot>& plots) {
+    write_file(path, draw_curves(plots, picture_format(path)));
 }
 
 void write_curves(const std::filesystem::path& path, const CurvePlot& plot) {
-    write_file(path, draw_curves(plot, picture_format(path)));
+    write_curves(path, std::vector<CurvePlot>{plot});
 }
 
 } // namespace kluft

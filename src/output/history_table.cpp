@@ -177,22 +177,58 @@ Record parse_row(const std::string& place, std::string_view line, std::size_t n_
     return record;
 }
 
-template <class Record>
-std::vector<Record> read_table(const std::filesystem::path& path, const Names* needed = nullptr) {
+/// Calls header(cells of the first line), then row(place, line) for each line that has its end.
+template <class Header, class Row> void visit_lines(const std::filesystem::path& path, Header&& header, Row&& row) {
     const std::string content = read_file(path);
     std::string_view rest = content;
     if (rest.find('\n') == std::string_view::npos)
         throw InputError(fmt::format("{}:1: expected a line of column names", path.string()));
-    const auto names = split(rest.substr(0, rest.find('\n')));
-    const auto order = column_order<Record>(path.string(), names, needed);
-    std::vector<Record> records;
+    header(split(rest.substr(0, rest.find('\n'))));
     rest.remove_prefix(rest.find('\n') + 1);
     for (std::size_t line = 2, end = rest.find('\n'); end != std::string_view::npos; end = rest.find('\n'), ++line) {
-        const std::string place = fmt::format("{}:{}", path.string(), line);
-        records.push_back(parse_row<Record>(place, rest.substr(0, end), names.size(), order));
+        row(fmt::format("{}:{}", path.string(), line), rest.substr(0, end));
         rest.remove_prefix(end + 1);
     }
+}
+
+template <class Record>
+std::vector<Record> read_table(const std::filesystem::path& path, const Names* needed = nullptr) {
+    std::size_t n_columns = 0;
+    std::vector<std::size_t> order;
+    std::vector<Record> records;
+    visit_lines(
+        path,
+        [&](const Names& names) {
+            n_columns = names.size();
+            order = column_order<Record>(path.string(), names, needed);
+        },
+        [&](const std::string& place, std::string_view line) {
+            records.push_back(parse_row<Record>(place, line, n_columns, order));
+        });
     return records;
+}
+
+constexpr std::array<std::string_view, 3> histories_places{"step", "stage", "load_factor"};
+
+StepRecord parse_histories_row(const std::string& place, std::string_view line,
+                               const std::vector<std::string>& columns) {
+    const auto cells = split(line);
+    const std::size_t n_places = histories_places.size();
+    if (cells.size() != n_places + columns.size())
+        throw InputError(
+            fmt::format("{}: expected {} columns, found {}", place, n_places + columns.size(), cells.size()));
+    const auto read = [&](std::size_t column, std::string_view name, auto& value) {
+        const std::string_view expected = parse(cells[column], value);
+        if (!expected.empty())
+            throw InputError(
+                fmt::format("{}: {}: expected {}, found '{}'", place, name, expected, cells[column].substr(0, 40)));
+    };
+    StepRecord record;
+    read(0, histories_places[0], record.step);
+    read(1, histories_places[1], record.stage);
+    read(2, histories_places[2], record.load_factor);
+    for (std::size_t i = 0; i < columns.size(); ++i) read(n_places + i, columns[i], record.histories.emplace_back());
+    return record;
 }
 
 } // namespace
@@ -209,7 +245,7 @@ std::string table_row(const StepRecord& record) {
 std::string table_row(const CrackRecord& crack) { return row_of(crack); }
 std::string table_row(const JumpRecord& jump) { return row_of(jump); }
 std::string histories_header(const std::vector<std::string>& columns) {
-    return fmt::format("step,stage,load_factor,{}", fmt::join(columns, ","));
+    return fmt::format("{},{}", fmt::join(histories_places, ","), fmt::join(columns, ","));
 }
 std::string histories_row(const StepRecord& record) {
     std::string line = fmt::format("{},{},{}", cell(record.step), cell(record.stage), cell(record.load_factor));
@@ -219,6 +255,23 @@ std::string histories_row(const StepRecord& record) {
 std::vector<StepRecord> read_history(const std::filesystem::path& path) { return read_table<StepRecord>(path); }
 std::vector<StepRecord> read_history(const std::filesystem::path& path, const std::vector<std::string_view>& needed) {
     return read_table<StepRecord>(path, &needed);
+}
+HistoriesTable read_histories(const std::filesystem::path& path) {
+    HistoriesTable table;
+    visit_lines(
+        path,
+        [&](const Names& names) {
+            const std::size_t n_places = histories_places.size();
+            if (names.size() < n_places || !std::equal(histories_places.begin(), histories_places.end(), names.begin()))
+                throw InputError(fmt::format("{}:1: expected the columns {} and further ones, found '{}'",
+                                             path.string(), fmt::join(histories_places, ","),
+                                             fmt::format("{}", fmt::join(names, ",")).substr(0, 80)));
+            table.columns.assign(names.begin() + n_places, names.end());
+        },
+        [&](const std::string& place, std::string_view line) {
+            table.rows.push_back(parse_histories_row(place, line, table.columns));
+        });
+    return table;
 }
 std::vector<CrackRecord> read_cracks(const std::filesystem::path& path) { return read_table<CrackRecord>(path); }
 

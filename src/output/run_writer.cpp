@@ -18,6 +18,7 @@
 #include "kluft/output/blocks_picture.hpp"
 #include "kluft/output/curve_picture.hpp"
 #include "kluft/output/field_series.hpp"
+#include "kluft/output/histories_picture.hpp"
 #include "kluft/output/history_table.hpp"
 #include "kluft/output/state_file.hpp"
 
@@ -100,7 +101,8 @@ TableMark saved_mark(const fs::path& state, const std::string& marks, const std:
         fmt::format("{}: expected a state of a run with {}, found one of a run without it", state.string(), table));
 }
 
-constexpr std::array summary_and_pictures{"summary.json", "curve.png", "curve.svg", "blocks.png", "blocks.svg"};
+constexpr std::array summary_and_pictures{"summary.json", "curve.png",     "curve.svg",    "blocks.png",
+                                          "blocks.svg",   "histories.png", "histories.svg"};
 
 void remove_results_but_tables_and_state(const fs::path& directory) {
     for (const char* name : summary_and_pictures) remove_file(directory / name);
@@ -289,6 +291,12 @@ void RunWriter::write_pictures(const Rows& history, const Rows& equilibria, cons
         const CurvePlot curve = stress_strain_plot(options_.title, {{"", history, equilibria, options_.platen_stage}});
         errors.attempt([&] { write_curves(directory_ / "curve.png", curve); });
         errors.attempt([&] { write_curves(directory_ / "curve.svg", curve); });
+    }
+    if (tables_->histories) {
+        const auto table = read_histories(directory_ / "histories.csv");
+        const auto plots = histories_plots(options_.title, table, history, options_.platen_stage);
+        errors.attempt([&] { write_curves(directory_ / "histories.png", plots); });
+        errors.attempt([&] { write_curves(directory_ / "histories.svg", plots); });
     }
     errors.attempt([&] { write_blocks(directory_ / "blocks.png", system_, fields, blocks); });
     if (svg) errors.attempt([&] { write_blocks(directory_ / "blocks.svg", system_, fields, blocks); });

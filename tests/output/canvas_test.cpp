@@ -42,6 +42,19 @@ TEST(Canvas, ShrinksTextThatWouldBeTooWide) {
     });
 }
 
+// Whoever edits the picture, or searches a document for a word of it, finds the words.
+TEST(Canvas, TextOfAnSvgIsText) {
+    const std::string svg = draw_picture(PictureFormat::svg, 100.0, 40.0, 1.0, [](Canvas& canvas) {
+        canvas.begin_part({10.0, 5.0});
+        canvas.text({20.0, 15.0}, "c < 8 MPa & \xcf\x86", {.size = 8.0, .across = Align::middle});
+        canvas.end_part();
+    });
+    EXPECT_THAT(svg, HasSubstr(">c &lt; 8 MPa &amp; \xcf\x86</text>"));
+    EXPECT_THAT(svg, HasSubstr("translate(30.00 20.00)"));
+    EXPECT_THAT(svg, HasSubstr("text-anchor=\"middle\""));
+    EXPECT_TRUE(svg.ends_with("</svg>\n"));
+}
+
 TEST(Canvas, KnowsTheFormatFromTheNameOfTheFile) {
     EXPECT_EQ(picture_format("a/b.png"), PictureFormat::png);
     EXPECT_EQ(picture_format("b.svg"), PictureFormat::svg);

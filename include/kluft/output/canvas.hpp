@@ -51,7 +51,9 @@ struct TextStyle {
 /// Lengths in points, x to the right, y down. Lives inside draw_picture.
 class Canvas {
 public:
-    Canvas(_cairo* context, double width, double height) : context_(context), width_(width), height_(height) {}
+    /// With `svg_texts`, texts are written there as elements of an SVG, not drawn.
+    Canvas(_cairo* context, double width, double height, std::string* svg_texts = nullptr)
+        : context_(context), width_(width), height_(height), svg_texts_(svg_texts) {}
 
     [[nodiscard]] double width() const { return width_; }
     [[nodiscard]] double height() const { return height_; }
@@ -79,6 +81,10 @@ public:
     void begin_clip(const Vec2& corner, const Vec2& size);
     void end_clip();
 
+    /// Places are counted from `corner` until the matching end_part.
+    void begin_part(const Vec2& corner);
+    void end_part();
+
 private:
     void set(const Colour& colour);
     void set(const Stroke& stroke);
@@ -88,6 +94,7 @@ private:
     _cairo* context_;
     double width_;
     double height_;
+    std::string* svg_texts_;
 };
 
 enum class PictureFormat { png, svg, pdf };
@@ -95,7 +102,8 @@ enum class PictureFormat { png, svg, pdf };
 /// The format that the file's extension names. Throws InputError when it is none of .png, .svg and .pdf.
 [[nodiscard]] PictureFormat picture_format(const std::filesystem::path& path);
 
-/// Bytes of a picture of the given size in points on a white page; a PNG has `pixels_per_point`.
+/// Bytes of a picture of the given size in points on a white page; a PNG has `pixels_per_point`. Texts of an SVG stand on top
+/// of all else, as text that can be searched and edited.
 /// Throws ResourceError when there is not enough memory.
 [[nodiscard]] std::string draw_picture(PictureFormat format, double width, double height, double pixels_per_point,
                                        const std::function<void(Canvas&)>& draw);

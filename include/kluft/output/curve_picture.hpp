@@ -77,9 +77,11 @@ struct RunCurve {
 [[nodiscard]] CurvePlot stress_strain_plot(const std::string& title, const std::vector<RunCurve>& runs,
                                            const std::vector<PlottedReference>& references = {});
 
-/// Bytes of the picture.
+/// Bytes of the picture; several plots stand below each other.
+[[nodiscard]] std::string draw_curves(const std::vector<CurvePlot>& plots, PictureFormat format);
 [[nodiscard]] std::string draw_curves(const CurvePlot& plot, PictureFormat format);
 /// Writes the picture in the format that the extension names. Throws InputError, ResourceError.
+void write_curves(const std::filesystem::path& path, const std::vector<CurvePlot>& plots);
 void write_curves(const std::filesystem::path& path, const CurvePlot& plot);
 
 } // namespace kluft

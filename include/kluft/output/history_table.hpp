@@ -30,12 +30,20 @@ namespace kluft {
 [[nodiscard]] std::string histories_header(const std::vector<std::string>& columns);
 [[nodiscard]] std::string histories_row(const StepRecord& record);
 
+/// histories.csv as it was read: of each row step, stage, load_factor and histories.
+struct HistoriesTable {
+    std::vector<std::string> columns; ///< of StepRecord::histories
+    std::vector<StepRecord> rows;
+};
+
 /// Reads history.csv or equilibria.csv. Columns may stand in any order and further ones are ignored; so is a last line
 /// without its end, which a killed run may leave. Throws InputError (file:line: column: expected, found).
 [[nodiscard]] std::vector<StepRecord> read_history(const std::filesystem::path& path);
 /// The same where only the columns `needed` must be there; numbers of missing ones keep their defaults.
 [[nodiscard]] std::vector<StepRecord> read_history(const std::filesystem::path& path,
                                                    const std::vector<std::string_view>& needed);
+/// Reads histories.csv. Throws InputError.
+[[nodiscard]] HistoriesTable read_histories(const std::filesystem::path& path);
 /// Reads cracks.csv. Throws InputError.
 [[nodiscard]] std::vector<CrackRecord> read_cracks(const std::filesystem::path& path);
 

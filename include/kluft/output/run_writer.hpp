@@ -24,7 +24,7 @@ struct RunWriterOptions {
     bool fields = true;              ///< fields.pvd, fields/*.vtu, contacts/*.csv and supports/*.csv
     int fields_every = 0;            ///< load steps between two of them (kept_states.hpp); 0: none for that reason
     int fields_at_cracks = 10;       ///< the most of them for cracks that failed
-    bool pictures = true;            ///< curve.png, curve.svg, blocks.png, blocks.svg
+    bool pictures = true;            ///< curve, blocks and histories, each .png and .svg
     int checkpoint_every = 0;        ///< load steps between two state.h5; 0: at the end of each stage and of the run
     double checkpoint_seconds = 0.0; ///< after so much time by the clock a state is saved too; 0: not for that reason
     std::string title;
