@@ -64,6 +64,9 @@ struct DrawArguments {
 
 [[nodiscard]] ExitCode draw(const DrawArguments& arguments);
 
+/// Writes report.html into directories of results.
+[[nodiscard]] ExitCode report(const std::vector<std::string>& directories);
+
 struct CompareArguments {
     std::vector<std::string> directories; ///< two
     std::string tolerance = "0.05";

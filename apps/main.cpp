@@ -203,6 +203,17 @@ void add_draw_command(CLI::App& app, Command& command) {
     sub->callback([arguments, &command] { command = [arguments] { return kluft::draw(*arguments); }; });
 }
 
+void add_report_command(CLI::App& app, Command& command) {
+    auto directories = std::make_shared<std::vector<std::string>>();
+    CLI::App* sub = app.add_subcommand(
+        "report", "Write report.html: the answer of a run, its curve and its body in one page to be handed on");
+    sub->add_option("directory", *directories, "Directories of results")->required();
+    sub->footer("kluft run writes it too, unless the scene says output.report: false. The page needs no network and no "
+                "other file.\n"
+                "Example: kluft report results/quickstart");
+    sub->callback([directories, &command] { command = [directories] { return kluft::report(*directories); }; });
+}
+
 void add_compare_command(CLI::App& app, Command& command) {
     auto arguments = std::make_shared<kluft::CompareArguments>();
     CLI::App* sub =
@@ -345,6 +356,7 @@ int program(int argc, char** argv) {
                "  kluft run models/triaxial/case-3-all.yaml -o results/finer --set cracks.update=all --set "
                "stages.1.steps=200\n"
                "  kluft draw results/case-3-all -o picture.png\n"
+               "  kluft report results/case-3-all\n"
                "  kluft compare results/case-3 results/case-3-all\n"
                "  kluft envelope results/case-5-all results/case-3-all results/case-4-all results/case-6-all\n"
                "  kluft study step-size models/quickstart.yaml\n"
@@ -355,6 +367,7 @@ int program(int argc, char** argv) {
     add_check_command(app, command);
     add_schema_command(app, command);
     add_draw_command(app, command);
+    add_report_command(app, command);
     add_compare_command(app, command);
     add_envelope_command(app, command);
     add_study_command(app, command);

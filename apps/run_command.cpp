@@ -23,6 +23,7 @@
 #include "kluft/output/run_writer.hpp"
 #include "kluft/output/state_file.hpp"
 #include "kluft/output/summary.hpp"
+#include "kluft/report/run_page.hpp"
 #include "kluft/scene/scene_model.hpp"
 #include "kluft/scene/scene_reader.hpp"
 #include "kluft/simulation/simulation.hpp"
@@ -84,9 +85,22 @@ ExitCode exit_code(RunStatus status) {
     return ExitCode::done;
 }
 
+/// A report that cannot be written for want of disk or memory is an end like that of pictures.
+void write_report(const SceneModel& built, const Scene& scene, const RunWriter& writer, const RunSummary& summary,
+                  RunLog& log, const fs::path& directory) {
+    try {
+        write_run_page(directory, scene, built.model, built.cut);
+    } catch (const ResourceError& error) {
+        log.error(error.what());
+        writer.give_up(summary, error.what());
+        throw;
+    }
+}
+
 /// The run itself; whatever happens, the last committed state and the tables reach the disk if the disk allows it.
-ExitCode simulate(const Model& model, const Scene& scene, State& state, RunWriter& writer, RunLog& log,
+ExitCode simulate(const SceneModel& built, const Scene& scene, State& state, RunWriter& writer, RunLog& log,
                   const fs::path& directory, double earlier_cpu, bool quiet) {
+    const Model& model = built.model;
     RunObserver observer(writer, quiet);
     RunReport report = run_stages(model, scene, state, observer, stop_requested);
     observer.clear();
@@ -112,6 +126,7 @@ ExitCode simulate(const Model& model, const Scene& scene, State& state, RunWrite
     }
     const std::string closing = closing_line(report, summary, directory);
     log.info(closing);
+    if (scene.output.report && !memory_ran_out()) write_report(built, scene, writer, summary, log, directory);
     if (!quiet) say("{}\n", closing);
     if (const std::string lost = lost_output(); !lost.empty()) {
         log.error(lost);
@@ -172,7 +187,7 @@ ExitCode run(const RunArguments& arguments) {
             if (!arguments.quiet) tell("warning: {}\n", warning);
         }
     }
-    return simulate(model, scene, state, writer, log, directory, earlier_cpu, arguments.quiet);
+    return simulate(built, scene, state, writer, log, directory, earlier_cpu, arguments.quiet);
 }
 
 } // namespace kluft

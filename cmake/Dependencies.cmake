@@ -58,6 +58,13 @@ kluft_purpose(PkgConfig "finds Cairo")
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(CAIRO REQUIRED IMPORTED_TARGET cairo)
 
+# Built into the program: the pages that it writes need no other file.
+find_file(KLUFT_CHART_JS chart.min.js PATHS /usr/share/javascript/chart.js PATH_SUFFIXES share/javascript/chart.js
+  DOC "Chart.js 3, as one file for browsers")
+if(NOT KLUFT_CHART_JS)
+  message(FATAL_ERROR "Chart.js, which plots the curves of reports, was not found (Debian: libjs-chart.js)")
+endif()
+
 kluft_purpose(Threads "assembly and studies")
 find_package(Threads REQUIRED)
 

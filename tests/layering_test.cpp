@@ -20,9 +20,10 @@ namespace fs = std::filesystem;
 
 /// Low to high; layers of one rank are siblings and do not include each other.
 const std::map<std::string, int> rank_of_layer{
-    {"core", 0},    {"geometry", 1},   {"blocks", 2},      {"kinematics", 3},   {"constitutive", 4}, {"contact", 5},
-    {"loading", 6}, {"assembly", 7},   {"equilibrium", 8}, {"fracture", 9},     {"simulation", 10},  {"scene", 11},
-    {"output", 11}, {"reference", 11}, {"studies", 12},    {"calibration", 13}, {"apps", 14},        {"python", 14},
+    {"core", 0},        {"geometry", 1},     {"blocks", 2},   {"kinematics", 3},  {"constitutive", 4},
+    {"contact", 5},     {"loading", 6},      {"assembly", 7}, {"equilibrium", 8}, {"fracture", 9},
+    {"simulation", 10}, {"scene", 11},       {"output", 11},  {"reference", 11},  {"report", 12},
+    {"studies", 13},    {"calibration", 14}, {"apps", 15},    {"python", 15},
 };
 
 /// Which layers may include a header of another project, by the start of its name. What is not listed is free.

@@ -92,9 +92,10 @@ std::string flow_mapping(const std::vector<StudySetting>& set) {
 
 /// A study whose variants are the runs of one scene.
 std::string study_text(const Calibration& calibration, const fs::path& scene, const std::vector<PlannedRun>& runs) {
-    std::string text = fmt::format("scene: \"{}\"\nset: {{output.pictures: false, output.fields: false}}\n"
-                                   "curve: false\nreference: none\nvariants:\n",
-                                   scene.string());
+    std::string text =
+        fmt::format("scene: \"{}\"\nset: {{output.pictures: false, output.report: false, output.fields: false}}\n"
+                    "curve: false\nreference: none\nvariants:\n",
+                    scene.string());
     std::set<std::string> written;
     for (const PlannedRun& run : runs)
         if (written.insert(run.name).second)

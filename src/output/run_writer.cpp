@@ -101,8 +101,8 @@ TableMark saved_mark(const fs::path& state, const std::string& marks, const std:
         fmt::format("{}: expected a state of a run with {}, found one of a run without it", state.string(), table));
 }
 
-constexpr std::array summary_and_pictures{"summary.json", "curve.png",     "curve.svg",    "blocks.png",
-                                          "blocks.svg",   "histories.png", "histories.svg"};
+constexpr std::array summary_and_pictures{"summary.json", "curve.png",     "curve.svg",     "blocks.png",
+                                          "blocks.svg",   "histories.png", "histories.svg", "report.html"};
 
 void remove_results_but_tables_and_state(const fs::path& directory) {
     for (const char* name : summary_and_pictures) remove_file(directory / name);

@@ -113,6 +113,7 @@ OutputOptions read_output_options(const SceneSection& section) {
     options.fields_every = section.count("fields_every");
     options.fields_at_cracks = section.count("fields_at_cracks");
     options.pictures = section.boolean("pictures");
+    options.report = section.boolean("report");
     options.checkpoint_every = section.count("checkpoint_every");
     options.checkpoint_seconds = section.number("checkpoint_seconds");
     return options;

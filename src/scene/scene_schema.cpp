@@ -855,6 +855,11 @@ std::vector<KeyRule> option_rules() {
          .type = KeyType::boolean,
          .fallback = "true",
          .doc = "Write `curve` and `blocks` as `.png` and `.svg`."},
+        {.path = "output.report",
+         .type = KeyType::boolean,
+         .fallback = "true",
+         .doc = "Write `report.html`, one page to be handed on: the answer, the curve, the body at the states that are "
+                "kept."},
         {.path = "output.histories",
          .type = KeyType::named,
          .doc =

@@ -160,6 +160,7 @@ std::vector<std::string> case_command(const ReadStudy& read, const PlannedCase& 
                                       const fs::path& directory) {
     std::vector<std::string> words{program, "run", read.study.scene, "-o", case_directory(directory, one)};
     words.insert(words.end(), {"--set", fmt::format("output.pictures={}", read.study.pictures)});
+    words.insert(words.end(), {"--set", "output.report=false"});
     for (const auto& setting : one.set) words.insert(words.end(), {"--set", setting.assignment()});
     words.insert(words.end(), {"--threads", "1", "--quiet"});
     return words;

@@ -19,6 +19,7 @@ struct OutputOptions {
     int fields_at_cracks = 10;             ///< the most field files for cracks that failed
     bool fields = true;                    ///< write fields.pvd and fields/*.vtu
     bool pictures = true;                  ///< write curve and blocks pictures
+    bool report = true;                    ///< write report.html
     std::vector<HistoryRequest> histories; ///< the columns of histories.csv
     int checkpoint_every = 0; ///< load steps between two state.h5; 0: at the end of each stage and when the run ends
     double checkpoint_seconds = 60.0; ///< after so much time by the clock a state is saved too; 0: not for that reason
