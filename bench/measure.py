@@ -196,7 +196,7 @@ class LimitedRun:
         directory = RUNS / name
         shutil.rmtree(directory, ignore_errors=True)
         command = [KLUFT, "run", scene, "-o", directory, "--quiet", "--threads", options.threads[0]]
-        command += set_options(["output.pictures=false", *overrides])
+        command += set_options(["output.pictures=false", "output.report=false", *overrides])
         with subprocess.Popen([str(word) for word in command], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
                               text=True) as process:
             self.exceeded, errors = wait_for(process, options.limit)
@@ -255,7 +255,7 @@ class ElasticRun:
     """An elastic run of bench/hexagons.yaml, and what `kluft check` says of its memory."""
 
     def __init__(self, size, options, kernels):
-        overrides = [*hexagons(spacing_of(size)), "output.pictures=false"]
+        overrides = [*hexagons(spacing_of(size)), "output.pictures=false", "output.report=false"]
         check = output_of([KLUFT, "check", HEXAGONS, *set_options(overrides)])
         self.estimate = 1e6 * float(re.search(r"^memory\s+about (\S+) MB", check, re.MULTILINE)[1])
         self.factor_bytes = kernels.factor_bytes if kernels else 1e6 * float(re.search(r"factor (\S+) MB", check)[1])

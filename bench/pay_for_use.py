@@ -34,6 +34,7 @@ PLAIN = {
     "cracks.update": "all",
     "output.fields": "false",
     "output.pictures": "false",
+    "output.report": "false",
 }
 BONDED = PLAIN
 FRACTURES = PLAIN | {"geometry.tessellation.interface": "joint", "interfaces.joint.friction_angle": "45 deg"}
@@ -62,7 +63,8 @@ HISTORY = "{" + ", ".join(f"p{i}: {{point: [{0.2 * i + 0.1:.1f}, 0.5]}}" for i i
 
 # Feature -> (scene, what differs without it, what differs with it).
 JOB_RUN = {"stages.1.strain.value": "1.5 %", "stages.1.steps": 50, "cracks.update": "all",
-           "output.fields": "false", "output.pictures": "false"}
+           "output.fields": "false", "output.pictures": "false",
+           "output.report": "false"}
 PRESENT = {
     "potential cracks, checked in each load step": (HEXAGONS, BONDED | {"cracks.every": 1000}, BONDED),
     "event search, nothing fails": (HEXAGONS, BONDED, BONDED | {"cracks.update": "event"}),

@@ -34,6 +34,7 @@
 #include "kluft/output/state_file.hpp"
 #include "kluft/output/summary.hpp"
 #include "kluft/output/vtu.hpp"
+#include "kluft/report/run_page.hpp"
 #include "kluft/scene/scene_model.hpp"
 #include "kluft/scene/scene_reader.hpp"
 #include "kluft/simulation/simulation.hpp"
@@ -325,6 +326,7 @@ private:
             output_->writer->finish(outcome, state_, [&] { return fields_of_state(model(), state_); });
         closing_ = closing_line(report_, summary, output_->directory);
         output_->log->info(closing_);
+        if (scene_.output.report) write_run_page(output_->directory, scene_, model(), built_.cut);
         output_->writer.reset();
         output_->lock.reset();
     }

@@ -2,7 +2,7 @@
 
 _kluft() {
     local word=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
-    local commands="run check schema draw compare envelope study calibrate validate"
+    local commands="run check schema draw report compare envelope study calibrate validate"
     COMPREPLY=()
 
     local command="" index
@@ -67,7 +67,7 @@ _kluft() {
             compgen -f -X "!*.csv" -- "$word"
         )
         ;;
-    compare) mapfile -t COMPREPLY < <(compgen -d -- "$word") ;;
+    compare | report) mapfile -t COMPREPLY < <(compgen -d -- "$word") ;;
     esac
 }
 

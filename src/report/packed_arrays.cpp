@@ -39,7 +39,7 @@ std::uint16_t half_precision(double number) {
     const double size = std::abs(number);
     int exponent = 0;
     (void)std::frexp(size, &exponent); // size = f 2^exponent, 1/2 <= f < 1
-    const int power = std::max(exponent - 1, least_exponent);
+    const int power = size > 0.0 ? std::max(exponent - 1, least_exponent) : least_exponent;
     // With the hidden bit, which counts as one more exponent; rounding up to the next power of two is right that way too.
     const auto mantissa = static_cast<unsigned>(std::lround(std::ldexp(size, mantissa_bits - power)));
     const auto steps = static_cast<unsigned>(power - least_exponent) << static_cast<unsigned>(mantissa_bits);

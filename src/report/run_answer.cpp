@@ -154,8 +154,9 @@ void add_doubts(const RunFacts& facts, std::vector<std::string>& warnings) {
                         "one, so that the peak depends on that motion.",
                         counted(numbers.jumps_to_peak, "jump", "jumps")));
     if (numbers.unbalanced_steps > 0)
-        warnings.push_back(fmt::format("{} not balanced; they are hollow in the curve and count for no peak.",
-                                       counted(numbers.unbalanced_steps, "load step is", "load steps are")));
+        warnings.push_back(
+            fmt::format("{} not balanced: hollow in the curve, and left out where the peak is looked for.",
+                        counted(numbers.unbalanced_steps, "load step is", "load steps are")));
     if (facts.n_merged > 0)
         warnings.push_back(fmt::format("{} merged with a neighbour when the body was cut (geometry.minimum_area).",
                                        counted(static_cast<int>(facts.n_merged), "sliver was", "slivers were")));

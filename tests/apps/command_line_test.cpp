@@ -246,7 +246,7 @@ Words with(Words words, const Words& more) {
     return words;
 }
 
-const Words commands{"run", "check", "draw", "compare", "envelope", "study", "calibrate"};
+const Words commands{"run", "check", "draw", "report", "compare", "envelope", "study", "calibrate"};
 
 // ---- help, version, mistakes ---------------------------------------------------------------------------------------
 
@@ -1318,6 +1318,42 @@ TEST_F(CommandLine, DrawMakesAPictureOfAKeptStateByAField) {
     expect_refused({"draw", "tiny.yaml", "--step", "last"},
                    HasSubstr("expected one directory of results, found a scene file"));
     expect_refused({"draw", "r", "--curve", "--step", "last"}, HasSubstr("found one of a curve"));
+}
+
+TEST_F(CommandLine, ReportIsWrittenByARunUnlessTheSceneSaysNotAndByItsOwnCommand) {
+    write("tiny.yaml", tiny_scene);
+    const Words run{"run", "tiny.yaml", "--quiet", "--set", "output.pictures=false", "-o"};
+    ASSERT_EQ(kluft(with(run, {"r"})).code, 0);
+    const std::string page = content_of(path("r/report.html"));
+    EXPECT_THAT(page, AllOf(StartsWith("<!DOCTYPE html>"), HasSubstr("aria-label=\"Answer\""), HasSubstr("</html>")));
+    EXPECT_THAT(page, Not(ContainsRegex("(src|href)=\"[^#d]"))) << "needs another file";
+    ASSERT_EQ(kluft(with(run, {"without", "--set", "output.report=false"})).code, 0);
+    EXPECT_FALSE(fs::exists(path("without/report.html")));
+    const Result result = kluft({"report", "without"});
+    EXPECT_EQ(result.code, 0) << result.err;
+    EXPECT_EQ(result.out, "without/report.html\n");
+    EXPECT_TRUE(fs::exists(path("without/report.html")));
+}
+
+TEST_F(CommandLine, ReportRefusesWhatIsNoRunAndDamagedFiles) {
+    write("tiny.yaml", tiny_scene);
+    fs::create_directory(path("empty"));
+    expect_refused({"report", "absent"}, HasSubstr("absent: expected a directory of results, found nothing"));
+    expect_refused({"report", "tiny.yaml"}, HasSubstr("tiny.yaml: expected a directory of results, found a file"));
+    expect_refused({"report", "empty"}, HasSubstr("empty: expected a directory of results, found no history.csv"));
+    ASSERT_EQ(kluft({"run", "tiny.yaml", "--quiet", "-o", "r", "--set", "output.report=false"}).code, 0);
+    const auto refused_with = [&](const std::string& name, const std::string& content, const std::string& message) {
+        const std::string before = content_of(path("r/" + name));
+        write("r/" + name, content);
+        expect_refused({"report", "r"}, HasSubstr(message));
+        EXPECT_FALSE(fs::exists(path("r/report.html"))) << name;
+        write("r/" + name, before);
+    };
+    refused_with("history.csv", "step,stage\n", "r/history.csv");
+    refused_with("summary.json", "{", "r/summary.json");
+    refused_with("state.h5", "no state", "r/state.h5");
+    refused_with("fields/blocks_000000.vtu", "<VTKFile/>", "r/fields/blocks_000000.vtu: expected a field file");
+    EXPECT_EQ(kluft({"report", "r"}).code, 0);
 }
 
 TEST_F(CommandLine, DrawRefusesWhatItCannotDraw) {

@@ -35,7 +35,7 @@ QUIET = {"pictures": False, "fields": False}
 
 STUDY = """title: two cases
 scene: quick.yaml
-set: {output.pictures: false, output.fields: false}
+set: {output.pictures: false, output.report: false, output.fields: false}
 vary: {stages.1.steps: [8, 12]}
 quantities: [peak_stress]
 """
@@ -138,6 +138,7 @@ class Bench:
             "draw": ["draw", self.model("quick.yaml"), "-o", "scene.png"],
             "draw a run": ["draw", str(self.reference(self.run())), "-o", "run.png"],
             "draw a state": ["draw", str(self.reference(self.run())), "--step", "last", "--field", "sigma_3", "-o", "state.pdf"],
+            "report": ["report", str(self.reference(self.run()))],
             "compare": ["compare", *[str(self.reference(self.run()))] * 2, "-o", "compared"],
             "envelope": ["envelope", self.model("tests.csv"), "-o", "envelope.png"],
         }

@@ -298,7 +298,8 @@ TEST_F(StudyRuns, JobArrayHasOneJobForEachLineOfCommands) {
     const auto lines = lines_of(content_of(results_ / "cases.txt"));
     ASSERT_THAT(lines, SizeIs(4)); // without those that the scene's reader refuses
     EXPECT_EQ(lines[0],
-              fmt::format("/opt/kluft run {} -o {}/cases/{} --set output.pictures=false --set stages.1.steps=10 --set "
+              fmt::format("/opt/kluft run {} -o {}/cases/{} --set output.pictures=false --set output.report=false "
+                          "--set stages.1.steps=10 --set "
                           "interfaces.bond.kind=potential_crack --set 'title=\"it'\\''s\"' --threads 1 --quiet",
                           (directory_ / "scene.yaml").string(), results_.string(), study.cases[0].name));
     const std::string next = emit_study("slurm", study, results_, 3, {"collect"});

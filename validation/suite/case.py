@@ -126,7 +126,7 @@ class Case:
         target.mkdir(parents=True)
         path = with_defaults(self.directory / scene, self.output) if defaults else self.directory / scene
         command = [str(self.program), "run", str(path), "-o", str(target), "--quiet"]
-        command += overrides_of({"output.pictures": False, **(overrides or {})})
+        command += overrides_of({"output.pictures": False, "output.report": False, **(overrides or {})})
         start = time.monotonic()
         done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
         self.seconds += time.monotonic() - start

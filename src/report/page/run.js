@@ -52,15 +52,15 @@ function plot(canvas, datasets, xName, yName, more = {}) {
     options: {
       maintainAspectRatio: false, responsive: true, parsing: false, onClick: more.onClick,
       interaction: { mode: "nearest", intersect: false },
-      scales: { x: axis(xName), y: { ...axis(yName), grace: "4%" } },
+      scales: { x: axis(xName), y: { ...axis(yName), beginAtZero: true, grace: "4%" } },
       plugins: {
-        legend: { display: Boolean(more.legend), labels: { boxWidth: 18, filter: (item) => item.text !== "" } },
+        legend: { display: Boolean(more.legend), labels: { usePointStyle: true, filter: (item) => item.text !== "" } },
         tooltip: { callbacks: { label: (item) => more.tip?.(item) ?? `${digits(item.parsed.x)}, ${digits(item.parsed.y)}` } },
       },
     },
   });
 }
-const lineStyle = (colour, more = {}) => ({ showLine: true, borderColor: colour, backgroundColor: colour, borderWidth: 1.6, pointRadius: 0, ...more });
+const lineStyle = (colour, more = {}) => ({ showLine: true, pointStyle: "line", borderColor: colour, backgroundColor: colour, borderWidth: 1.6, pointRadius: 0, ...more });
 
 /* The states and the body. */
 const states = run.states;
@@ -359,42 +359,89 @@ function startCracks() {
 
 /* The scene: a key that has a value is a button that puts it into the line. */
 const quoted = (text) => (/^[\w.%+-]*$/.test(text) ? text : `'${text.replaceAll("'", "'\\''")}'`);
-function startScene() {
-  const pre = byId("scene");
+
+/** Adds the keys with values of a mapping in braces that begins at `at`: {from, name, path, value}. Returns where it ends. */
+function keysInBraces(line, at, path, found) {
+  const isList = line[at] === "[";
+  for (let item = 0; at < line.length && !/[}\]]/.test(line[at]); ++item) {
+    at += 1; // the brace, or the comma before
+    while (line[at] === " ") ++at;
+    const key = isList ? null : /^[\w-]+(?=:)/.exec(line.slice(at))?.[0];
+    const inside = [...path, isList ? String(item) : key];
+    const from = at;
+    if (key) at += key.length + 1;
+    while (line[at] === " ") ++at;
+    if (line[at] === "{" || line[at] === "[") {
+      const isPoint = line[at] === "[" && !/^\[[^\]]*[{[]/.test(line.slice(at));
+      const start = at;
+      at = keysInBraces(line, at, inside, isPoint ? [] : found);
+      if (isPoint && key) found.push({ from, name: key, path: inside, value: line.slice(start, at) });
+    } else {
+      const value = /^("[^"]*"|'[^']*'|[^,}\]]*)/.exec(line.slice(at))[0];
+      at += value.length;
+      if (key && value.trim() !== "") found.push({ from, name: key, path: inside, value: value.trim() });
+    }
+    while (line[at] === " ") ++at;
+    if (line[at] !== "," && !/[}\]]/.test(line[at] ?? "")) return line.length; // goes on in the next line
+  }
+  return at + 1;
+}
+
+/** The keys with values in each line of a scene as it was run. */
+function keysOfScene(lines) {
   const path = []; // of the line: [indent, key]
-  const counts = new Map(); // items so far of the list that begins at an indent
-  const lines = pre.textContent.split("\n").map((line) => {
-    const match = /^(\s*)(- )?(?:([\w][\w-]*):(?:\s+(.*))?|(.*))$/.exec(line);
-    if (!match || line.trimStart().startsWith("#") || line.trim() === "") return line + "\n";
-    let indent = match[1].length;
-    while (path.length > 0 && path.at(-1)[0] >= indent + (match[2] ? 1 : 0)) path.pop();
-    if (match[2]) {
-      const list = path.map((each) => each[1]).join(".") + ` ${indent}`;
-      const item = (counts.get(list) ?? -1) + 1;
-      counts.set(list, item);
-      path.push([indent, String(item)]);
+  const counts = new Map(); // items so far of each list
+  return lines.map((line) => {
+    const match = /^(\s*)(- )?(?:([\w][\w-]*):(?: +(.*))?|(.*))$/.exec(line);
+    const found = [];
+    if (!match || line.trimStart().startsWith("#") || line.trim() === "") return found;
+    const [, blank, dash, name, value] = match;
+    let indent = blank.length;
+    while (path.length > 0 && path.at(-1)[0] >= indent + (dash && !/^\d+$/.test(path.at(-1)[1]) ? 1 : 0)) path.pop();
+    if (dash) {
+      const list = `${path.map((each) => each[1]).join(".")} ${indent}`;
+      counts.set(list, (counts.get(list) ?? -1) + 1);
+      path.push([indent, String(counts.get(list))]);
       indent += 2;
     }
-    if (match[3] === undefined) return line + "\n";
-    path.push([indent, match[3]]);
-    const value = (match[4] ?? "").replace(/\s+#.*$/, "");
-    if (value === "" || /^[[{|>&*]/.test(value) || match[3] === "kluft") return line + "\n";
-    const key = path.map((each) => each[1]).join(".");
-    const button = element("button", match[3]);
-    button.title = `--set ${key}=…`;
-    button.addEventListener("click", () => {
-      const box = byId("command");
-      box.value += ` --set ${key}=${quoted(value.replace(/^"(.*)"$/, "$1"))}`;
-      box.focus();
-      box.setSelectionRange(box.value.length, box.value.length);
-      box.scrollLeft = box.scrollWidth;
-    });
-    const whole = document.createDocumentFragment();
-    const at = line.indexOf(match[3], match[1].length);
-    whole.append(line.slice(0, at), button, line.slice(at + match[3].length) + "\n");
-    return whole;
+    const above = path.map((each) => each[1]);
+    if (name === undefined) {
+      if (line[indent] === "{") keysInBraces(line, indent, above, found);
+      return found;
+    }
+    path.push([indent, name]);
+    const here = [...above, name];
+    const start = line.length - (value ?? "").length;
+    if (!value || name === "kluft" || /^[|>&*]/.test(value)) return found;
+    if (value[0] === "{") keysInBraces(line, start, here, found);
+    else found.push({ from: indent, name, path: here, value: value.replace(/\s+#.*$/, "") });
+    return found;
   });
-  pre.replaceChildren(...lines);
+}
+
+function startScene() {
+  const pre = byId("scene");
+  const lines = pre.textContent.split("\n");
+  const keys = keysOfScene(lines);
+  pre.replaceChildren();
+  lines.forEach((line, i) => {
+    let done = 0;
+    for (const { from, name, path, value } of keys[i].sort((a, b) => a.from - b.from)) {
+      const setting = `--set ${path.join(".")}=${quoted(value.replace(/^"(.*)"$/, "$1"))}`;
+      const button = element("button", name);
+      button.title = setting;
+      button.addEventListener("click", () => {
+        const box = byId("command");
+        box.value += ` ${setting}`;
+        box.focus();
+        box.setSelectionRange(box.value.length, box.value.length);
+        box.scrollLeft = box.scrollWidth;
+      });
+      pre.append(line.slice(done, from), button);
+      done = from + name.length;
+    }
+    pre.append(`${line.slice(done)}\n`);
+  });
 }
 
 startCurve();
