@@ -70,7 +70,7 @@ std::string json_fine(const Rows& equilibria, std::optional<int> platen_stage) {
                        json_numbers(differential), json_numbers(axial));
 }
 
-NumberTable read_histories(const fs::path& directory) {
+NumberTable histories_in(const fs::path& directory) {
     NumberTable table;
     if (fs::exists(directory / "histories.csv")) table = read_number_table(directory / "histories.csv");
     return table;
@@ -259,7 +259,7 @@ std::string run_page(const fs::path& directory, const Scene& scene, const Model&
         facts.platen_stage ? std::to_string(*facts.platen_stage) : "null", facts.sense,
         peak_state ? std::to_string(*peak_state) : "null", json_columns(rows),
         json_fine(fs::exists(fine) ? read_history(fine) : Rows{}, facts.platen_stage),
-        json_histories(read_histories(directory)), json_states(states.steps), json_names(scene, system));
+        json_histories(histories_in(directory)), json_states(states.steps), json_names(scene, system));
     std::string scene_text = text_of(directory / "scene.yaml");
     if (scene_text.empty()) scene_text = write_scene_as_run(scene);
     std::string program(version());

@@ -17,7 +17,7 @@ namespace kluft {
                                       const CutReport& cut);
 
 struct RunPageOptions {
-    std::size_t most_bytes_of_states = 18'000'000; ///< before compression; of more states some are left out
+    std::size_t most_bytes_of_states = 16'500'000; ///< before compression; of more states some are left out
 };
 
 /// The page of a run: its answer with all that lies against it, the curve and the body at the states that are kept, histories,

@@ -292,7 +292,7 @@ function drawCurve() {
   const unbalanced = curvePoints.filter((point, i) => !rows.balanced[i] && isThere(point));
   const datasets = [
     { label: "shown", data: [], pointRadius: 8, borderWidth: 2.5, borderColor: "#e08a00", backgroundColor: "rgba(224,138,0,.25)" },
-    { label: "stored states", data: curveStates().filter(isThere), pointRadius: 4, backgroundColor: "#1d6a78", borderColor: "#fff" },
+    { label: "stored states", data: curveStates().filter(isThere), pointRadius: states.length > 40 ? 2.5 : 4, backgroundColor: "#1d6a78", borderColor: "#fff" },
     { label: unbalanced.length > 0 ? "not balanced" : "", data: unbalanced, pointRadius: 4, backgroundColor: "#fff", borderColor: "#a3201d" },
     lineStyle("#1d6a78", { label: "load steps", data: curvePoints.filter(isThere) }),
     lineStyle("rgba(29,106,120,.3)", { label: fine.length > 0 ? "all equilibria" : "", data: fine, borderWidth: 1 }),
