@@ -20,6 +20,9 @@ install(FILES scripts/completions/kluft.bash DESTINATION ${CMAKE_INSTALL_DATADIR
 install(PROGRAMS scripts/validate scripts/python DESTINATION ${CMAKE_INSTALL_DATADIR}/kluft/scripts)
 install(DIRECTORY validation DESTINATION ${CMAKE_INSTALL_DATADIR}/kluft
   PATTERN triaxial EXCLUDE PATTERN __pycache__ EXCLUDE PATTERN "report.md" EXCLUDE PATTERN "report.html" EXCLUDE)
+# The frame of its report.
+install(FILES src/report/page/frame.html src/report/page/frame.css src/report/page/frame.js
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/kluft/src/report/page)
 # The readers of the package, which need NumPy only.
 install(DIRECTORY python/kluft DESTINATION ${CMAKE_INSTALL_DATADIR}/kluft/python FILES_MATCHING PATTERN "*.py")
 install(DIRECTORY docs/schema DESTINATION ${CMAKE_INSTALL_DATADIR}/kluft)

@@ -12,7 +12,7 @@
 #include "kluft/output/atomic_file.hpp"
 #include "kluft/output/curve_picture.hpp"
 #include "kluft/output/progress_line.hpp"
-#include "kluft/output/report_document.hpp"
+#include "kluft/report/report_document.hpp"
 #include "kluft/scene/scene_reader.hpp"
 #include "kluft/scene/scene_text.hpp"
 #include "kluft/scene/scene_writer.hpp"
@@ -280,8 +280,13 @@ ReportDocument report_of(const Calibration& calibration, const CalibrationResult
     ReportPage page{directory, {}};
     page.parts.emplace_back(ReportHeading{
         1, calibration.title.empty() ? "Calibration of " + calibration.scene.filename().string() : calibration.title});
-    page.parts.emplace_back(ReportParagraph{result.met ? "All targets are met." : "Not all targets are met."});
-    page.parts.emplace_back(ReportParagraph{costs_text(result) + "."});
+    std::string values;
+    for (std::size_t i = 0; i < calibration.parameters.size(); ++i)
+        values += (i == 0 ? "" : "; ") + parameter_line(calibration.parameters[i], result.parameters[i]);
+    page.parts.emplace_back(
+        ReportAnswer{"Calibration", result.met ? "All targets are met." : "Not all targets are met.",
+                     values + ". " + costs_text(result) + ".",
+                     "kluft run " + (directory / "calibrated.yaml").lexically_normal().string(), result.met});
     add_targets(calibration, result, page);
     add_parameters(calibration, result, page);
     add_progress(result, page);

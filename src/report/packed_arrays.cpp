@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <zlib.h>
 
-#include "kluft/output/report_document.hpp"
+#include "kluft/report/report_document.hpp"
 
 namespace kluft {
 

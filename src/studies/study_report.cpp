@@ -13,7 +13,7 @@
 #include "kluft/core/nearest_name.hpp"
 #include "kluft/core/units.hpp"
 #include "kluft/output/atomic_file.hpp"
-#include "kluft/output/report_document.hpp"
+#include "kluft/report/report_document.hpp"
 #include "kluft/studies/ensemble.hpp"
 #include "kluft/studies/study_analysis.hpp"
 #include "kluft/studies/study_pictures.hpp"
@@ -74,6 +74,14 @@ std::string on_words(const StudyMeasure& measure) {
     return measure.is_curve ? std::string("in the whole curve") : "on " + measure.name;
 }
 
+/// Done members' values of a measure.
+std::vector<double> member_values(const StudyTable& table, const StudyGroup& group, const StudyMeasure& measure) {
+    std::vector<double> values;
+    for (const std::size_t i : group.cases)
+        if (table.cases[i].status == CaseStatus::done && measure.values[i]) values.push_back(*measure.values[i]);
+    return values;
+}
+
 /// The report while it grows.
 class ReportBuilder {
 public:
@@ -107,6 +115,9 @@ private:
     void choose_measure();
     void add_picture(const std::string& name, const CurvePlot& plot);
     void add_head();
+    [[nodiscard]] std::optional<ReportAnswer> found_answer() const;
+    [[nodiscard]] std::optional<ReportAnswer> answer_of_replicas() const;
+    [[nodiscard]] std::string set_words(std::size_t group) const;
     void add_convergence();
     void add_work_precision();
     void add_replicas();
@@ -196,11 +207,60 @@ void ReportBuilder::add_head() {
         items.push_back(fmt::format("{} unbalanced load steps: marked in the plots, and never recommended.",
                                     counted(static_cast<std::size_t>(n_unbalanced), "case") +
                                         (n_unbalanced == 1 ? " has" : " have")));
+    if (auto answer = found_answer()) add(std::move(*answer));
     add(ReportList{std::move(items)});
     auto varied = varied_items();
     if (varied.empty()) return;
     add(ReportParagraph{"Varied:"});
     add(ReportList{std::move(varied)});
+}
+
+/// The settings of a group as the command line takes them, the scene's own left out.
+std::string ReportBuilder::set_words(std::size_t group) const {
+    const StudyCase& first = table_.cases[groups_[group].cases.front()];
+    std::string words;
+    for (std::size_t p = 0; p < table_.parameters.size(); ++p) {
+        const std::string& value = first.settings[p];
+        if (value.empty() || is_own_setting(table_, p, value)) continue;
+        const bool plain = value.find_first_of(" '\"{}[],$\\;&|<>()*?") == std::string::npos;
+        words += fmt::format("{}--set {}", words.empty() ? "" : " ",
+                             plain ? fmt::format("{}={}", table_.parameters[p], value)
+                                   : fmt::format("'{}={}'", table_.parameters[p], value));
+    }
+    return words;
+}
+
+/// The mean of the first ensemble, where nothing else was varied.
+std::optional<ReportAnswer> ReportBuilder::answer_of_replicas() const {
+    if (groups_.size() != 1 || judged_measures().empty()) return std::nullopt;
+    const StudyMeasure& measure = *judged_measures().front();
+    const auto values = member_values(table_, groups_.front(), measure);
+    if (values.size() < 2) return std::nullopt;
+    const EnsembleStatistics found = ensemble_statistics(values);
+    return ReportAnswer{measure.name,
+                        value_text(measure, found.mean) + " \u00b1 " + value_text(measure, *found.half_width),
+                        fmt::format("The mean of {} and its 95 % confidence; the standard deviation is {}.",
+                                    counted(values.size(), "replica"), value_text(measure, found.deviation))};
+}
+
+/// What the study comes to: the mean of replicas, or the cheapest settings that hold the smallest bound that any hold.
+std::optional<ReportAnswer> ReportBuilder::found_answer() const {
+    if (auto answer = answer_of_replicas()) return answer;
+    const auto judged = judged_measures();
+    if (judged.empty() || !table_.reference) return std::nullopt;
+    const StudyMeasure& measure = *judged.front();
+    std::optional<Advice> best;
+    for (const Advice& advice : cheapest_settings(table_, groups_, measure, unbalanced_, options_.bounds))
+        if (advice.group && (!best || advice.bound < best->bound)) best = advice;
+    if (!best)
+        return ReportAnswer{"Recommendation", "none", "No settings hold a bound with a finer case that confirms them.",
+                            "", false};
+    return ReportAnswer{
+        "Recommendation", advised_settings(table_, groups_, *best->group),
+        fmt::format("The cheapest settings with an error of at most {:.3g} % {}: it is {:.2g} %, and a case costs {}.",
+                    percent * best->bound, on_words(measure), percent * best->error,
+                    cost_text(*best->group, best->cpu_s)),
+        set_words(*best->group)};
 }
 
 std::string ReportBuilder::full_reference_words() const {
@@ -407,14 +467,6 @@ void ReportBuilder::add_band(const StudyGroup& group, const std::string& label) 
         "band only.",
         with_spread(*top, band.deviation[peak]), band.x[peak], band.x.back(),
         with_spread(band.mean.back(), band.deviation.back()))});
-}
-
-/// Done members' values of a measure.
-std::vector<double> member_values(const StudyTable& table, const StudyGroup& group, const StudyMeasure& measure) {
-    std::vector<double> values;
-    for (const std::size_t i : group.cases)
-        if (table.cases[i].status == CaseStatus::done && measure.values[i]) values.push_back(*measure.values[i]);
-    return values;
 }
 
 void ReportBuilder::add_replicas() {

@@ -1,29 +1,32 @@
 """The table of a run of the suite: as text, as Markdown and as HTML, with the figures; and the results in the READMEs."""
 
+import base64
 import html
 import re
+from pathlib import Path
 
 HEAD = ("case", "quantity", "expected", "found", "error", "tolerance", "seconds")
 RESULT = re.compile(r"(<!-- result -->\n).*?(<!-- end of result -->)", re.DOTALL)
-STYLE = """body { font: 15px/1.45 sans-serif; max-width: 62em; margin: 2em auto; padding: 0 1em; color: #1a1a1a }
-table { border-collapse: collapse; font-size: 13px } td, th { padding: .2em .7em; border-bottom: 1px solid #ddd; text-align: left }
-td.number { text-align: right; font-variant-numeric: tabular-nums } tr.miss td { background: #f8dedb } img { max-width: 100% }
-h2 { margin-top: 2em }"""
+PAGE = Path(__file__).resolve().parents[2] / "src/report/page"  # the frame of the program's own reports
 
 
-def error_text(row):
+def number_text(number, row, percent):
+    return f"{100 * number:.2g} %" if percent and row["kind"] == "relative" else f"{number:.2g}"
+
+
+def error_text(row, percent=False):
     if row["error"] is None:
         return "none" if row["met"] else "differs"
-    return f"{row['error']:.2g}" + ("" if row["kind"] == "relative" else " (absolute)")
+    return number_text(row["error"], row, percent) + ("" if row["kind"] == "relative" else " (absolute)")
 
 
-def tolerance_text(row):
-    return "same" if row["tolerance"] is None else f"{row['tolerance']:.2g}"
+def tolerance_text(row, percent=False):
+    return "same" if row["tolerance"] is None else number_text(row["tolerance"], row, percent)
 
 
-def cells_of(row):
-    verdict = error_text(row) + ("" if row["met"] else ", MISS")
-    return [row["case"], row["quantity"], row["expected"], row["found"], verdict, tolerance_text(row),
+def cells_of(row, percent=False):
+    verdict = error_text(row, percent) + ("" if row["met"] else ", MISS")
+    return [row["case"], row["quantity"], row["expected"], row["found"], verdict, tolerance_text(row, percent),
             f"{row['seconds']:.1f}"]
 
 
@@ -75,25 +78,47 @@ def write_markdown(path, outcomes):
     path.write_text(text, encoding="utf-8")
 
 
+def framed(title, body):
+    """The whole page: one file that needs no other."""
+    texts = {"title": html.escape(title), "style": (PAGE / "frame.css").read_text(encoding="utf-8"), "body": body,
+             "programs": '<script>\n(() => {\n"use strict";\n' + (PAGE / "frame.js").read_text(encoding="utf-8") + "})();\n</script>\n"}
+    return re.sub(r"\{\{(\w+)\}\}", lambda match: texts[match[1]], (PAGE / "frame.html").read_text(encoding="utf-8"))
+
+
+def html_table(rows):
+    head = "".join(f"<th{' class=number' if i >= 2 else ''}>{name}</th>" for i, name in enumerate(HEAD))
+    parts = [f'<div class="scroll" tabindex="0"><table class="sortable"><thead><tr>{head}</tr></thead>\n<tbody>']
+    for row in rows:
+        cells = [html.escape(cell) for cell in cells_of(row, percent=True)]
+        cells[0] = f"<a href=\"#{row['case']}\">{cells[0]}</a>"
+        numbers = "".join(f"<td{' class=number' if i >= 2 else ''}>{cell}</td>" for i, cell in enumerate(cells))
+        parts.append(f"<tr{'' if row['met'] else ' class=marked'}>{numbers}</tr>")
+    return "\n".join([*parts, "</tbody></table></div>"])
+
+
+def answer_of(outcomes):
+    rows = [row for outcome in outcomes for row in outcome["rows"]]
+    misses = sum(not row["met"] for row in rows)
+    words = (f"all of {len(rows)} quantities within tolerance" if not misses
+             else f"{misses} of {len(rows)} quantities missed")
+    return (f'<div class="answer{" open" if misses else ""}" role="region" aria-label="Answer"><p class="name">Validation</p>'
+            f'<p class="value">{words}</p><p>{html.escape(introduction(outcomes))}</p></div>')
+
+
 def write_html(path, outcomes):
-    parts = ["<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Validation report</title>"
-             f"<style>{STYLE}</style></head><body>\n<h1>Validation report</h1>\n<p>{html.escape(introduction(outcomes))}</p>",
-             "<table><tr>" + "".join(f"<th>{name}</th>" for name in HEAD) + "</tr>"]
-    for outcome in outcomes:
-        for row in outcome["rows"]:
-            cells = [html.escape(cell) for cell in cells_of(row)]
-            cells[0] = f"<a href=\"#{row['case']}\">{cells[0]}</a>"
-            numbers = "".join(f"<td{' class=number' if i >= 2 else ''}>{cell}</td>" for i, cell in enumerate(cells))
-            parts.append(f"<tr{'' if row['met'] else ' class=miss'}>{numbers}</tr>")
-    parts.append("</table>")
+    parts = ["<h1>Validation report</h1>", answer_of(outcomes), '<section class="long"><h2>All quantities</h2>',
+             html_table([row for outcome in outcomes for row in outcome["rows"]]), "</section>"]
     for outcome in outcomes:
         title = html.escape(outcome["title"])
-        parts.append(f"<h2 id=\"{outcome['case']}\">{title}</h2>")
-        if outcome["figure"]:
-            parts.append(f"<p><img src=\"{outcome['case']}/figure.png\" alt=\"{title}\"></p>")
+        parts.append(f"<section id=\"{outcome['case']}\"><h2>{title}</h2>")
+        figure = path.parent / outcome["case"] / "figure.png"
+        if outcome["figure"] and figure.exists():
+            picture = base64.b64encode(figure.read_bytes()).decode("ascii")
+            parts.append(f'<figure><img src="data:image/png;base64,{picture}" alt="{title}" loading="lazy"></figure>')
         if outcome["failure"]:
             parts.append(f"<p>The check ended early: <code>{html.escape(outcome['failure'].splitlines()[0])}</code></p>")
-    path.write_text("\n".join(parts) + "\n</body></html>\n", encoding="utf-8")
+        parts.append(html_table(outcome["rows"]) + "</section>")
+    path.write_text(framed("Validation report", "\n".join(parts) + "\n"), encoding="utf-8")
 
 
 def update_readme(path, rows):

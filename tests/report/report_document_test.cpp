@@ -1,4 +1,4 @@
-#include "kluft/output/report_document.hpp"
+#include "kluft/report/report_document.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -31,6 +31,18 @@ TEST(ReportDocument, TablesSetNumbersToTheRightAndMarkRows) {
     EXPECT_EQ(report_markdown(document), "| case | value |\n|---|---:|\n| a | 1 |\n| b | - |\n");
     EXPECT_THAT(report_html(document), HasSubstr("<tr><td>a</td><td class=number>1</td></tr>"));
     EXPECT_THAT(report_html(document), HasSubstr("<tr class=marked><td>b</td>"));
+}
+
+TEST(ReportDocument, AnswerComesWithTheLineToCopy) {
+    const ReportDocument document{ReportHeading{1, "T"},
+                                  ReportAnswer{"Strength", "2 < 3", "So.", "kluft run --set a=1"},
+                                  ReportHeading{2, "A"}, ReportHeading{2, "B"}};
+    EXPECT_EQ(report_markdown(document),
+              "# T\n\n**Strength: 2 \\< 3**\n\nSo.\n\n    kluft run --set a=1\n\n## A\n\n## B\n");
+    const std::string page = report_html(document);
+    EXPECT_THAT(page, HasSubstr("<p class=\"value\">2 &lt; 3</p>"));
+    EXPECT_THAT(page, HasSubstr(">kluft run --set a=1</code><button class=\"act\" data-copy=\"command-1\">"));
+    EXPECT_THAT(page, HasSubstr("<h2>A</h2>\n</section>\n<section class=\"long\">\n<h2>B</h2>\n</section>\n"));
 }
 
 TEST(ReportDocument, PicturesStandBesideTheMarkdownAndInsideTheHtml) {

@@ -1,21 +1,17 @@
-#include "kluft/output/report_document.hpp"
+#include "kluft/report/report_document.hpp"
 
 #include <algorithm>
 #include <cstdint>
+#include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
+
+#include "kluft/report/report_page.hpp"
 
 namespace kluft {
 
 namespace {
-
-constexpr const char* style =
-    "body { font: 15px/1.45 sans-serif; max-width: 62em; margin: 2em auto; padding: 0 1em; color: #1a1a1a }\n"
-    "table { border-collapse: collapse; font-size: 13px } td, th { padding: .2em .7em; border-bottom: 1px solid #ddd; "
-    "text-align: left }\n"
-    "td.number { text-align: right; font-variant-numeric: tabular-nums } tr.marked td { background: #f8dedb } img { "
-    "max-width: 100% }\n"
-    "h2 { margin-top: 2em }";
 
 std::string one_line(const std::string& text) {
     std::string result;
@@ -32,29 +28,6 @@ std::string for_markdown(const std::string& text) {
     return result;
 }
 
-std::string for_html(const std::string& text) {
-    std::string result;
-    for (const char c : text) {
-        switch (c) {
-        case '&':
-            result += "&amp;";
-            break;
-        case '<':
-            result += "&lt;";
-            break;
-        case '>':
-            result += "&gt;";
-            break;
-        case '"':
-            result += "&quot;";
-            break;
-        default:
-            result += c;
-        }
-    }
-    return result;
-}
-
 std::string markdown_row(const std::vector<std::string>& cells) {
     std::string line = "|";
     for (const std::string& cell : cells) line += " " + for_markdown(cell) + " |";
@@ -66,6 +39,11 @@ struct MarkdownWriter {
 
     void operator()(const ReportHeading& heading) {
         text += std::string(static_cast<std::size_t>(heading.level), '#') + " " + for_markdown(heading.text) + "\n\n";
+    }
+    void operator()(const ReportAnswer& answer) {
+        text += fmt::format("**{}: {}**\n\n{}\n\n", for_markdown(answer.name), for_markdown(answer.value),
+                            for_markdown(answer.sentence));
+        if (!answer.command.empty()) text += "    " + one_line(answer.command) + "\n\n";
     }
     void operator()(const ReportParagraph& paragraph) { text += for_markdown(paragraph.text) + "\n\n"; }
     void operator()(const ReportList& list) {
@@ -86,33 +64,58 @@ struct MarkdownWriter {
 
 struct HtmlWriter {
     std::string text;
+    bool in_section = false;
+    int n_commands = 0;
 
     void operator()(const ReportHeading& heading) {
-        text += fmt::format("<h{0}>{1}</h{0}>\n", heading.level, for_html(heading.text));
+        if (heading.level <= 2) end_section();
+        if (heading.level == 2) {
+            text += "<section class=\"long\">\n";
+            in_section = true;
+        }
+        text += fmt::format("<h{0}>{1}</h{0}>\n", heading.level, html_text(heading.text));
     }
-    void operator()(const ReportParagraph& paragraph) { text += "<p>" + for_html(paragraph.text) + "</p>\n"; }
+    void operator()(const ReportAnswer& answer) {
+        text += fmt::format("<div class=\"answer{}\" role=\"region\" aria-label=\"Answer\">\n<p class=\"name\">{}</p>\n"
+                            "<p class=\"value\">{}</p>\n<p>{}</p>\n",
+                            answer.firm ? "" : " open", html_text(answer.name), html_text(answer.value),
+                            html_text(answer.sentence));
+        if (!answer.command.empty()) {
+            const std::string id = fmt::format("command-{}", ++n_commands);
+            text +=
+                fmt::format("<div class=\"command\"><code id=\"{0}\" tabindex=\"0\">{1}</code><button class=\"act\" "
+                            "data-copy=\"{0}\">Copy</button></div>\n",
+                            id, html_text(answer.command));
+        }
+        text += "</div>\n";
+    }
+    void operator()(const ReportParagraph& paragraph) { text += "<p>" + html_text(paragraph.text) + "</p>\n"; }
     void operator()(const ReportList& list) {
         text += "<ul>\n";
-        for (const std::string& item : list.items) text += "<li>" + for_html(item) + "</li>\n";
+        for (const std::string& item : list.items) text += "<li>" + html_text(item) + "</li>\n";
         text += "</ul>\n";
     }
     void operator()(const ReportTable& table) {
-        text += "<table><tr>";
-        for (const std::string& cell : table.head) text += "<th>" + for_html(cell) + "</th>";
-        text += "</tr>\n";
+        text += "<div class=\"scroll\" tabindex=\"0\"><table class=\"sortable\"><thead><tr>";
+        for (std::size_t i = 0; i < table.head.size(); ++i)
+            text += (i < table.n_words ? "<th>" : "<th class=number>") + html_text(table.head[i]) + "</th>";
+        text += "</tr></thead>\n<tbody>\n";
         for (std::size_t r = 0; r < table.rows.size(); ++r) {
-            bool marked = false;
-            for (const std::size_t row : table.marked) marked = marked || row == r;
+            const bool marked = std::ranges::find(table.marked, r) != table.marked.end();
             text += marked ? "<tr class=marked>" : "<tr>";
             for (std::size_t i = 0; i < table.rows[r].size(); ++i)
-                text += (i < table.n_words ? "<td>" : "<td class=number>") + for_html(table.rows[r][i]) + "</td>";
+                text += (i < table.n_words ? "<td>" : "<td class=number>") + html_text(table.rows[r][i]) + "</td>";
             text += "</tr>\n";
         }
-        text += "</table>\n";
+        text += "</tbody></table></div>\n";
     }
     void operator()(const ReportPicture& picture) {
-        text += fmt::format("<p><img src=\"data:image/svg+xml;base64,{}\" alt=\"{}\"></p>\n", base64(picture.svg),
-                            for_html(picture.text));
+        text += fmt::format("<figure><img src=\"data:image/svg+xml;base64,{}\" alt=\"{}\"></figure>\n",
+                            base64(picture.svg), html_text(picture.text));
+    }
+    void end_section() {
+        if (in_section) text += "</section>\n";
+        in_section = false;
     }
 };
 
@@ -150,9 +153,8 @@ std::string report_markdown(const ReportDocument& document) {
 std::string report_html(const ReportDocument& document) {
     HtmlWriter writer;
     for (const ReportPart& part : document) std::visit(writer, part);
-    return fmt::format("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{}</title><style>{}"
-                       "</style></head><body>\n{}</body></html>\n",
-                       for_html(title_of(document)), style, writer.text);
+    writer.end_section();
+    return html_of({title_of(document), std::move(writer.text), {}, {}, false});
 }
 
 } // namespace kluft

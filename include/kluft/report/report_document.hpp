@@ -1,4 +1,4 @@
-// A report of headings, paragraphs, lists, tables and pictures: as Markdown, and as one HTML file that needs no other.
+// A report of an answer, headings, paragraphs, lists, tables and pictures: as Markdown, and as one HTML file that needs no other.
 #pragma once
 
 #include <cstddef>
@@ -12,6 +12,15 @@ namespace kluft {
 struct ReportHeading {
     int level = 2; ///< 1 is the title
     std::string text;
+};
+
+/// What the report comes to, before all else.
+struct ReportAnswer {
+    std::string name;
+    std::string value;
+    std::string sentence;
+    std::string command = {}; ///< a line to copy; may be empty
+    bool firm = true;         ///< otherwise a bound, or none
 };
 
 struct ReportParagraph {
@@ -36,11 +45,12 @@ struct ReportPicture {
     std::string svg;
 };
 
-using ReportPart = std::variant<ReportHeading, ReportParagraph, ReportList, ReportTable, ReportPicture>;
+using ReportPart = std::variant<ReportHeading, ReportAnswer, ReportParagraph, ReportList, ReportTable, ReportPicture>;
 using ReportDocument = std::vector<ReportPart>;
 
 /// Text is plain: what has a meaning in Markdown or HTML is escaped.
 [[nodiscard]] std::string report_markdown(const ReportDocument& document);
+/// In the frame of report_page.hpp: a section for each heading of level 2, tables that scroll and are sorted by a click on a head.
 /// The title is that of the first heading.
 [[nodiscard]] std::string report_html(const ReportDocument& document);
 
