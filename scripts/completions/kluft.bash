@@ -43,6 +43,7 @@ _kluft() {
     run) options+=" -o --output --set --threads --quiet --resume --force" ;;
     check) options+=" --set --json" ;;
     draw) options+=" -o --output --curve --blocks --histories --step --field --scale --window --mark --limit --title --set" ;;
+    report) options+="" ;;
     compare) options+=" -o --output --tolerance" ;;
     envelope) options+=" -o --output --tension --compare --title" ;;
     study) options+=" -o --output --jobs --set --emit --collect --quantity --quiet" ;;

@@ -215,17 +215,21 @@ void ReportBuilder::add_head() {
     add(ReportList{std::move(varied)});
 }
 
-/// The settings of a group as the command line takes them, the scene's own left out.
+/// The settings of a group as the command line takes them.
 std::string ReportBuilder::set_words(std::size_t group) const {
     const StudyCase& first = table_.cases[groups_[group].cases.front()];
     std::string words;
     for (std::size_t p = 0; p < table_.parameters.size(); ++p) {
-        const std::string& value = first.settings[p];
-        if (value.empty() || is_own_setting(table_, p, value)) continue;
-        const bool plain = value.find_first_of(" '\"{}[],$\\;&|<>()*?") == std::string::npos;
-        words += fmt::format("{}--set {}", words.empty() ? "" : " ",
-                             plain ? fmt::format("{}={}", table_.parameters[p], value)
-                                   : fmt::format("'{}={}'", table_.parameters[p], value));
+        if (first.settings[p].empty()) continue;
+        const std::string setting = table_.parameters[p] + "=" + first.settings[p];
+        words += words.empty() ? "--set " : " --set ";
+        if (setting.find_first_of(" '\"{}[],$\\;&|<>()*?") == std::string::npos) {
+            words += setting;
+            continue;
+        }
+        words += '\'';
+        for (const char c : setting) words += c == '\'' ? "'\\''" : std::string(1, c);
+        words += '\'';
     }
     return words;
 }
@@ -247,7 +251,7 @@ std::optional<ReportAnswer> ReportBuilder::answer_of_replicas() const {
 std::optional<ReportAnswer> ReportBuilder::found_answer() const {
     if (auto answer = answer_of_replicas()) return answer;
     const auto judged = judged_measures();
-    if (judged.empty() || !table_.reference) return std::nullopt;
+    if (judged.empty() || table_.reference_name.empty() || table_.reference_name == "none") return std::nullopt;
     const StudyMeasure& measure = *judged.front();
     std::optional<Advice> best;
     for (const Advice& advice : cheapest_settings(table_, groups_, measure, unbalanced_, options_.bounds))

@@ -233,6 +233,28 @@ output: {pictures: false, fields_every: 2}
 """
 
 
+def check_study(driver, kluft, work):
+    """The table of a study's page is sorted by a click on a head, by size and not as texts; the page fits a phone."""
+    words = ["study", "step-size", str(ROOT / "models/quickstart.yaml"), "-o", "study", "--quiet",
+             "--set", "geometry.tessellation.triangles.spacing=6 cm", "--set", "stages.1.strain.value=0.2 %"]
+    subprocess.run([kluft, *words], cwd=work, check=True, stdout=subprocess.DEVNULL)
+    for phone in (False, True):
+        if phone:
+            driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", PHONE)
+        driver.get((work / "study/study.html").resolve().as_uri())
+        wide, window = driver.execute_script("return [document.documentElement.scrollWidth, innerWidth]")
+        assert wide <= window, (wide, window)
+        head = driver.execute_script(
+            "return [...document.querySelectorAll('th button')].filter((each) => each.textContent === 'stages.1.steps').at(-1)")
+        column = "return [...arguments[0].closest('table').tBodies[0].rows].map((row) => row.cells[1].textContent)"
+        driver.execute_script("arguments[0].click()", head)
+        steps = [int(text) for text in driver.execute_script(column, head)]
+        assert steps == sorted(steps) and len(steps) == 6, steps
+        driver.execute_script("arguments[0].click()", head)
+        assert driver.execute_script(column, head) == [str(each) for each in steps[::-1]]
+    driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+
 def arrays_of(path):
     return data_arrays(path)["CellData"]
 
@@ -265,6 +287,8 @@ def main(kluft, work):
         page.no_errors()
         driver.save_screenshot(str(work / "wide.png"))
         check_phone(driver, run / "report.html", work)
+        check_study(driver, kluft, work)
+        page.no_errors()
     finally:
         driver.quit()
     print(f"a run with {len(steps)} states: all as expected")

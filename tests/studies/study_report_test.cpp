@@ -77,6 +77,7 @@ TEST(StudyReport, SaysOrderLimitFailuresAndWhatAccuracyCosts) {
     const std::string text = read_file(directory / "study.md");
     EXPECT_THAT(text, HasSubstr("order 1, limit 1.5 MPa"));
     EXPECT_THAT(text, HasSubstr("killed by signal 9"));
+    EXPECT_THAT(text, HasSubstr("\n    --set stages.1.steps=25 --set cracks.update=event\n"));
     EXPECT_THAT(text, HasSubstr("## Recommendation"));
     // 25 steps at events have an error of 0.8 %, and so have all finer ones less
     EXPECT_THAT(text,
