@@ -3,6 +3,7 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <new>
 #include <optional>
 #include <string>
 #include <vector>
@@ -93,6 +94,9 @@ void write_report(const SceneModel& built, const Scene& scene, const RunWriter& 
     } catch (const ResourceError& error) {
         log.error(error.what());
         writer.give_up(summary, error.what());
+        throw;
+    } catch (const std::bad_alloc&) {
+        writer.give_up(summary, "out of memory");
         throw;
     }
 }
