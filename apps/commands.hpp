@@ -112,6 +112,9 @@ struct ValidateArguments {
     std::vector<std::string> words; ///< for scripts/validate
 };
 
+/// Names of the cases of the validation suite; none where there is no suite.
+[[nodiscard]] std::vector<std::string> validation_cases();
+
 /// Becomes scripts/validate, whose exit code is that of the program; returns only by an InputError.
 [[nodiscard]] ExitCode validate(const ValidateArguments& arguments);
 

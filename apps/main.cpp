@@ -15,10 +15,12 @@
 
 #include "blas_kernels.hpp"
 #include "commands.hpp"
+#include "completion.hpp"
 #include "failure.hpp"
 #include "kluft/core/nearest_name.hpp"
 #include "kluft/core/version.hpp"
 #include "kluft/output/blocks_picture.hpp"
+#include "manual.hpp"
 #include "standard_output.hpp"
 #include "stop_request.hpp"
 
@@ -58,8 +60,10 @@ int bad_input(const std::string& message) {
 std::string unknown_command(const CLI::App& app, const std::vector<std::string>& words) {
     if (words.empty() || words.front().starts_with('-')) return {};
     std::vector<std::string> commands;
-    for (const CLI::App* sub : app.get_subcommands({})) commands.push_back(sub->get_name());
-    if (std::ranges::find(commands, words.front()) != commands.end()) return {};
+    for (const CLI::App* sub : app.get_subcommands({})) {
+        if (sub->get_name() == words.front()) return {};
+        if (!sub->get_group().empty()) commands.push_back(sub->get_name());
+    }
     return "kluft: unknown command '" + words.front() + "'; expected one of " + kluft::listed(commands) +
            kluft::suggestion(words.front(), commands);
 }
@@ -327,6 +331,48 @@ void add_calibrate_command(CLI::App& app, Command& command) {
     sub->callback([arguments, &command] { command = [arguments] { return kluft::calibrate(*arguments); }; });
 }
 
+void add_completion_command(CLI::App& app, Command& command) {
+    auto shell = std::make_shared<std::string>();
+    CLI::App* sub =
+        app.add_subcommand("completion", "Say a script that lets a shell complete commands, options, files and keys");
+    sub->add_option("shell", *shell, "bash, zsh or fish")->required()->check(CLI::IsMember({"bash", "zsh", "fish"}));
+    sub->footer("Installed packages have it already.\nExamples:\n"
+                "  eval \"$(kluft completion bash)\"\n"
+                "  kluft completion fish >~/.config/fish/completions/kluft.fish");
+    sub->callback([shell, &command] {
+        command = [shell] {
+            kluft::say_text(kluft::completion_script(*shell));
+            return ExitCode::done;
+        };
+    });
+}
+
+/// Of scripts and packages: what they say stands in no help. All words after the name are theirs.
+CLI::App* add_hidden_command(CLI::App& app, const std::string& name) {
+    CLI::App* sub = app.add_subcommand(name)->group("");
+    sub->set_help_flag();
+    sub->prefix_command();
+    sub->allow_extras();
+    return sub;
+}
+
+void add_hidden_commands(CLI::App& app, Command& command) {
+    CLI::App* complete = add_hidden_command(app, "complete");
+    complete->callback([complete, &app, &command] {
+        command = [&app, words = complete->remaining()] {
+            for (const std::string& each : kluft::completions(app, words)) kluft::say_text(each + "\n");
+            return ExitCode::done;
+        };
+    });
+    CLI::App* manual = add_hidden_command(app, "manual");
+    manual->callback([manual, &app, &command] {
+        command = [&app, words = manual->remaining()] {
+            kluft::write_manual(app, words.empty() ? "." : words.front());
+            return ExitCode::done;
+        };
+    });
+}
+
 void add_validate_command(CLI::App& app, Command& command) {
     CLI::App* sub = app.add_subcommand("validate", "Run the validation suite, or some of its cases");
     sub->set_help_flag();
@@ -373,6 +419,8 @@ int program(int argc, char** argv) {
     add_study_command(app, command);
     add_calibrate_command(app, command);
     add_validate_command(app, command);
+    add_completion_command(app, command);
+    add_hidden_commands(app, command);
     const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
     if (const std::string message = unknown_command(app, words); !message.empty()) return bad_input(message);
     try {

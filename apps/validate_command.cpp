@@ -39,6 +39,19 @@ fs::path validation_script(const fs::path& program) {
 
 } // namespace
 
+std::vector<std::string> validation_cases() {
+    std::vector<std::string> cases;
+    try {
+        const fs::path root = validation_script(this_program("validate")).parent_path().parent_path() / "validation";
+        std::error_code error;
+        for (fs::directory_iterator each(root, error), end; !error && each != end; each.increment(error))
+            if (fs::exists(each->path() / "check.py", error)) cases.push_back(each->path().filename());
+    } catch (const InputError&) {
+        cases.clear();
+    }
+    return cases;
+}
+
 ExitCode validate(const ValidateArguments& arguments) {
     const fs::path program = this_program("validate");
     std::vector<std::string> words{validation_script(program), "--kluft", program};

@@ -3,8 +3,10 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <map>
 #include <regex>
@@ -30,7 +32,9 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::AllOf;
 using ::testing::AnyOf;
+using ::testing::Contains;
 using ::testing::ContainsRegex;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
@@ -246,7 +250,7 @@ Words with(Words words, const Words& more) {
     return words;
 }
 
-const Words commands{"run", "check", "draw", "report", "compare", "envelope", "study", "calibrate"};
+const Words commands{"run", "check", "draw", "report", "compare", "envelope", "study", "calibrate", "completion"};
 
 // ---- help, version, mistakes ---------------------------------------------------------------------------------------
 
@@ -328,22 +332,75 @@ TEST_F(CommandLine, SceneOfAStudyThatCannotBeReadIsToldWhereTheStudyNamesIt) {
                    AllOf(HasSubstr("study.yaml:2:8: scene: "), HasSubstr("found a binary file")));
 }
 
+/// What a shell's command says, errors too.
+std::string said_by_shell(const std::string& command) {
+    FILE* pipe = popen((command + " 2>&1").c_str(), "r");
+    std::string text;
+    for (int c = pipe == nullptr ? EOF : fgetc(pipe); c != EOF; c = fgetc(pipe)) text += static_cast<char>(c);
+    if (pipe != nullptr) pclose(pipe);
+    return text;
+}
+
+/// Candidates for the last word.
+Words completed(const std::function<Result(const Words&)>& kluft, Words words) {
+    words.insert(words.begin(), "complete");
+    return lines_of(kluft(words).out);
+}
+
 TEST_F(CommandLine, CompletionKnowsEverySubcommandAndEveryOption) {
-    const std::string script = content_of(KLUFT_SOURCE_DIR "/scripts/completions/kluft.bash");
+    const auto run = [&](const Words& words) { return kluft(words); };
     const std::regex option("--[a-z][a-z-]*");
     for (const auto& command : commands) {
-        // The line of the command in the table of options.
-        std::smatch line;
-        ASSERT_TRUE(std::regex_search(script, line, std::regex("\n    " + command + "\\)( options[^\n]*)"))) << command;
+        EXPECT_THAT(completed(run, {command.substr(0, 3)}), Contains(command));
+        const auto candidates = completed(run, {command, "--"});
         const std::string help = kluft({command, "--help"}).out;
         const std::string options = help.substr(help.find("Options:"), help.find("Example") - help.find("Options:"));
         for (const auto& each : lines_of(options)) {
             std::smatch name;
             if (!each.starts_with("  -") || !std::regex_search(each, name, option)) continue;
-            if (name.str() == "--help") continue; // of every command
-            EXPECT_THAT(line.str(1), HasSubstr(name.str())) << command;
+            EXPECT_THAT(candidates, Contains(name.str())) << command;
         }
-        EXPECT_TRUE(std::regex_search(script, std::regex("commands=\"[^\"]*\\b" + command + "\\b"))) << command;
+    }
+    EXPECT_THAT(completed(run, {"ma"}), IsEmpty()); // kluft manual and kluft complete are for scripts
+    EXPECT_THAT(completed(run, {"co"}), ElementsAre("compare", "completion"));
+}
+
+TEST_F(CommandLine, CompletionKnowsKeysNamesAndValuesOfAScene) {
+    const auto run = [&](const Words& words) { return kluft(words); };
+    write("tiny.yaml", tiny_scene);
+    write("notes.txt", "");
+    fs::create_directory(path("tables"));
+    EXPECT_THAT(completed(run, {"run", "t"}), ElementsAre("tables/", "tiny.yaml"));
+    EXPECT_THAT(completed(run, {"run", "tiny.yaml", "-o", "n"}), ElementsAre("notes.txt"));
+    EXPECT_THAT(completed(run, {"run", "tiny.yaml", "--set", "out"}), ElementsAre("output."));
+    EXPECT_THAT(completed(run, {"run", "tiny.yaml", "--set", "stages.1.st"}), Contains("stages.1.steps="));
+    EXPECT_THAT(completed(run, {"run", "tiny.yaml", "--set", "stages."}), Contains("stages.1."));
+    EXPECT_THAT(completed(run, {"check", "--set", "output.pictures="}),
+                ElementsAre("output.pictures=false", "output.pictures=true"));
+    EXPECT_THAT(completed(run, {"check", "--set", "analysis.plane="}), Contains("analysis.plane=strain"));
+    EXPECT_THAT(completed(run, {"check", "--set", "nothing.of.the.kind."}), IsEmpty());
+    EXPECT_THAT(completed(run, {"draw", "results", "--step", ""}), ElementsAre("last", "peak"));
+    EXPECT_THAT(completed(run, {"validate", "incl"}), ElementsAre("incline"));
+}
+
+// As a shell asks: it splits words at '=', which the script has to undo.
+TEST_F(CommandLine, BashCompletesKeysByTheScriptOfTheProgram) {
+    write("ask.sh", "eval \"$('" KLUFT_PROGRAM "' completion bash)\"\nCOMP_LINE='" KLUFT_PROGRAM
+                    " check --set output.pictures=t'\nCOMP_POINT=${#COMP_LINE}\n_kluft\necho \"${COMPREPLY[@]}\"\n");
+    EXPECT_EQ(said_by_shell("bash " + path("ask.sh").string()), "true\n");
+}
+
+TEST_F(CommandLine, ManualHasAPageForEveryCommandThatManReads) {
+    ASSERT_EQ(kluft({"manual", "man"}).code, 0);
+    for (const auto& command : commands) {
+        const std::string page = content_of(path("man/kluft-" + command + ".1"));
+        EXPECT_THAT(page, AllOf(HasSubstr(".SH SYNOPSIS"), HasSubstr(".SH EXAMPLES"))) << command;
+    }
+    EXPECT_THAT(content_of(path("man/kluft-run.1")), HasSubstr("\\fB\\-\\-resume\\fR"));
+    EXPECT_THAT(content_of(path("man/kluft-scene.5")), HasSubstr("\\fBmaterials.*.cohesion\\fR"));
+    if (!fs::exists("/usr/bin/groff")) GTEST_SKIP() << "groff is not installed";
+    for (const auto& each : fs::directory_iterator(path("man"))) {
+        EXPECT_EQ(said_by_shell("groff -man -ww -z -Tutf8 -Kutf8 " + each.path().string()), "");
     }
 }
 
