@@ -19,6 +19,7 @@
 #include "failure.hpp"
 #include "kluft/core/nearest_name.hpp"
 #include "kluft/core/version.hpp"
+#include "kluft/maps/gdal.hpp"
 #include "kluft/output/blocks_picture.hpp"
 #include "manual.hpp"
 #include "standard_output.hpp"
@@ -393,7 +394,8 @@ int program(int argc, char** argv) {
     app.set_version_flag("--version", [] {
         std::string text(kluft::version());
         if (!kluft::commit().empty()) text += " (" + std::string(kluft::commit()) + ")";
-        return text;
+        const std::string gdal = kluft::gdal_version();
+        return text + (gdal.empty() ? "\nwithout GDAL: maps as GeoJSON in metres" : "\nwith GDAL " + gdal);
     });
     app.require_subcommand(1);
     app.footer("Examples:\n"

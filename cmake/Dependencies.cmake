@@ -74,6 +74,15 @@ find_package(Ipopt)
 option(KLUFT_BUILD_CALIBRATE "Build kluft-calibrate, which links Ipopt" ${Ipopt_FOUND})
 option(KLUFT_BUILD_ORACLE "Build the tests against Ipopt (needs KLUFT_BUILD_TESTS)" ${Ipopt_FOUND})
 
+# Loaded when a map is read that needs it: neither the start of the program nor what it links pays for it.
+set_package_properties(GDAL PROPERTIES TYPE OPTIONAL
+  PURPOSE "GeoPackages, shapefiles and coordinate systems of maps")
+find_package(GDAL 3.4 QUIET)
+option(KLUFT_GDAL "Read and write maps with GDAL" ${GDAL_FOUND})
+if(KLUFT_GDAL)
+  find_package(GDAL 3.4 REQUIRED)
+endif()
+
 # The Python that has NumPy (scripts/python says which), for its headers and for the tests of the package.
 set(_python_by_default OFF)
 if(PROJECT_IS_TOP_LEVEL AND NOT KLUFT_SANITIZE AND NOT KLUFT_COVERAGE AND NOT KLUFT_BUILD_FUZZERS) # a plain Python loads it
@@ -96,6 +105,7 @@ option(KLUFT_PYTHON "Build the Python package" ${_python_by_default})
 
 add_feature_info(calibrate KLUFT_BUILD_CALIBRATE "kluft calibrate, a program of its own with Ipopt")
 add_feature_info(oracle KLUFT_BUILD_ORACLE "the solver against Ipopt, label oracle of ctest")
+add_feature_info(gdal KLUFT_GDAL "maps as GeoPackage and shapefile, coordinate systems")
 add_feature_info(python KLUFT_PYTHON "the package kluft in <build>/python")
 add_feature_info(tests KLUFT_BUILD_TESTS "GoogleTest, run by ctest")
 add_feature_info(benchmarks KLUFT_BUILD_BENCH "Google Benchmark, run by scripts/bench")

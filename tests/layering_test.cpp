@@ -20,10 +20,10 @@ namespace fs = std::filesystem;
 
 /// Low to high; layers of one rank are siblings and do not include each other.
 const std::map<std::string, int> rank_of_layer{
-    {"core", 0},        {"geometry", 1},     {"blocks", 2},   {"kinematics", 3},  {"constitutive", 4},
-    {"contact", 5},     {"loading", 6},      {"assembly", 7}, {"equilibrium", 8}, {"fracture", 9},
-    {"simulation", 10}, {"scene", 11},       {"output", 11},  {"reference", 11},  {"report", 12},
-    {"studies", 13},    {"calibration", 14}, {"apps", 15},    {"python", 15},
+    {"core", 0},         {"geometry", 1},    {"maps", 2},         {"blocks", 2},   {"kinematics", 3},
+    {"constitutive", 4}, {"contact", 5},     {"loading", 6},      {"assembly", 7}, {"equilibrium", 8},
+    {"fracture", 9},     {"simulation", 10}, {"scene", 11},       {"output", 11},  {"reference", 11},
+    {"report", 12},      {"studies", 13},    {"calibration", 14}, {"apps", 15},    {"python", 15},
 };
 
 /// Which layers may include a header of another project, by the start of its name. What is not listed is free.
@@ -36,6 +36,9 @@ const std::map<std::string, std::set<std::string>> layers_of_library{
     {"cblas", {"assembly"}},
     {"openblas", {"assembly"}},
     {"yaml-cpp/", {"scene"}},
+    {"gdal", {"maps"}},
+    {"ogr_", {"maps"}},
+    {"cpl_", {"maps"}},
     {"CGAL/", {"blocks"}},
     {"boost/polygon/", {"blocks"}},
     {"boost/math/", {"constitutive", "studies"}},
@@ -50,9 +53,9 @@ const std::map<std::string, std::set<std::string>> layers_of_library{
 
 /// Heavy headers have no place in what everyone includes.
 const std::vector<std::string> never_in_public_headers{
-    "cholmod",   "umfpack",   "SuiteSparse", "suitesparse/", "metis",  "cblas",    "openblas",
-    "yaml-cpp/", "CGAL/",     "hdf5",        "H5",           "cairo",  "CLI/",     "coin",
-    "Ip",        "nlohmann/", "spdlog/",     "fmt/",         "boost/", "pybind11/"};
+    "cholmod", "umfpack", "SuiteSparse", "suitesparse/", "metis", "cblas", "openblas", "yaml-cpp/",
+    "CGAL/",   "hdf5",    "H5",          "cairo",        "CLI/",  "coin",  "Ip",       "nlohmann/",
+    "spdlog/", "fmt/",    "boost/",      "pybind11/",    "gdal",  "ogr_",  "cpl_"};
 
 struct Include {
     std::string name;

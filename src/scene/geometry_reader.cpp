@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <set>
 #include <string_view>
@@ -15,8 +16,12 @@
 #include "kluft/blocks/hexagon_lattice.hpp"
 #include "kluft/blocks/triangle_net.hpp"
 #include "kluft/core/diagnostics.hpp"
+#include "kluft/core/place_text.hpp"
 #include "kluft/geometry/polygon.hpp"
-#include "kluft/scene/geojson.hpp"
+#include "kluft/geometry/predicates.hpp"
+#include "kluft/maps/coordinate_system.hpp"
+#include "kluft/maps/gdal.hpp"
+#include "kluft/scene/map_reader.hpp"
 #include "kluft/scene/outline.hpp"
 #include "kluft/scene/scene_check.hpp"
 
@@ -53,10 +58,42 @@ void require_simple(const MappedArea& area, const std::filesystem::path& file) {
     for (std::size_t i = 0; i < area.holes.size(); ++i) require(area.holes[i], fmt::format("hole {}", i));
 }
 
-bool boxes_meet(const std::vector<Vec2>& a, const std::vector<Vec2>& b) {
-    const Box box_a = bounding_box(a);
-    const Box box_b = bounding_box(b);
-    return (box_a.lower.array() <= box_b.upper.array()).all() && (box_b.lower.array() <= box_a.upper.array()).all();
+bool boxes_meet(const Box& a, const Box& b) {
+    return (a.lower.array() <= b.upper.array()).all() && (b.lower.array() <= a.upper.array()).all();
+}
+
+/// Whether a segment has a point in the polygon or on its outline. `sides`: the box of each side.
+bool meets(const Polygon& polygon, const std::vector<Box>& sides, const Vec2& start, const Vec2& end) {
+    if (contains(polygon, start)) return true;
+    const Box box = bounding_box({start, end});
+    for (std::size_t i = 0; i < polygon.size(); ++i)
+        if (boxes_meet(sides[i], box) && segments_meet(polygon[i], polygon[(i + 1) % polygon.size()], start, end))
+            return true;
+    return false;
+}
+
+/// Which traces have no point in the domain.
+std::vector<std::size_t> traces_outside(const Polygon& domain, const std::vector<FractureTrace>& traces) {
+    const Box window = bounding_box(domain);
+    std::vector<Box> sides;
+    for (std::size_t i = 0; i < domain.size(); ++i)
+        sides.push_back(bounding_box({domain[i], domain[(i + 1) % domain.size()]}));
+    const auto is_inside = [&](const Vec2& start, const Vec2& end) {
+        return boxes_meet(window, bounding_box({start, end})) && meets(domain, sides, start, end);
+    };
+    std::vector<std::size_t> outside;
+    for (std::size_t i = 0; i < traces.size(); ++i) {
+        const auto& points = traces[i].points;
+        bool inside = points.empty();
+        for (std::size_t k = 1; k < points.size() && !inside; ++k) inside = is_inside(points[k - 1], points[k]);
+        if (!inside) outside.push_back(i);
+    }
+    return outside;
+}
+
+std::string box_text(const std::vector<Vec2>& points) {
+    const Box box = bounding_box(points);
+    return fmt::format("from {} to {}", place_text(box.lower), place_text(box.upper));
 }
 
 /// "expected one of a, b, found both"; counts how many of the keys are given.
@@ -82,8 +119,10 @@ public:
         const bool is_given = geometry.node() != nullptr && geometry.node()->is_mapping() &&
                               gives_one_of(geometry, {"domain", "blocks"}, context_) && geometry.has("blocks");
         if (is_given) return read_given(geometry);
+        read_crs(geometry);
         if (geometry.has("domain")) read_domain(geometry.section("domain"));
         for (const auto& section : geometry.sections("fractures")) read_fracture(section);
+        look_for_traces_outside(geometry);
         if (geometry.has("tessellation")) read_tessellation(geometry.section("tessellation"));
         read_construction_lines(geometry);
         spec_.reference_spacing = geometry.number("reference_spacing");
@@ -100,6 +139,7 @@ private:
     // ---- given blocks ----------------------------------------------------------------------------------------
 
     GeometrySpec read_given(const SceneSection& geometry) {
+        read_crs(geometry);
         for (const auto* key : {"fractures", "tessellation", "construction_lines", "regions"})
             if (geometry.has(key))
                 context_.fail(
@@ -268,6 +308,49 @@ private:
             context_.fail(rectangle, {}, "expected a rectangle with an area, found one that vanishes in round-off");
     }
 
+    /// The coordinate system of the scene.
+    void read_crs(const SceneSection& geometry) {
+        const auto crs = geometry.given_text("crs");
+        if (!crs) return;
+        given_crs_ = canonical_crs(*crs);
+        spec_.crs = given_crs_;
+        crs_place_ = "geometry.crs";
+        if (!gdal_problem().empty()) return; // where it is needed that is told
+        try {
+            const CoordinateSystem system = describe_crs(given_crs_);
+            const bool is_in_metres = !system.is_geographic && system.unit == 1.0;
+            if (!is_in_metres)
+                context_.fail(
+                    geometry, "crs",
+                    fmt::format("expected a coordinate system in metres such as EPSG:25832, found {}, in {}",
+                                system.name,
+                                system.is_geographic ? "degrees" : fmt::format("units of {:g} m", system.unit)));
+        } catch (const InputError& error) {
+            context_.fail(geometry, "crs", error.what());
+        }
+    }
+
+    /// What a section says of its map.
+    [[nodiscard]] MapRequest map_request(const SceneSection& section, const std::filesystem::path& file) const {
+        return {.file = file,
+                .layer = section.given_text("layer").value_or(""),
+                .attribute = {},
+                .file_crs = section.given_text("file_crs").value_or(""),
+                .scene_crs = given_crs_};
+    }
+
+    /// Takes over the coordinate system of a map where the scene names none; all maps of a scene have the same one.
+    void take_crs(const std::string& crs, const std::filesystem::path& file) {
+        if (crs.empty() || crs == spec_.crs) return;
+        if (!spec_.crs.empty())
+            throw InputError(
+                fmt::format("{}: expected the coordinate system of {}, {}, or `geometry.crs`, to which both "
+                            "are projected, found {}",
+                            file.string(), crs_place_, spec_.crs, crs));
+        spec_.crs = crs;
+        crs_place_ = file.string();
+    }
+
     /// The file that a key names; relative to the file that the key stands in.
     [[nodiscard]] std::optional<std::filesystem::path> file_of(const SceneSection& section) const {
         const auto name = section.given_text("file");
@@ -280,7 +363,9 @@ private:
         if (!file) return;
         spec_.places.domain = fmt::format("{}: {}", context_.place(domain, "file"), file->string());
         try {
-            auto area = read_geojson_area(*file);
+            auto area = read_map_area(map_request(domain, *file));
+            take_crs(area.crs, *file);
+            if (!area.remark.empty()) context_.warn(domain, "file", area.remark);
             require_simple(area, *file);
             spec_.holes = std::move(area.holes);
             set_outline(area.outline);
@@ -319,39 +404,120 @@ private:
 
     void read_fracture(const SceneSection& section) {
         FractureTrace trace;
-        trace.interface_type = interface_of(section);
         const auto name = section.given_text("name");
         trace.name = name.value_or(fmt::format("fracture {}", spec_.fractures.size() + 1));
         trace.place = context_.place(section, {});
+        const bool is_map = section.node()->is_mapping() && section.has("file");
+        if (!is_map || !section.has("attribute")) trace.interface_type = interface_of(section);
         if (!section.node()->is_mapping() || !gives_one_of(section, {"trace", "file"}, context_)) return;
-        if (section.has("file")) return read_trace_file(section, trace);
+        if (is_map) return read_trace_file(section, trace);
+        for (const auto* key : {"layer", "file_crs", "attribute", "interfaces"})
+            if (section.has(key)) context_.fail(section, key, "expected `file` beside it, found `trace`");
         auto points = section.given_points("trace");
         if (!points || !has_distinct_points(section, "trace", *points)) return;
         trace.points = std::move(*points);
-        add_trace(section, std::move(trace));
+        spec_.fractures.push_back(std::move(trace));
     }
 
     /// One trace per line of the file, numbered from 1.
     void read_trace_file(const SceneSection& section, const FractureTrace& common) {
+        if (section.has("interfaces") && !section.has("attribute"))
+            context_.fail(section, "interfaces", "expected `attribute` beside it, whose values it names, found none");
         const auto file = file_of(section);
         if (!file) return;
         try {
-            int number = 0;
-            for (auto& line : read_geojson_traces(*file)) {
+            MapRequest request = map_request(section, *file);
+            request.attribute = section.given_text("attribute").value_or("");
+            MappedTraces read = read_map_traces(request);
+            take_crs(read.crs, *file);
+            if (!read.remark.empty()) context_.warn(section, "file", read.remark);
+            const auto types = interfaces_of_traces(section, read.traces, common.interface_type);
+            for (std::size_t i = 0; i < read.traces.size(); ++i) {
                 FractureTrace trace = common;
-                trace.points = std::move(line);
-                trace.name = fmt::format("{} {}", section.given_text("name").value_or("trace"), ++number);
-                add_trace(section, std::move(trace));
+                trace.points = std::move(read.traces[i].points);
+                trace.interface_type = types[i];
+                trace.name = fmt::format("{} {}", section.given_text("name").value_or("trace"), i + 1);
+                spec_.fractures.push_back(std::move(trace));
             }
+            n_mapped_ += read.traces.size();
         } catch (const InputError& error) {
             context_.fail(section, "file", error.what());
         }
     }
 
-    void add_trace(const SceneSection& section, FractureTrace trace) {
-        if (!spec_.domain.empty() && !trace.points.empty() && !boxes_meet(spec_.domain, trace.points))
-            context_.warn(section, {}, fmt::format("{} lies outside the domain", trace.name));
-        spec_.fractures.push_back(std::move(trace));
+    /// The kind of interface of each trace of a map: by an attribute where there is one.
+    std::vector<int> interfaces_of_traces(const SceneSection& section, const std::vector<MappedTrace>& traces,
+                                          int common) {
+        std::vector<int> types(traces.size(), common);
+        if (!section.has("attribute")) return types;
+        const std::map<std::string, int> chosen = interfaces_by_value(section);
+        const bool has_others = section.has("interface");
+        const int others = has_others ? interface_of(section) : -1;
+        std::map<std::string, int> unknown;
+        for (std::size_t i = 0; i < traces.size(); ++i) {
+            const auto& value = traces[i].attribute;
+            const auto found = value ? chosen.find(*value) : chosen.end();
+            types[i] = found == chosen.end() ? others : found->second;
+            if (found == chosen.end() && !has_others) ++unknown[value ? in_quotes(*value) : "no value"];
+        }
+        if (!unknown.empty()) fail_unknown_values(section, unknown);
+        return types;
+    }
+
+    /// Interfaces by the values of the attribute: those of `interfaces`, or the names of all interfaces themselves.
+    std::map<std::string, int> interfaces_by_value(const SceneSection& section) {
+        std::map<std::string, int> chosen;
+        if (!section.has("interfaces"))
+            for (std::size_t i = 0; i < interfaces_.size(); ++i) chosen[interfaces_[i]] = static_cast<int>(i);
+        for (const auto& each : section.sections("interfaces")) {
+            const auto value = each.given_text("value");
+            if (!value) continue;
+            if (chosen.contains(*value))
+                context_.fail(each, "value",
+                              fmt::format("expected each value once, found {} again", in_quotes(*value)));
+            chosen[*value] = interface_of(each);
+        }
+        return chosen;
+    }
+
+    void fail_unknown_values(const SceneSection& section, const std::map<std::string, int>& unknown) {
+        constexpr std::size_t most_told = 8;
+        std::vector<std::string> told;
+        int n_traces = 0;
+        for (const auto& [value, n] : unknown) {
+            n_traces += n;
+            if (told.size() < most_told) told.push_back(fmt::format("{} ({})", value, n));
+        }
+        if (unknown.size() > most_told) told.emplace_back("...");
+        context_.fail(section, "attribute",
+                      fmt::format("expected values that {}, or `interface` for all others, found {} traces with {}",
+                                  section.has("interfaces") ? "`interfaces` names" : "are names of interfaces",
+                                  n_traces, fmt::join(told, ", ")));
+    }
+
+    /// One line for all of them. A map of which nothing lies in the domain is a mistake, most often of its coordinates.
+    void look_for_traces_outside(const SceneSection& geometry) {
+        if (spec_.domain.empty() || spec_.fractures.empty()) return;
+        const auto outside = traces_outside(spec_.domain, spec_.fractures);
+        if (outside.empty()) return;
+        const std::size_t n = spec_.fractures.size();
+        if (outside.size() == n && n_mapped_ > 0) {
+            std::vector<Vec2> places;
+            for (const FractureTrace& trace : spec_.fractures)
+                places.insert(places.end(), trace.points.begin(), trace.points.end());
+            return context_.fail(
+                geometry, "fractures",
+                fmt::format("expected traces in the domain, which lies {}, found {} of {} outside: they "
+                            "lie {}",
+                            box_text(spec_.domain), n, n, box_text(places)));
+        }
+        if (outside.size() == 1) {
+            const FractureTrace& trace = spec_.fractures[outside.front()];
+            context_.warnings.push_back(fmt::format("{}: {} lies outside the domain", trace.place, trace.name));
+        } else {
+            context_.warn(geometry, "fractures",
+                          fmt::format("{} of {} traces lie outside the domain", outside.size(), n));
+        }
     }
 
     /// Index of the interface that a fracture or the tessellation names; -1 for an error.
@@ -546,7 +712,10 @@ private:
     ReadingContext& context_;
     GeometrySpec spec_;
     bool is_rectangle_ = false;
-    double net_area_ = 0.0; ///< of the part of the domain that triangles fill (m2)
+    std::string given_crs_;    ///< by geometry.crs
+    std::string crs_place_;    ///< where spec_.crs is from
+    std::size_t n_mapped_ = 0; ///< traces from maps
+    double net_area_ = 0.0;    ///< of the part of the domain that triangles fill (m2)
     bool is_clockwise_ = false;
     int n_sides_ = 0;                      ///< of the given blocks so far
     std::vector<int> first_side_;          ///< per given block

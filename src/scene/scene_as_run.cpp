@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <filesystem>
 #include <map>
 #include <utility>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/core/digest.hpp"
 #include "kluft/core/input_file.hpp"
+#include "kluft/maps/map_file.hpp"
 #include "kluft/scene/scene_text.hpp"
 #include "kluft/scene/scene_tree.hpp"
 #include "kluft/scene/scene_writer.hpp"
@@ -62,8 +64,8 @@ std::string title_of(const SceneNode& tree) {
     return title == nullptr ? std::string{} : title->text;
 }
 
-/// Of the content of a file of the geometry; of one that is gone, of nothing.
-std::string digest_of_file(const std::string& file) {
+/// Of the content of a file; of one that is gone, of nothing.
+std::string digest_of_content(const std::filesystem::path& file) {
     constexpr std::size_t largest = 1'000'000'000; // bytes; the readers of such files allow less
     try {
         return Digest().add(read_input_file(file, "a file of the geometry", largest)).text();
@@ -72,11 +74,22 @@ std::string digest_of_file(const std::string& file) {
     }
 }
 
+/// Of a map and of the files that belong to it.
+std::string digest_of_map(const std::string& file) {
+    const std::string digest = digest_of_content(file);
+    const auto others = companions(file);
+    if (others.empty()) return digest;
+    Digest all;
+    all.add(digest);
+    for (const auto& other : others) all.add(digest_of_content(other));
+    return all.text();
+}
+
 std::string digest_of_leaves(std::vector<Leaf> leaves) {
     std::ranges::sort(leaves);
     Digest digest;
     for (const Leaf& leaf : leaves)
-        digest.add(leaf.path).add(names_geometry_file(leaf.path) ? digest_of_file(leaf.value) : leaf.value);
+        digest.add(leaf.path).add(names_geometry_file(leaf.path) ? digest_of_map(leaf.value) : leaf.value);
     return digest.text();
 }
 

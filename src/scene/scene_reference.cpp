@@ -56,10 +56,34 @@ positive.
 ## Text
 
 Names of materials, interfaces and boundaries are made of letters, digits, `_` and `-`. A file is UTF-8 text of at most
-1 MB with lines that end in LF or CR LF; large geometry goes into GeoJSON files (at most 100 MB) that the scene names. All
+1 MB with lines that end in LF or CR LF; large geometry goes into maps (GeoJSON of at most 100 MB) that the scene names. All
 are regular files: pipes and devices are refused. Lengths and coordinates are at most 1e9 m, and a net has at most 2e6
 cells. YAML's anchors, aliases and tags, several documents in
 one file and duplicate keys are refused. JSON is YAML too.
+
+## Maps
+
+The domain and the fractures may be maps: GeoJSON, and in a build with GDAL (`kluft --version` says) GeoPackage (`.gpkg`) and
+shapefile (`.shp` with its `.shx` and `.dbf`). Coordinates of the scene are then those of the map, in metres. The domain is a window on
+the map: traces are clipped to it, one line tells how many lie outside, and a map of which nothing lies inside is an error.
+
+```yaml
+geometry:
+  crs: EPSG:25832
+  domain: {rectangle: {origin: [691400, 5334600], width: 200, height: 200}}
+  fractures:
+    - file: outcrop.gpkg
+      layer: traces
+      attribute: set
+      interfaces: [{value: A, interface: bedding}, {value: B, interface: joint}]
+```
+
+Coordinates in degrees are projected to `geometry.crs`, and refused without it; systems in other units than metres likewise. Without
+`geometry.crs` all maps of a scene have to be in one system. A map that does not say its system is in metres where a coordinate is beyond
+180 or 90. Otherwise, beside `geometry.crs`, GeoJSON is in degrees (RFC 7946) and other files need `file_crs`; without it small numbers
+about the origin are metres, which a warning tells, and a small area far from the origin is refused as degrees. `file_crs: local` ends all
+doubt: metres of the scene. `attribute` chooses the kind of interface: by the list `interfaces`, or, without it, as the name of an
+interface; `interface` is for all other values. Heights are left out, arcs become chords of four degrees.
 
 ## Extending and overriding
 

@@ -17,7 +17,7 @@ namespace kluft {
 namespace {
 
 constexpr std::size_t largest_scene = 1'000'000; ///< bytes; large geometry goes into files of its own
-constexpr std::string_view hint = "; large geometry goes into GeoJSON files that a scene names";
+constexpr std::string_view hint = "; large geometry goes into maps (GeoJSON) that a scene names";
 constexpr std::size_t longest_chain = 16; ///< of scenes that extend each other
 
 /// Length of the UTF-8 character at `at`; 0 if there is none.

@@ -9,6 +9,7 @@
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/core/digest.hpp"
 #include "kluft/core/nearest_name.hpp"
+#include "kluft/maps/map_file.hpp"
 #include "kluft/output/atomic_file.hpp"
 #include "kluft/scene/quantity.hpp"
 #include "kluft/scene/scene_check.hpp"
@@ -491,6 +492,8 @@ std::string digest_of(const Scene& scene) {
     if (scene.text.find("file:") == std::string::npos) return digest.text();
     std::set<std::string> files;
     collect_files(tree_of(scene), files);
+    for (const auto& file : std::set<std::string>(files))
+        for (const fs::path& other : companions(file)) files.insert(other.string());
     std::error_code error;
     for (const auto& file : files)
         if (fs::is_regular_file(file, error)) digest.add(read_file(file));

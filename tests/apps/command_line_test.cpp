@@ -270,10 +270,12 @@ TEST_F(CommandLine, HelpOfEverySubcommandGivesAnExample) {
     }
 }
 
-TEST_F(CommandLine, VersionIsThreeNumbersAndTheCommit) {
+TEST_F(CommandLine, VersionIsThreeNumbersAndTheCommitAndWhetherThereIsGdal) {
     const Result result = kluft({"--version"});
     EXPECT_EQ(result.code, 0);
-    EXPECT_TRUE(std::regex_match(result.out, std::regex("[0-9]+\\.[0-9]+\\.[0-9]+( \\([0-9a-f]+(-dirty)?\\))?\n")))
+    EXPECT_TRUE(
+        std::regex_match(result.out, std::regex("[0-9]+\\.[0-9]+\\.[0-9]+( \\([0-9a-f]+(-dirty)?\\))?\nwith(out GDAL: "
+                                                "maps as GeoJSON in metres| GDAL [0-9.]+)\n")))
         << result.out;
 }
 

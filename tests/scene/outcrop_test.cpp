@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "blocks/cut_scenes.hpp"
-#include "kluft/scene/geojson.hpp"
+#include "kluft/scene/map_reader.hpp"
 
 namespace kluft {
 namespace {
@@ -12,10 +12,11 @@ using namespace cut_scenes;
 GeometrySpec outcrop() {
     const std::filesystem::path folder = std::filesystem::path(KLUFT_SOURCE_DIR) / "models/data/outcrop-kb7";
     GeometrySpec spec;
-    const MappedArea area = read_geojson_area(folder / "area.geojson");
+    const MappedArea area = read_map_area({.file = folder / "area.geojson"});
     spec.domain = area.outline;
     spec.holes = area.holes;
-    for (auto& trace : read_geojson_traces(folder / "traces.geojson")) spec.fractures.push_back({trace, 0, ""});
+    for (auto& trace : read_map_traces({.file = folder / "traces.geojson"}).traces)
+        spec.fractures.push_back({trace.points, 0, ""});
     return spec;
 }
 

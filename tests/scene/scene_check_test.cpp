@@ -64,7 +64,7 @@ TEST(SceneErrors, AllAreReportedAtOnceInTheOrderOfTheText) {
 TEST(SceneErrors, MissingKeysPointToTheMappingThatLacksThem) {
     EXPECT_THAT(errors_in("title: empty\nmaterials: {rock: {density: 1}}\n"),
                 ElementsAre("scene.yaml:1:1: kluft: expected an integer equal to 1, found nothing\n  title: empty",
-                            StartsWith("scene.yaml:1:1: geometry: expected a mapping of domain, fractures, "),
+                            StartsWith("scene.yaml:1:1: geometry: expected a mapping of domain, crs, fractures, "),
                             StartsWith("scene.yaml:1:1: stages: expected a list of at least one, found nothing"),
                             StartsWith("scene.yaml:2:19: materials.rock.youngs_modulus: expected a number > 0 in Pa, "
                                        "found nothing"),

@@ -130,6 +130,7 @@ struct GeometrySpec {
     std::vector<GivenBlock> blocks; ///< instead of domain, holes, fractures, tessellation and regions
     int blocks_interface = 0;       ///< index into the scene's interface types: of the interfaces between them
     std::vector<BlockSetSpec> sets;
+    std::string crs{}; ///< coordinate system of the scene's coordinates, "EPSG:25832"; empty where it is not known
     GeometryPlaces places{};
 };
 

@@ -11,7 +11,7 @@ namespace kluft {
 
 /// `root` is the whole scene; the names are those of its materials and interfaces. The domain comes out
 /// counter-clockwise with the same first corner, boundaries in this order: bottom, right, top, left, or as given.
-/// Of given blocks the sides count through the polygons of all blocks. Reads the GeoJSON files that the scene names.
+/// Of given blocks the sides count through the polygons of all blocks. Reads the maps that the scene names.
 [[nodiscard]] GeometrySpec read_geometry(const SceneSection& root, const std::vector<std::string>& materials,
                                          const std::vector<std::string>& interfaces, ReadingContext& context);
 

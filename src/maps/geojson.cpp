@@ -1,15 +1,16 @@
-#include "kluft/scene/geojson.hpp"
+#include "kluft/maps/geojson.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/core/input_file.hpp"
-#include "kluft/scene/scene_tree.hpp"
 
 namespace kluft {
 
@@ -33,8 +34,11 @@ struct Place {
 
 struct PlacedGeometry {
     const json* geometry = nullptr;
+    const json* feature = nullptr; ///< null for a bare geometry
     Place place;
 };
+
+std::string quoted(const std::string& text) { return "'" + text + "'"; }
 
 json parse_file(const std::filesystem::path& file) {
     const std::string text = read_input_file(file, "a GeoJSON file", largest_file);
@@ -56,7 +60,7 @@ void add_feature(std::vector<PlacedGeometry>& geometries, const json& feature, c
     if (type_of(feature, place) != "Feature") place.fail("expected \"type\": \"Feature\"");
     const auto geometry = feature.find("geometry");
     if (geometry == feature.end()) place.fail("expected a \"geometry\"");
-    if (!geometry->is_null()) geometries.push_back({&*geometry, place});
+    if (!geometry->is_null()) geometries.push_back({&*geometry, &feature, place});
 }
 
 std::vector<PlacedGeometry> geometries_of(const json& root, const std::string& file) {
@@ -71,7 +75,7 @@ std::vector<PlacedGeometry> geometries_of(const json& root, const std::string& f
     } else if (type == "Feature") {
         add_feature(geometries, root, {file, 0});
     } else {
-        geometries.push_back({&root, place});
+        geometries.push_back({&root, nullptr, place});
     }
     return geometries;
 }
@@ -79,10 +83,10 @@ std::vector<PlacedGeometry> geometries_of(const json& root, const std::string& f
 /// A value for a message. Only a short list of values is written out: lists may hold lists to any depth.
 std::string text_of(const json& value) {
     if (value.is_object()) return "an object";
-    if (!value.is_array()) return in_quotes(value.dump());
+    if (!value.is_array()) return quoted(value.dump());
     constexpr std::size_t most_written = 3;
     const bool is_plain = std::ranges::none_of(value, [](const json& item) { return item.is_structured(); });
-    if (is_plain && value.size() <= most_written) return in_quotes(value.dump());
+    if (is_plain && value.size() <= most_written) return quoted(value.dump());
     return fmt::format("a list of {}", value.size());
 }
 
@@ -102,76 +106,86 @@ Vec2 point_of(const json& position, const Place& place) {
     return point;
 }
 
-/// The points without those equal to the one before.
 std::vector<Vec2> points_of(const json& list, const Place& place) {
     if (!list.is_array()) place.fail("expected a list of positions");
     std::vector<Vec2> points;
-    for (const json& position : list) {
-        const Vec2 point = point_of(position, place);
-        if (points.empty() || point != points.back()) points.push_back(point);
-    }
+    points.reserve(list.size());
+    for (const json& position : list) points.push_back(point_of(position, place));
     return points;
 }
 
-Polygon ring_of(const json& list, const Place& place) {
-    Polygon ring = points_of(list, place);
-    if (ring.size() < 4)
-        place.fail("expected a ring of at least three different points, the first repeated at the end");
-    if (ring.front() != ring.back()) place.fail("a ring does not end at its first point");
-    ring.pop_back();
-    return ring;
+std::vector<std::vector<Vec2>> paths_of(const json& list, const Place& place) {
+    if (!list.is_array()) place.fail("expected a list of lists of positions");
+    std::vector<std::vector<Vec2>> paths;
+    for (const json& each : list) paths.push_back(points_of(each, place));
+    return paths;
 }
 
-MappedArea area_of(const json& rings, const Place& place) {
-    if (!rings.is_array() || rings.empty()) place.fail("expected a polygon with at least one ring");
-    MappedArea area;
-    area.outline = ring_of(rings[0], place);
-    for (std::size_t i = 1; i < rings.size(); ++i) area.holes.push_back(ring_of(rings[i], place));
-    return area;
+void read_geometry_of(const json& geometry, const Place& place, MapFeature& feature) {
+    feature.type = type_of(geometry, place);
+    if (feature.type == "LineString") {
+        feature.lines.push_back(points_of(coordinates_of(geometry, place), place));
+    } else if (feature.type == "MultiLineString") {
+        feature.lines = paths_of(coordinates_of(geometry, place), place);
+    } else if (feature.type == "Polygon") {
+        feature.polygons.push_back(paths_of(coordinates_of(geometry, place), place));
+    } else if (feature.type == "MultiPolygon") {
+        for (const json& part : coordinates_of(geometry, place)) feature.polygons.push_back(paths_of(part, place));
+    }
 }
 
-std::vector<Vec2> trace_of(const json& list, const Place& place) {
-    std::vector<Vec2> trace = points_of(list, place);
-    if (trace.size() < 2) place.fail("expected a trace of at least two different points");
-    return trace;
+MapValue attribute_value(const json& value) {
+    if (value.is_string()) return value.get<std::string>();
+    if (value.is_boolean()) return std::string(value.get<bool>() ? "true" : "false");
+    if (value.is_number_integer()) return value.get<long long>();
+    if (value.is_number()) return value.get<double>();
+    return {};
+}
+
+/// Gives each feature the values of its properties; each property of any of them is a field.
+void read_attributes(const std::vector<PlacedGeometry>& geometries, MapLayer& layer) {
+    std::map<std::string, std::size_t> fields;
+    for (std::size_t i = 0; i < geometries.size(); ++i) {
+        const json* const feature = geometries[i].feature;
+        const auto properties = feature == nullptr ? json::const_iterator{} : feature->find("properties");
+        if (feature == nullptr || properties == feature->end() || !properties->is_object()) continue;
+        for (const auto& [name, value] : properties->items()) {
+            const auto field = fields.try_emplace(name, fields.size()).first->second;
+            auto& values = layer.features[i].values;
+            values.resize(std::max(values.size(), field + 1));
+            values[field] = attribute_value(value);
+        }
+    }
+    layer.fields.resize(fields.size());
+    for (const auto& [name, index] : fields) layer.fields[index] = name;
+    for (MapFeature& feature : layer.features) feature.values.resize(fields.size());
+}
+
+/// Of {"type": "name", "properties": {"name": "urn:ogc:def:crs:EPSG::25832"}}.
+std::string crs_of(const json& root) {
+    const auto crs = root.find("crs");
+    if (crs == root.end() || !crs->is_object()) return {};
+    const auto properties = crs->find("properties");
+    if (properties == crs->end() || !properties->is_object()) return {};
+    const auto name = properties->find("name");
+    return name != properties->end() && name->is_string() ? name->get<std::string>() : std::string{};
 }
 
 } // namespace
 
-MappedArea read_geojson_area(const std::filesystem::path& file) {
+MapLayer read_geojson(const std::filesystem::path& file) {
     const json root = parse_file(file);
-    std::vector<MappedArea> areas;
-    for (const auto& [geometry, place] : geometries_of(root, file.string())) {
-        const std::string type = type_of(*geometry, place);
-        if (type == "Polygon") {
-            areas.push_back(area_of(coordinates_of(*geometry, place), place));
-        } else if (type == "MultiPolygon") {
-            for (const json& part : coordinates_of(*geometry, place)) areas.push_back(area_of(part, place));
-        } else {
-            place.fail(fmt::format("expected a Polygon, got {}", in_quotes(type)));
-        }
+    const std::vector<PlacedGeometry> geometries = geometries_of(root, file.string());
+    MapLayer layer;
+    layer.name = file.stem().string();
+    layer.crs = crs_of(root);
+    for (const auto& [geometry, feature, place] : geometries) {
+        MapFeature& read = layer.features.emplace_back();
+        read.id = place.feature;
+        read_geometry_of(*geometry, place, read);
     }
-    if (areas.size() != 1) {
-        throw InputError(fmt::format("{}: expected one polygon, the domain, got {}", file.string(), areas.size()));
-    }
-    return std::move(areas.front());
-}
-
-std::vector<std::vector<Vec2>> read_geojson_traces(const std::filesystem::path& file) {
-    const json root = parse_file(file);
-    std::vector<std::vector<Vec2>> traces;
-    for (const auto& [geometry, place] : geometries_of(root, file.string())) {
-        const std::string type = type_of(*geometry, place);
-        if (type == "LineString") {
-            traces.push_back(trace_of(coordinates_of(*geometry, place), place));
-        } else if (type == "MultiLineString") {
-            for (const json& part : coordinates_of(*geometry, place)) traces.push_back(trace_of(part, place));
-        } else {
-            place.fail(fmt::format("expected a LineString or a MultiLineString, got {}", in_quotes(type)));
-        }
-    }
-    if (traces.empty()) throw InputError(fmt::format("{}: no traces", file.string()));
-    return traces;
+    read_attributes(geometries, layer);
+    return layer;
 }
 
 } // namespace kluft

@@ -1,0 +1,81 @@
+#include "gdal_library.hpp"
+
+#include <algorithm>
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include "kluft/core/diagnostics.hpp"
+#include "kluft/maps/gdal.hpp"
+
+namespace kluft {
+
+namespace {
+
+/// The loaded library, or why there is none. It is never unloaded.
+struct GdalLibrary {
+    void* handle = nullptr;
+    std::string problem;
+};
+
+GdalLibrary load_gdal() {
+    GdalLibrary library;
+    for (const char* const name : {KLUFT_GDAL_NAME, KLUFT_GDAL_LIBRARY}) {
+        library.handle = ::dlopen(name, RTLD_NOW | RTLD_LOCAL); // NOLINT(bugprone-unused-return-value)
+        if (library.handle != nullptr) return {library.handle, {}};
+        const char* const reason = ::dlerror();
+        library.problem = fmt::format("GDAL cannot be loaded: {}", reason == nullptr ? name : reason);
+    }
+    return library;
+}
+
+const GdalLibrary& gdal_library() {
+    static const GdalLibrary library = load_gdal();
+    return library;
+}
+
+std::string on_one_line(std::string text) {
+    std::ranges::replace(text, '\n', ' ');
+    while (text.ends_with(' ')) text.pop_back();
+    return text;
+}
+
+} // namespace
+
+std::string gdal_version() { return KLUFT_GDAL_VERSION; }
+
+std::string gdal_problem() { return gdal_library().problem; }
+
+void* gdal_symbol(const char* name) {
+    if (!gdal_problem().empty()) throw InputError(gdal_problem());
+    void* const found = ::dlsym(gdal_library().handle, name);
+    if (found == nullptr)
+        throw InputError(fmt::format("expected GDAL {} or newer, found one without {}", gdal_version(), name));
+    return found;
+}
+
+GdalMessages::GdalMessages() : pop_(KLUFT_GDAL(CPLPopErrorHandler)) {
+    KLUFT_GDAL(CPLPushErrorHandlerEx)(&GdalMessages::take, this);
+}
+
+GdalMessages::~GdalMessages() { pop_(); }
+
+void CPL_STDCALL GdalMessages::take(CPLErr kind, CPLErrorNum number, const char* text) {
+    auto* const messages = static_cast<GdalMessages*>(KLUFT_GDAL(CPLGetErrorHandlerUserData)());
+    if (kind >= CE_Failure)
+        messages->failures_.emplace_back(on_one_line(text));
+    else if (kind == CE_Warning)
+        messages->warnings_.emplace_back(on_one_line(text));
+    messages->out_of_memory_ = messages->out_of_memory_ || number == CPLE_OutOfMemory;
+}
+
+std::string GdalMessages::text() const {
+    if (!failures_.empty()) return failures_.front();
+    return warnings_.empty() ? std::string{} : warnings_.front();
+}
+
+void GdalMessages::require_memory() const {
+    if (out_of_memory_) throw ResourceError("not enough memory for a map: " + text());
+}
+
+} // namespace kluft
