@@ -67,6 +67,14 @@ struct DrawArguments {
 /// Writes report.html into directories of results.
 [[nodiscard]] ExitCode report(const std::vector<std::string>& directories);
 
+struct ExportArguments {
+    std::string directory;
+    std::string output; ///< .gpkg or .geojson; empty: <run name>.gpkg
+    std::string step;   ///< of the kept state: a load step, peak or last; empty: last
+};
+
+[[nodiscard]] ExitCode export_map(const ExportArguments& arguments);
+
 struct CompareArguments {
     std::vector<std::string> directories; ///< two
     std::string tolerance = "0.05";

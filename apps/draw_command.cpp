@@ -30,6 +30,7 @@
 #include "kluft/simulation/fingerprint.hpp"
 #include "kluft/simulation/state_fields.hpp"
 #include "kluft/studies/finished_run.hpp"
+#include "results_run.hpp"
 #include "standard_output.hpp"
 
 namespace kluft {
@@ -39,34 +40,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double mega = 1e6;
-
-/// What is known of a run besides its tables; a killed run has no summary.
-struct RunHeading {
-    std::string title;
-    std::optional<int> platen_stage;
-};
-
-RunHeading heading_of(const fs::path& directory) {
-    if (!fs::exists(directory / "summary.json")) return {run_name(directory), std::nullopt};
-    const RunSummary summary = read_summary(directory / "summary.json");
-    return {summary.title, summary.platen_stage};
-}
-
-/// Of a run that has ended.
-bool moves_no_platen(const fs::path& directory) {
-    return fs::exists(directory / "summary.json") && !heading_of(directory).platen_stage;
-}
-
-RunCurve read_curve(const fs::path& directory, const std::string& label) {
-    require_results(directory);
-    RunCurve curve;
-    curve.label = label;
-    curve.history = read_history(directory / "history.csv");
-    if (curve.history.empty()) throw InputError((directory / "history.csv").string() + ": no load step in it yet");
-    if (fs::exists(directory / "equilibria.csv")) curve.equilibria = read_history(directory / "equilibria.csv");
-    curve.platen_stage = heading_of(directory).platen_stage;
-    return curve;
-}
 
 [[noreturn]] void refuse_mark(const std::string& mark, const std::string& found) {
     throw InputError(fmt::format("--mark '{}': expected [RUN:]LABEL=STRESS, or [RUN:]LABEL=STRESS at STRAIN as in "
@@ -155,24 +128,6 @@ BlocksPlot plot_of(const Scene& scene) {
     return plot;
 }
 
-/// The scene and the body of a run.
-struct DrawnRun {
-    Scene scene;
-    SceneModel built;
-};
-
-DrawnRun read_run(const fs::path& directory) {
-    const fs::path saved = directory / "state.h5";
-    if (!fs::exists(saved)) {
-        throw InputError(directory.string() + ": expected a directory of results, found no state.h5 in it, from which "
-                                              "the blocks are drawn");
-    }
-    DrawnRun run;
-    run.scene = read_scene_text(read_state_scene(saved), {}, saved);
-    run.built = build_scene_model(run.scene);
-    return run;
-}
-
 /// Before and after, from the last saved state and the scene that is saved with it.
 void draw_blocks_of_run(const DrawArguments& arguments, const std::vector<fs::path>& pictures) {
     const fs::path directory = arguments.sources.front();
@@ -188,43 +143,6 @@ void draw_blocks_of_run(const DrawArguments& arguments, const std::vector<fs::pa
         write_blocks(picture, built.model.system, fields, plot);
         announce(picture);
     }
-}
-
-int nearest_of(const std::vector<int>& steps, int step) {
-    return *std::ranges::min_element(steps, {}, [&](int each) { return std::abs(each - step); });
-}
-
-/// The load step with the largest axial stress at its end.
-int peak_step(const fs::path& directory) {
-    const auto platen_stage = heading_of(directory).platen_stage;
-    const auto step = platen_stage ? step_of_peak(read_curve(directory, {}).history, platen_stage) : std::nullopt;
-    if (!step)
-        throw InputError("--step peak: expected a finished run that moves a platen, found " + directory.string());
-    return *step;
-}
-
-/// Of the states that a run keeps, the one that is asked for.
-int step_asked_for(const std::string& text, const fs::path& directory) {
-    const std::vector<int> steps = kept_steps(directory);
-    if (steps.empty())
-        throw InputError(directory.string() + ": expected fields of a load step, found none (output.fields: true)");
-    if (text.empty() || text == "last") return steps.back();
-    if (text == "peak") {
-        const int peak = peak_step(directory);
-        const int nearest = nearest_of(steps, peak);
-        if (nearest != peak) tell("the peak is at load step {}; the nearest state that is kept is {}\n", peak, nearest);
-        return nearest;
-    }
-    const auto number = read_integer(text);
-    if (!number)
-        throw InputError(fmt::format("--step: expected a load step, peak or last, found '{}'{}", text,
-                                     suggestion(text, {"peak", "last"})));
-    const int step = static_cast<int>(std::clamp<long long>(*number, 0, steps.back()));
-    if (*number != step || std::ranges::find(steps, step) == steps.end())
-        throw InputError(fmt::format("--step: expected a load step whose fields are kept, the nearest of which is {}, "
-                                     "found {} (output.fields_every: 1 keeps all)",
-                                     nearest_of(steps, step), text));
-    return step;
 }
 
 double scale_of(const std::string& text) {
@@ -268,7 +186,7 @@ void draw_state_of_run(const DrawArguments& arguments) {
     if (arguments.curve || arguments.histories || !arguments.marks.empty())
         throw InputError("--step, --field, --scale and --window: expected a picture of blocks, found one of a curve");
     const int step = step_asked_for(arguments.step, directory);
-    const DrawnRun run = read_run(directory);
+    const RunOfResults run = read_run(directory);
     const BlockSystem& system = run.built.model.system;
     const FieldRecord fields = read_fields(directory, step, system);
     const std::string name = arguments.field.empty() ? "sigma_1" : arguments.field;

@@ -219,6 +219,22 @@ void add_report_command(CLI::App& app, Command& command) {
     sub->callback([directories, &command] { command = [directories] { return kluft::report(*directories); }; });
 }
 
+void add_export_command(CLI::App& app, Command& command) {
+    auto arguments = std::make_shared<kluft::ExportArguments>();
+    CLI::App* sub =
+        app.add_subcommand("export", "Write a state of a run as a map: blocks as polygons, interfaces as lines");
+    sub->add_option("directory", arguments->directory, "Directory of results")->required();
+    sub->add_option("-o,--output", arguments->output,
+                    "GeoPackage (.gpkg) or GeoJSON (.geojson) (default: <run name>.gpkg)");
+    sub->add_option("--step", arguments->step,
+                    "A kept state: a load step, peak (the one kept nearest to the peak) or last (default)");
+    sub->footer(
+        "Coordinates are those of the scene, with the coordinate system of its maps or of geometry.crs. Needs GDAL.\n"
+        "Exit codes: 0 written, 2 bad input, 4 out of disk or memory.\n"
+        "Example: kluft export results/outcrop-kb7 -o outcrop.gpkg --step last");
+    sub->callback([arguments, &command] { command = [arguments] { return kluft::export_map(*arguments); }; });
+}
+
 void add_compare_command(CLI::App& app, Command& command) {
     auto arguments = std::make_shared<kluft::CompareArguments>();
     CLI::App* sub =
@@ -416,6 +432,7 @@ int program(int argc, char** argv) {
     add_schema_command(app, command);
     add_draw_command(app, command);
     add_report_command(app, command);
+    add_export_command(app, command);
     add_compare_command(app, command);
     add_envelope_command(app, command);
     add_study_command(app, command);

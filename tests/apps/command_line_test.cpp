@@ -1,5 +1,6 @@
 // The program as a user sees it: what it prints, the files it leaves, its exit codes.
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -23,6 +24,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "kluft/maps/gdal.hpp"
 #include "kluft/output/state_file.hpp"
 #include "output/temporary_directory.hpp"
 
@@ -250,7 +252,8 @@ Words with(Words words, const Words& more) {
     return words;
 }
 
-const Words commands{"run", "check", "draw", "report", "compare", "envelope", "study", "calibrate", "completion"};
+const Words commands{"run",     "check",    "draw",  "report",    "export",
+                     "compare", "envelope", "study", "calibrate", "completion"};
 
 // ---- help, version, mistakes ---------------------------------------------------------------------------------------
 
@@ -1117,6 +1120,36 @@ TEST_F(CommandLine, PictureThatDoesNotFitLeavesNothing) {
     EXPECT_THAT(full.err, HasSubstr("cannot write: File too large"));
     EXPECT_FALSE(fs::exists(path("tiny.png")));
     EXPECT_FALSE(fs::exists(path("tiny.png.part")));
+}
+
+TEST_F(CommandLine, ARunIsExportedAsAMapInTheSystemOfItsScene) {
+    write("tiny.yaml", std::regex_replace(tiny_scene, std::regex("domain: \\{rectangle: \\{"),
+                                          "crs: EPSG:25832\n  domain: {rectangle: {origin: [691400, 5334600], "));
+    ASSERT_EQ(kluft({"run", "tiny.yaml", "-o", "r", "--quiet"}).code, 0);
+    if (!gdal_problem().empty()) return expect_refused({"export", "r"}, HasSubstr("GDAL"));
+    const Result exported = kluft({"export", "r", "-o", "r.geojson", "--step", "peak"});
+    ASSERT_EQ(exported.code, 0) << exported.err;
+    EXPECT_EQ(exported.out, "r.geojson\n");
+    const auto map = nlohmann::json::parse(content_of(path("r.geojson")));
+    EXPECT_EQ(map["crs"]["properties"]["name"], "urn:ogc:def:crs:EPSG::25832");
+    double area = 0.0;
+    for (const auto& feature : map["features"]) {
+        if (feature["properties"]["layer"] != "blocks") continue;
+        const auto ring = feature["geometry"]["coordinates"][0].get<std::vector<std::array<double, 2>>>();
+        for (std::size_t i = 0; i + 1 < ring.size(); ++i)
+            area += 0.5 * ((ring[i][0] - 691400.0) * (ring[i + 1][1] - 5334600.0) -
+                           (ring[i + 1][0] - 691400.0) * (ring[i][1] - 5334600.0));
+    }
+    EXPECT_NEAR(area, 0.2 * 0.4, 1e-7); // of the domain; ordinates have 1e-9 m
+    EXPECT_EQ(kluft({"export", "r"}).code, 0);
+    EXPECT_TRUE(fs::exists(path("r.gpkg")));
+    expect_refused({"export", "r", "-o", "r.shp"},
+                   HasSubstr("expected a file that ends in .gpkg or .geojson, found r.shp"));
+    expect_refused({"export", "tiny.yaml"}, HasSubstr("expected a directory of results"));
+    const Result full = kluft({"export", "r", "-o", "full.gpkg"}, {.file_bytes = 1000});
+    EXPECT_EQ(full.code, 4);
+    EXPECT_FALSE(fs::exists(path("full.gpkg")));
+    EXPECT_FALSE(fs::exists(path("full.gpkg.part")));
 }
 
 // Only the pictures, the last that is written, do not fit.

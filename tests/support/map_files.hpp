@@ -25,7 +25,7 @@ inline std::string printed_by(const std::string& command) {
 }
 
 /// A directory of maps; tests are skipped where there is neither GDAL nor its tools.
-class MapFiles : public testing::Test {
+class MapFiles : public ::testing::Test {
 protected:
     void SetUp() override {
         if (!gdal_problem().empty()) GTEST_SKIP() << gdal_problem();
@@ -65,8 +65,8 @@ protected:
 
 private:
     std::filesystem::path directory_ =
-        std::filesystem::path(testing::TempDir()) /
-        (std::string("kluft_maps_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+        std::filesystem::path(::testing::TempDir()) /
+        (std::string("kluft_maps_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
 };
 
 } // namespace kluft::test
