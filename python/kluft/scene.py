@@ -180,7 +180,7 @@ class Scene(MutableMapping[str, Any]):
         if file is not None:
             features = [{"type": "Feature", "properties": {}, "geometry": {"type": "LineString", "coordinates": line}} for line in lines]
             Path(file).write_text(json.dumps({"type": "FeatureCollection", "features": features}), encoding="utf-8")
-            new: list[dict[str, Any]] = [{"file": str(Path(file).absolute()), "interface": interface}]
+            new: list[dict[str, Any]] = [{"file": str(Path(file).absolute()), "file_crs": "local", "interface": interface}]
         else:
             new = [{"trace": line, "interface": interface} for line in lines]
         self["geometry.fractures"] = [*self.get("geometry.fractures", []), *new]

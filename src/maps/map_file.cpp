@@ -11,13 +11,6 @@
 #include "kluft/maps/gdal.hpp"
 #include "spatial_reference.hpp"
 
-// GDAL's own headers declare them for C++ only, with all its classes.
-extern "C" {
-void RegisterOGRShape();
-void RegisterOGRGeoPackage();
-void RegisterOGRGeoJSON();
-}
-
 namespace kluft {
 
 namespace fs = std::filesystem;
@@ -31,10 +24,10 @@ using OpenMap = std::unique_ptr<void, decltype(&::GDALClose)>;
 using ReadFeature = std::unique_ptr<void, decltype(&::OGR_F_Destroy)>;
 using OwnGeometry = std::unique_ptr<void, decltype(&::OGR_G_DestroyGeometry)>;
 
+/// GDAL's headers declare what registers a format for C++ only, with all its classes.
 void register_formats() {
-    KLUFT_GDAL(RegisterOGRShape)();
-    KLUFT_GDAL(RegisterOGRGeoPackage)();
-    KLUFT_GDAL(RegisterOGRGeoJSON)();
+    for (const char* const name : {"RegisterOGRShape", "RegisterOGRGeoPackage", "RegisterOGRGeoJSON"})
+        gdal_function<void (*)()>(name)();
 }
 
 // ---- reading -------------------------------------------------------------------------------------------------------
