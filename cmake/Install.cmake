@@ -97,6 +97,11 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS libopenblas0-pthread)
 # The suite behind `kluft validate`, and the font of the pictures.
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "python3, python3-numpy, python3-yaml, python3-matplotlib, fonts-dejavu-core")
+# Loaded where a map needs it, so that no link tells of it.
+if(KLUFT_GDAL)
+  string(REGEX REPLACE "^libgdal\\.so\\.([0-9]+)$" "libgdal\\1" _gdal_package ${KLUFT_GDAL_NAME})
+  string(APPEND CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS ", ${_gdal_package}")
+endif()
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libkluft-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "What programs need that compute with Kluft: find_package(kluft) of CMake finds
