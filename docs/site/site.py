@@ -55,7 +55,8 @@ def gather(pages: Path) -> None:
     for name in ("katex.min.css", "katex.min.js"):
         shutil.copy2(KATEX / name, pages / "katex")
     shutil.copytree(KATEX / "fonts", pages / "katex/fonts", symlinks=False)
-    shutil.copy2(ROOT / "docs/site/formulas.js", pages / "katex")
+    for name in ("formulas.js", "formulas.css"):
+        shutil.copy2(ROOT / "docs/site" / name, pages / "katex")
 
 
 def link_folders(pages: Path) -> None:
