@@ -1,7 +1,6 @@
 """Runs the benchmarks and whole runs of the program, and writes the table of their ratios. Started by scripts/bench."""
 
 import argparse
-import csv
 import json
 import math
 import os
@@ -15,6 +14,10 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
+sys.path.append(str(ROOT / "python"))  # its readers need NumPy only
+
+from kluft.tables import read_table  # noqa: E402
+
 TREE = ROOT / "build" / "release"
 BENCH = TREE / "bench" / "kluft_bench"
 KLUFT = TREE / "kluft"
@@ -242,9 +245,8 @@ def history(file):
     """The complete rows of history.csv as numbers; none where the run was ended before the first one."""
     if not file.exists():
         return []
-    with file.open(encoding="utf-8", newline="") as stream:
-        complete = [row for row in csv.DictReader(stream) if None not in row.values()]
-    return [{name: float(value) for name, value in row.items()} for row in complete]
+    table = read_table(file)
+    return [{name: float(row[name]) for name in table.dtype.names} for row in table]
 
 
 def solves(rows):

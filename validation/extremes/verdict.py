@@ -1,6 +1,5 @@
 """One run of the program under a bound of time, and what became of it."""
 
-import csv
 import json
 import math
 import os
@@ -16,6 +15,8 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from suite.fields import Fields  # noqa: E402
+
+from kluft.tables import read_table  # noqa: E402
 
 DONE, BAD_INPUT, NO_EQUILIBRIUM = 0, 2, 3
 NOT_A_NUMBER = re.compile(r"(?<![a-z])[-+]?(nan|inf|infinity)(?![a-z])", re.IGNORECASE)
@@ -108,9 +109,8 @@ def run(kluft, scene, directory, limit):
 
 def read_columns(path, texts=()):
     """A table by columns, as numbers but for those named in `texts`."""
-    with open(path, newline="", encoding="utf-8") as file:
-        rows = list(csv.reader(file))
-    return {name: np.array([float(row[i]) for row in rows[1:]]) for i, name in enumerate(rows[0]) if name not in texts}
+    table = read_table(path)
+    return {name: table[name].astype(float) for name in table.dtype.names if name not in texts}
 
 
 def read_tables(outcome):
