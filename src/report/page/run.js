@@ -52,7 +52,7 @@ function plot(canvas, datasets, xName, yName, more = {}) {
     options: {
       maintainAspectRatio: false, responsive: true, parsing: false, onClick: more.onClick,
       interaction: { mode: "nearest", intersect: false },
-      scales: { x: axis(xName), y: { ...axis(yName), beginAtZero: true, grace: "4%" } },
+      scales: { x: axis(xName), y: { ...axis(yName), beginAtZero: true } },
       plugins: {
         legend: { display: Boolean(more.legend), labels: { usePointStyle: true, filter: (item) => item.text !== "" } },
         tooltip: { callbacks: { label: (item) => more.tip?.(item) ?? `${digits(item.parsed.x)}, ${digits(item.parsed.y)}` } },
