@@ -153,8 +153,8 @@ Texts set_words(const std::string& typed, const Texts& words) {
     for (const std::string& key : scene_schema().child_keys(place.pattern)) {
         const Texts names = key == "*" || key == "#" ? names_in(place.node) : Texts{key};
         for (const std::string& name : names) {
-            const std::string path = above.empty() ? name : above + '.' + name;
-            for (std::string& word : with_endings(path, place.pattern.empty() ? key : place.pattern + '.' + key))
+            const std::string path = joined_path(above, name);
+            for (std::string& word : with_endings(path, joined_path(place.pattern, key)))
                 all.push_back(std::move(word));
         }
     }
@@ -266,8 +266,7 @@ std::vector<std::string> completions(const CLI::App& app, const std::vector<std:
     }
     std::erase_if(all, [&](const std::string& each) { return !each.starts_with(words.back()); });
     std::ranges::sort(all);
-    const auto repeated = std::ranges::unique(all);
-    all.erase(repeated.begin(), repeated.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
     return all;
 }
 
