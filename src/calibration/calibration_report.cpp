@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "kluft/core/diagnostics.hpp"
+#include "kluft/core/shell_line.hpp"
 #include "kluft/core/units.hpp"
 #include "kluft/core/version.hpp"
 #include "kluft/output/atomic_file.hpp"
@@ -286,7 +287,7 @@ ReportDocument report_of(const Calibration& calibration, const CalibrationResult
     page.parts.emplace_back(
         ReportAnswer{"Calibration", result.met ? "All targets are met." : "Not all targets are met.",
                      values + ". " + costs_text(result) + ".",
-                     "kluft run " + (directory / "calibrated.yaml").lexically_normal().string(), result.met});
+                     shell_line({"kluft", "run", (directory / "calibrated.yaml").lexically_normal()}), result.met});
     add_targets(calibration, result, page);
     add_parameters(calibration, result, page);
     add_progress(result, page);

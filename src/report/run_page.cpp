@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "kluft/core/diagnostics.hpp"
+#include "kluft/core/shell_line.hpp"
 #include "kluft/core/version.hpp"
 #include "kluft/output/atomic_file.hpp"
 #include "kluft/output/field_reader.hpp"
@@ -18,6 +19,7 @@
 #include "kluft/output/state_file.hpp"
 #include "kluft/report/number_table.hpp"
 #include "kluft/report/report_page.hpp"
+#include "kluft/report/run_answer.hpp"
 #include "kluft/scene/scene_as_run.hpp"
 #include "kluft/scene/scene_model.hpp"
 #include "kluft/scene/scene_reader.hpp"
@@ -70,23 +72,14 @@ std::string json_fine(const Rows& equilibria, std::optional<int> platen_stage) {
                        json_numbers(differential), json_numbers(axial));
 }
 
-NumberTable histories_in(const fs::path& directory) {
-    NumberTable table;
-    if (fs::exists(directory / "histories.csv")) table = read_number_table(directory / "histories.csv");
-    return table;
-}
-
-std::string json_histories(const NumberTable& table) {
-    NumberTable own;
-    std::string step = "[]";
-    for (std::size_t i = 0; i < table.names.size(); ++i) {
-        const std::string& name = table.names[i];
-        if (name == "step") step = json_numbers(table.columns[i]);
-        if (name == "step" || name == "stage" || name == "load_factor") continue;
-        own.names.push_back(name);
-        own.columns.push_back(table.columns[i]);
+std::string json_histories(const HistoriesTable& table) {
+    std::vector<double> steps;
+    NumberTable columns{table.columns, std::vector<std::vector<double>>(table.columns.size())};
+    for (const StepRecord& row : table.rows) {
+        steps.push_back(row.step);
+        for (std::size_t i = 0; i < table.columns.size(); ++i) columns.columns[i].push_back(row.histories[i]);
     }
-    return fmt::format(R"({{"step":{},"columns":{}}})", step, json_columns(own));
+    return fmt::format(R"({{"step":{},"columns":{}}})", json_numbers(steps), json_columns(columns));
 }
 
 template <class Items> Json names_of(const Items& items) {
@@ -190,13 +183,6 @@ std::string warnings_html(const std::vector<std::string>& warnings) {
 
 std::string text_of(const fs::path& path) { return fs::exists(path) ? read_file(path) : std::string{}; }
 
-/// A word of a command line.
-std::string shell_word(const std::string& text) {
-    const bool plain = text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-+%") ==
-                       std::string::npos;
-    return plain ? text : "'" + text + "'";
-}
-
 /// The states as elements of the page, and what is told of them.
 struct PackedStates {
     std::vector<int> steps;
@@ -223,14 +209,10 @@ std::string json_states(const std::vector<int>& steps) {
 
 bool looks_for_factor_of_safety(const Model& model) { return reduction_of(model.loads, 0) != nullptr; }
 
-} // namespace
-
-RunFacts read_run_facts(const fs::path& directory, const Scene& scene, const Model& model, const CutReport& cut) {
+/// What is known of the run with the model that it ran.
+RunFacts facts_of(const fs::path& directory, const Rows& history, const Rows& equilibria, const Scene& scene,
+                  const Model& model, const CutReport& cut) {
     RunFacts facts;
-    const Rows history = read_history(directory / "history.csv");
-    if (history.empty()) throw InputError((directory / "history.csv").string() + ": no load step in it yet");
-    const fs::path fine = directory / "equilibria.csv";
-    const Rows equilibria = fs::exists(fine) ? read_history(fine) : Rows{};
     const int stage = make_gauges(model).first_platen_stage;
     if (stage >= 0) facts.platen_stage = stage;
     facts.numbers = curve_numbers(equilibria, history, facts.platen_stage, scene.plane);
@@ -243,14 +225,20 @@ RunFacts read_run_facts(const fs::path& directory, const Scene& scene, const Mod
     return facts;
 }
 
+} // namespace
+
 std::string run_page(const fs::path& directory, const Scene& scene, const Model& model, const CutReport& cut,
                      const RunPageOptions& options) {
     const BlockSystem& system = model.system;
-    const RunFacts facts = read_run_facts(directory, scene, model, cut);
+    const Rows history = read_history(directory / "history.csv");
+    if (history.empty()) throw InputError((directory / "history.csv").string() + ": no load step in it yet");
+    const fs::path fine = directory / "equilibria.csv";
+    const Rows equilibria = fs::exists(fine) ? read_history(fine) : Rows{};
+    const fs::path followed = directory / "histories.csv";
+    const RunFacts facts = facts_of(directory, history, equilibria, scene, model, cut);
     const RunAnswer answer = run_answer(facts);
     const NumberTable rows = read_number_table(directory / "history.csv");
-    const fs::path fine = directory / "equilibria.csv";
-    const auto peak = step_of_peak(read_history(directory / "history.csv"), facts.platen_stage);
+    const auto peak = step_of_peak(history, facts.platen_stage);
     const PackedStates states = pack_states(directory, system, peak, options.most_bytes_of_states);
     const auto peak_state = nearest_place(states.steps, peak);
     const std::string title = scene.title.empty() ? scene.name : scene.title;
@@ -258,8 +246,9 @@ std::string run_page(const fs::path& directory, const Scene& scene, const Model&
         R"({{"platen_stage":{},"sense":{},"peak_state":{},"rows":{},"fine":{},"histories":{},"states":{},"names":{}}})",
         facts.platen_stage ? std::to_string(*facts.platen_stage) : "null", facts.sense,
         peak_state ? std::to_string(*peak_state) : "null", json_columns(rows),
-        json_fine(fs::exists(fine) ? read_history(fine) : Rows{}, facts.platen_stage),
-        json_histories(histories_in(directory)), json_states(states.steps), json_names(scene, system));
+        json_fine(equilibria, facts.platen_stage),
+        json_histories(fs::exists(followed) ? read_histories(followed) : HistoriesTable{}), json_states(states.steps),
+        json_names(scene, system));
     std::string scene_text = text_of(directory / "scene.yaml");
     if (scene_text.empty()) scene_text = write_scene_as_run(scene);
     std::string program(version());
@@ -270,22 +259,21 @@ std::string run_page(const fs::path& directory, const Scene& scene, const Model&
     page.plots = true;
     page.further_styles = {"run.css"};
     page.further_programs = {"arrays.js", "body.js", "run.js"};
-    page.body = filled(
-        page_file("run.html"),
-        {{"title", html_text(title)},
-         {"directory", html_text(where)},
-         {"version", html_text(facts.summary ? facts.summary->version : program)},
-         {"open", answer.firm ? "" : " open"},
-         {"name", html_text(answer.name)},
-         {"value", html_text(answer.value)},
-         {"sentence", html_text(answer.sentence)},
-         {"warnings", warnings_html(answer.warnings)},
-         {"numbers", numbers_html(numbers_of(facts, system))},
-         {"command", html_text(fmt::format("kluft run {} -o {}", shell_word((fs::path(where) / "scene.yaml").string()),
-                                           shell_word(where + "-again")))},
-         {"scene", html_text(scene_text)},
-         {"log", html_text(text_of(directory / "run.log"))},
-         {"data", data_element("run", escaped_json(run)) + states.elements}});
+    page.body = filled(page_file("run.html"),
+                       {{"title", html_text(title)},
+                        {"directory", html_text(where)},
+                        {"version", html_text(facts.summary ? facts.summary->version : program)},
+                        {"open", answer.firm ? "" : " open"},
+                        {"name", html_text(answer.name)},
+                        {"value", html_text(answer.value)},
+                        {"sentence", html_text(answer.sentence)},
+                        {"warnings", warnings_html(answer.warnings)},
+                        {"numbers", numbers_html(numbers_of(facts, system))},
+                        {"command", html_text(shell_line({"kluft", "run", (fs::path(where) / "scene.yaml").string(),
+                                                          "-o", where + "-again"}))},
+                        {"scene", html_text(scene_text)},
+                        {"log", html_text(text_of(directory / "run.log"))},
+                        {"data", data_element("run", escaped_json(run)) + states.elements}});
     return html_of(page);
 }
 

@@ -7,6 +7,7 @@
 
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/core/nearest_name.hpp"
+#include "kluft/core/shell_line.hpp"
 #include "kluft/output/atomic_file.hpp"
 #include "kluft/studies/study_results.hpp"
 #include "kluft/studies/study_run.hpp"

@@ -11,6 +11,7 @@
 
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/core/nearest_name.hpp"
+#include "kluft/core/shell_line.hpp"
 #include "kluft/core/units.hpp"
 #include "kluft/output/atomic_file.hpp"
 #include "kluft/report/report_document.hpp"
@@ -218,20 +219,11 @@ void ReportBuilder::add_head() {
 /// The settings of a group as the command line takes them.
 std::string ReportBuilder::set_words(std::size_t group) const {
     const StudyCase& first = table_.cases[groups_[group].cases.front()];
-    std::string words;
-    for (std::size_t p = 0; p < table_.parameters.size(); ++p) {
-        if (first.settings[p].empty()) continue;
-        const std::string setting = table_.parameters[p] + "=" + first.settings[p];
-        words += words.empty() ? "--set " : " --set ";
-        if (setting.find_first_of(" '\"{}[],$\\;&|<>()*?") == std::string::npos) {
-            words += setting;
-            continue;
-        }
-        words += '\'';
-        for (const char c : setting) words += c == '\'' ? "'\\''" : std::string(1, c);
-        words += '\'';
-    }
-    return words;
+    std::vector<std::string> words;
+    for (std::size_t p = 0; p < table_.parameters.size(); ++p)
+        if (!first.settings[p].empty())
+            words.insert(words.end(), {"--set", table_.parameters[p] + "=" + first.settings[p]});
+    return shell_line(words);
 }
 
 /// The mean of the first ensemble, where nothing else was varied.

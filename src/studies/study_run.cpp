@@ -10,6 +10,7 @@
 
 #include "child_processes.hpp"
 #include "kluft/core/diagnostics.hpp"
+#include "kluft/core/shell_line.hpp"
 #include "kluft/output/atomic_file.hpp"
 #include "kluft/output/directory_lock.hpp"
 #include "kluft/output/progress_line.hpp"
@@ -164,22 +165,6 @@ std::vector<std::string> case_command(const ReadStudy& read, const PlannedCase& 
     for (const auto& setting : one.set) words.insert(words.end(), {"--set", setting.assignment()});
     words.insert(words.end(), {"--threads", "1", "--quiet"});
     return words;
-}
-
-std::string shell_line(const std::vector<std::string>& words) {
-    constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._+-=,/:@%";
-    std::string line;
-    for (const auto& word : words) {
-        if (!line.empty()) line += ' ';
-        if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) {
-            line += word;
-            continue;
-        }
-        line += '\'';
-        for (const char c : word) line += c == '\'' ? std::string("'\\''") : std::string(1, c);
-        line += '\'';
-    }
-    return line;
 }
 
 void require_one_line(const std::string& what, const std::string& text) {

@@ -11,11 +11,6 @@
 
 namespace kluft {
 
-/// What is known of the run in a directory of results with the model that it ran. Throws InputError where its history is missing
-/// or a table is damaged.
-[[nodiscard]] RunFacts read_run_facts(const std::filesystem::path& directory, const Scene& scene, const Model& model,
-                                      const CutReport& cut);
-
 struct RunPageOptions {
     std::size_t most_bytes_of_states = 16'500'000; ///< before compression; of more states some are left out
 };

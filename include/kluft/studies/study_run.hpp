@@ -37,9 +37,6 @@ struct StudyRunOptions {
                                                     const std::filesystem::path& program,
                                                     const std::filesystem::path& directory);
 
-/// Words as a POSIX shell takes them.
-[[nodiscard]] std::string shell_line(const std::vector<std::string>& words);
-
 /// Throws InputError where the text has a line break, which cases.txt and the scripts of schedulers cannot hold. `what` it is.
 void require_one_line(const std::string& what, const std::string& text);
 
