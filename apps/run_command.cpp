@@ -175,7 +175,7 @@ ExitCode run(const RunArguments& arguments) {
     }
     State state = initial_state(model);
     if (arguments.resume) {
-        state = read_state(directory / "state.h5", options.fingerprint);
+        state = state_to_resume(directory, scene, options.fingerprint);
         options.resumed_step = state.at.step;
     }
     const double earlier_cpu = arguments.resume ? earlier_cpu_s(directory) : 0.0; // before the writer removes it

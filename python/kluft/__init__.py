@@ -47,7 +47,13 @@ def __getattr__(name: str) -> Any:
         return import_module("._core", __name__).version
     if name not in _OF_LIBRARY:
         raise AttributeError(f"module 'kluft' has no attribute '{name}'")
-    return getattr(import_module(f".{_OF_LIBRARY[name]}", __name__), name)
+    try:
+        return getattr(import_module(f".{_OF_LIBRARY[name]}", __name__), name)
+    except ImportError as error:
+        if "_core" not in str(error):
+            raise
+        raise ImportError(f"kluft.{name} needs Kluft's compiled module, which is not here ({error}); scripts/build makes it, and so does "
+                          "`pip install .` or Debian's package python3-kluft") from None
 
 
 def __dir__() -> list[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+import warnings
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -104,4 +105,15 @@ def run_sweep(scene: Scene, content: dict[str, Any], directory: Path, jobs: int,
     finally:
         if line:
             line.clear()
-    return Sweep(directory)
+    sweep = Sweep(directory)
+    _warn_of_failed(sweep)
+    return sweep
+
+
+def _warn_of_failed(sweep: Sweep) -> None:
+    """Cases that found no equilibrium have numbers of what they came to before; nobody should take them for those of a whole run."""
+    failed = [f"{row['case']} ({row['status']})" for row in sweep.table if row["status"] != "done"]
+    if failed:
+        named = ", ".join(failed[:5]) + (f" and {len(failed) - 5} more" if len(failed) > 5 else "")
+        warnings.warn(f"{len(failed)} of {len(sweep)} cases did not end as done: {named}; see `status` and `reason` in the table",
+                      stacklevel=3)

@@ -216,7 +216,7 @@ private:
             output_->lock.emplace(directory, lock_holder);
             writer_options_.scene_file = scene_file_for(directory, scene_, resume || force);
         }
-        if (resume) state_ = read_state(directory / "state.h5", writer_options_.fingerprint);
+        if (resume) state_ = state_to_resume(directory, scene_, writer_options_.fingerprint);
         resumes_ = resume;
         open_files();
     }

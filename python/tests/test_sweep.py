@@ -19,6 +19,12 @@ def test_each_combination_is_a_row(sweep):
     assert np.all(sweep.table["peak_stress"] > 0.0)
 
 
+def test_a_case_that_fails_is_told(tmp_path):
+    scene = small_scene(**{"output.fields": False})
+    with pytest.warns(UserWarning, match="1 of 2 cases did not end as done: .* \\(no_equilibrium\\)"):
+        scene.sweep({"solver.max_step_solves": [1, 20000]}, tmp_path / "sweep")
+
+
 def test_cases_are_results(sweep):
     for case in range(len(sweep)):
         assert sweep[case].summary["peak_stress"] == sweep.table["peak_stress"][case]

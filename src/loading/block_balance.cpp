@@ -7,6 +7,8 @@
 #include <span>
 #include <utility>
 
+#include <Eigen/LU>
+
 #include "kluft/core/disjoint_sets.hpp"
 
 namespace kluft {
@@ -207,6 +209,30 @@ Vec3 affine_rigid_part(const BlockSystem& system, const Eigen::VectorXd& q, cons
     return part;
 }
 
+namespace {
+
+constexpr double not_held =
+    1e-9; ///< of the cube of the mean eigenvalue: a determinant of rows that leave a motion free
+
+/// Of each block, whether its prescribed displacements leave no rigid motion free.
+std::vector<char> held_blocks(const LoadedBody& body) {
+    std::vector<char> held(body.system->blocks.size(), 0);
+    const std::vector<PrescribedDisplacement>& rows = body.loads->constraints.rows();
+    for (const ConstrainedBlock& each : body.loads->constraints.blocks()) {
+        Mat3 resistance = Mat3::Zero();
+        for (const int r : each.rows) {
+            const Vec2& n = rows[r].direction;
+            const Vec3 row(n.x(), n.y(), cross(rows[r].xi, n));
+            resistance += row * row.transpose();
+        }
+        const double mean = resistance.trace() / 3.0;
+        held[each.block] = resistance.determinant() > not_held * mean * mean * mean ? 1 : 0;
+    }
+    return held;
+}
+
+} // namespace
+
 BlockBalance block_balance(const LoadedBody& body, const Eigen::VectorXd& q, std::vector<Vec3> left) {
     const BlockSystem& system = *body.system;
     BlockBalance result;
@@ -214,6 +240,7 @@ BlockBalance block_balance(const LoadedBody& body, const Eigen::VectorXd& q, std
     result.forces = own_forces(body, q, meetings);
     result.groups = groups_of(system.n_blocks(), meetings);
     result.left = std::move(left);
+    result.held = held_blocks(body);
     for (int b = 0; b < system.n_blocks(); ++b) {
         result.position.push_back(system.blocks[b].centroid + q.segment<2>(n_block_unknowns * b));
         result.area.push_back(system.blocks[b].area);
@@ -248,6 +275,8 @@ BlockVerdict judge_blocks(const BlockBalance& now, const BlockBalance* before, c
     };
     for (int b = 0; b < static_cast<int>(now.left.size()); ++b) judge(std::span(&b, 1));
     for (const std::vector<int>& group : now.groups) judge(group);
+    const auto is_held = [&](const MovingBlock& each) { return now.held[each.block] != 0; };
+    if (!std::ranges::all_of(verdict.moving, is_held)) std::erase_if(verdict.moving, is_held); // what others do to it
     return verdict;
 }
 

@@ -272,6 +272,13 @@ SpatialReference reference_of(const std::string& crs) {
     return reference;
 }
 
+/// A GeoPackage without a coordinate system would say that its coordinates are degrees; by this name it says that they are lengths.
+SpatialReference lengths_of_no_system() {
+    SpatialReference reference = new_spatial_reference();
+    if (KLUFT_GDAL(OSRSetLocalCS)(reference.get(), "Undefined Cartesian SRS") != OGRERR_NONE) reference.reset();
+    return reference;
+}
+
 OGRLayerH create_layer(const OpenMap& map, const std::string& name, OGRwkbGeometryType type,
                        const SpatialReference& reference, const GdalMessages& messages) {
     OGRLayerH const layer = KLUFT_GDAL(GDALDatasetCreateLayer)(map.get(), name.c_str(), reference.get(), type, nullptr);
@@ -283,7 +290,8 @@ void write_geopackage(const OpenMap& map, const std::vector<MapLayer>& layers, c
     for (const MapLayer& layer : layers) {
         const bool has_lines = !layer.features.empty() && !layer.features.front().lines.empty();
         OGRLayerH const written =
-            create_layer(map, layer.name, has_lines ? wkbLineString : wkbPolygon, reference_of(layer.crs), messages);
+            create_layer(map, layer.name, has_lines ? wkbLineString : wkbPolygon,
+                         layer.crs.empty() ? lengths_of_no_system() : reference_of(layer.crs), messages);
         create_fields(written, layer, messages);
         (void)KLUFT_GDAL(GDALDatasetStartTransaction)(map.get(), FALSE);
         add_features(written, layer, false, messages);

@@ -17,8 +17,11 @@ constexpr double rewrite_seconds = 0.1;
 constexpr double plain_seconds = 10.0;
 constexpr int parts = 20; // a plain line for each
 
+/// Whether it is known how many load steps there will be: a search for a strength takes more than its stage says.
+bool counts_steps(const Progress& progress) { return progress.n_steps > 0 && progress.step <= progress.n_steps; }
+
 double fraction_of(const Progress& progress) {
-    if (progress.n_steps > 0) return static_cast<double>(progress.step) / progress.n_steps;
+    if (counts_steps(progress)) return static_cast<double>(progress.step) / progress.n_steps;
     return progress.n_stages > 0 ? (progress.stage + progress.load_factor) / progress.n_stages : 0.0;
 }
 
@@ -40,8 +43,8 @@ std::string readable_time(double seconds) {
 }
 
 std::string progress_text(const Progress& progress, std::optional<double> seconds_left) {
-    const std::string step =
-        progress.n_steps > 0 ? fmt::format("{}/{}", progress.step, progress.n_steps) : fmt::format("{}", progress.step);
+    const std::string step = counts_steps(progress) ? fmt::format("{}/{}", progress.step, progress.n_steps)
+                                                    : fmt::format("{}", progress.step);
     const std::string left = seconds_left ? fmt::format(", {} left", readable_time(*seconds_left)) : "";
     return fmt::format("stage {}  step {} ({:.0f} %{})  strain {:.3f} %  axial {:.3f} MPa  cracks {}  iterations {}",
                        progress.stage, step, std::floor(100.0 * fraction_of(progress)), left,

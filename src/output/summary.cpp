@@ -59,12 +59,14 @@ bool falls_after_peak(const Rows& balanced, double peak, double sense) {
     });
 }
 
-std::optional<double> residual_stress(const Rows& history, std::optional<int> platen_stage) {
+/// None where the peak lies in the last fifth of the strain, as where a run ends with the drop behind it: the stress has not settled.
+std::optional<double> residual_stress(const Rows& history, std::optional<int> platen_stage, double peak_strain) {
     const Rows rows = balanced_rows(platen_rows(history, platen_stage.value_or(0)));
     if (rows.empty()) return std::nullopt;
     const double first = rows.front().axial_strain;
     const double last = rows.back().axial_strain;
     const double range = std::abs(last - first);
+    if (std::abs(last - peak_strain) <= 2.0 * residual_share * range) return std::nullopt;
     double sum = 0.0;
     int n_rows = 0;
     // From the end backwards, so that a strain that turns back does not bring earlier rows in.
@@ -293,7 +295,7 @@ CurveNumbers curve_numbers(const std::vector<StepRecord>& equilibria, const std:
         numbers.peak_reached = !numbers.net_locked && falls_after_peak(balanced_rows(all), peak->axial_stress,
                                                                        platen_sense(all, platen_stage));
     }
-    if (numbers.peak_reached) numbers.residual_stress = residual_stress(history, platen_stage);
+    if (numbers.peak_reached) numbers.residual_stress = residual_stress(history, platen_stage, *numbers.peak_strain);
     if (platen_stage) add_elastic_constants(all, history, *platen_stage, plane, numbers);
     add_counts(history, numbers);
     return numbers;

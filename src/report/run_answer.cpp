@@ -1,5 +1,8 @@
 #include "kluft/report/run_answer.hpp"
 
+#include <algorithm>
+#include <cstddef>
+
 #include <fmt/format.h>
 
 namespace kluft {
@@ -137,6 +140,18 @@ void add_end(const RunFacts& facts, std::vector<std::string>& warnings) {
     }
 }
 
+/// "Blocks 12, 7 and 31 more move where the run has ended (stage 1, load factor 0.4)."
+std::string moving_in_words(const std::vector<FallingBlock>& falling) {
+    constexpr std::size_t most_named = 5;
+    const std::size_t n_named = std::min(falling.size(), most_named);
+    std::string names = falling.front().block;
+    for (std::size_t i = 1; i < n_named; ++i) names += (i + 1 == falling.size() ? " and " : ", ") + falling[i].block;
+    if (falling.size() > n_named) names += fmt::format(" and {} more", falling.size() - n_named);
+    return fmt::format("{} {} {} where the run has ended (stage {}, load factor {:.4g}).",
+                       falling.size() == 1 ? "Block" : "Blocks", names, falling.size() == 1 ? "moves" : "move",
+                       falling.front().stage, falling.front().load_factor);
+}
+
 void add_doubts(const RunFacts& facts, std::vector<std::string>& warnings) {
     const CurveNumbers& numbers = facts.numbers;
     if (facts.platen_stage && numbers.net_locked)
@@ -160,10 +175,7 @@ void add_doubts(const RunFacts& facts, std::vector<std::string>& warnings) {
     if (facts.n_merged > 0)
         warnings.push_back(fmt::format("{} merged with a neighbour when the body was cut (geometry.minimum_area).",
                                        counted(static_cast<int>(facts.n_merged), "sliver was", "slivers were")));
-    if (!facts.summary) return;
-    for (const FallingBlock& block : facts.summary->falling)
-        warnings.push_back(fmt::format("Block {} moves where the run has ended (stage {}, load factor {:.4g}).",
-                                       block.block, block.stage, block.load_factor));
+    if (facts.summary && !facts.summary->falling.empty()) warnings.push_back(moving_in_words(facts.summary->falling));
 }
 
 } // namespace

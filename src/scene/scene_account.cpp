@@ -140,10 +140,10 @@ SceneAccount account_of(const Scene& scene, const SceneModel& built) {
     account.warnings = scene.warnings;
     account.warnings.insert(account.warnings.end(), built.model.warnings.begin(), built.model.warnings.end());
     if (looks_like_a_triaxial_test(scene)) {
-        account.warnings.push_back(
-            fmt::format("a triaxial test is run in plane {}; a cylinder has the lateral pressure all around and no "
-                        "plane of the section is free of the others",
-                        scene.plane == Plane::strain ? "strain" : "stress"));
+        lines.push_back(
+            {"note", fmt::format("a triaxial test is run in plane {}; a cylinder has the lateral pressure all "
+                                 "around and no plane of the section is free of the others",
+                                 scene.plane == Plane::strain ? "strain" : "stress")});
     }
     return account;
 }

@@ -1,6 +1,7 @@
 #include "kluft/scene/scene_as_run.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <map>
@@ -115,6 +116,13 @@ const std::string* value_at(const ValueByPath& values, const std::string& path) 
     return found == values.end() ? nullptr : &found->second;
 }
 
+/// Whether a run that goes on may have another value of it.
+bool may_change_on_the_way(const Leaf& leaf) {
+    constexpr std::array<std::string_view, 3> sections{"solver.", "cracks.", "output."};
+    return leaf.path.ends_with(".stop_after_drop") ||
+           std::ranges::any_of(sections, [&](std::string_view section) { return leaf.path.starts_with(section); });
+}
+
 std::string difference_at(const std::string& path, const std::string* there, const std::string* here) {
     const auto words = [](const std::string* value) { return value == nullptr ? "absent" : in_quotes(*value); };
     return fmt::format("{} is {} there and {} here", path, words(there), words(here));
@@ -149,6 +157,13 @@ std::string write_scene_as_run(const Scene& scene) {
         tree.items.insert(tree.items.begin() + at, std::move(title));
     }
     return fmt::format("{}{}{}\n{}", heading, digest_mark, digest, write_readable_scene(tree));
+}
+
+std::string body_difference(std::string_view earlier, const Scene& scene) {
+    std::vector<Leaf> there = leaves_of(tree_of_text(earlier));
+    std::vector<Leaf> here = leaves_of(tree_of_text(scene.text));
+    for (std::vector<Leaf>* const leaves : {&there, &here}) std::erase_if(*leaves, may_change_on_the_way);
+    return digest_of_leaves(there) == digest_of_leaves(here) ? "" : first_difference(there, here);
 }
 
 bool is_scene_as_run(std::string_view text) { return text.starts_with(heading.substr(0, heading.find('\n'))); }

@@ -7,6 +7,7 @@
 
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/kinematics/affine.hpp"
+#include "kluft/output/state_file.hpp"
 #include "kluft/reference/explicit_simulation.hpp"
 #include "kluft/scene/scene_as_run.hpp"
 #include "kluft/simulation/contact_pressure.hpp"
@@ -28,6 +29,15 @@ std::string peak_in_words(const CurveNumbers& numbers) {
     if (numbers.net_locked)
         return " before the net locked (its loose cells carry more without a bond: no strength of the rock)";
     return numbers.peak_reached ? "" : fmt::format(" ({})", peak_remark(numbers));
+}
+
+/// "" where none is known.
+std::string difference_from_state(const fs::path& state, const Scene& scene) {
+    try {
+        return body_difference(read_state_scene(state), scene);
+    } catch (const InputError&) {
+        return {};
+    }
 }
 
 } // namespace
@@ -64,6 +74,20 @@ RunWriterOptions run_writer_options(const Scene& scene, const Model& model) {
 std::string scene_file_for(const fs::path& directory, const Scene& scene, bool may_replace) {
     if (!may_replace) require_no_other_results(directory, scene);
     return has_own_scene_file(directory, scene) ? "" : write_scene_as_run(scene);
+}
+
+State state_to_resume(const fs::path& directory, const Scene& scene, const std::string& fingerprint) {
+    const fs::path file = directory / "state.h5";
+    try {
+        return read_state(file, fingerprint);
+    } catch (const InputError&) {
+        const std::string difference = difference_from_state(file, scene);
+        if (difference.empty()) throw;
+        throw InputError(fmt::format("{}: belongs to another scene: {}; a run goes on with other keys of solver, "
+                                     "cracks and output, and with another "
+                                     "stages.<i>.stop_after_drop, but with the same body, laws and loads",
+                                     file.string(), difference));
+    }
 }
 
 double earlier_cpu_s(const fs::path& directory) {

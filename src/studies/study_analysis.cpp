@@ -22,6 +22,9 @@ namespace kluft {
 
 namespace {
 
+constexpr double same_cost =
+    1.1; ///< times the cost of the cheapest settings: processor times of short runs vary by as much
+
 using Values = std::vector<double>;
 using CaseValues = std::vector<std::optional<double>>;
 
@@ -602,17 +605,21 @@ std::vector<Advice> cheapest_settings(const StudyTable& table, const std::vector
     for (const double bound : bounds) {
         Advice each;
         each.bound = bound;
+        std::optional<std::size_t> cheapest;
         for (const std::size_t i : by_cost) {
             if (*errors[i] > bound) continue;
+            const bool as_cheap = !each.group || *costs[i] <= same_cost * *costs[*cheapest];
+            if (!as_cheap) break;
             if (!is_confirmed(table, groups, errors, with_variants, i, bound)) {
-                each.not_confirmed.push_back(i);
+                if (!each.group) each.not_confirmed.push_back(i);
                 continue;
             }
+            if (!cheapest) cheapest = i;
+            if (each.group && *errors[i] >= each.error) continue;
             each.group = i;
             each.error = *errors[i];
             each.cpu_s = *costs[i];
             if (known(reference) && *reference > 0.0) each.reference_share = each.cpu_s / *reference;
-            break;
         }
         advice.push_back(std::move(each));
     }

@@ -142,6 +142,7 @@ private:
     void add_names();
     [[nodiscard]] std::optional<double> solves_of(std::size_t group) const;
     [[nodiscard]] std::string cost_text(std::size_t group, double cpu_s) const;
+    [[nodiscard]] bool is_own(std::size_t group) const;
     [[nodiscard]] std::string own_sentence(const StudyMeasure& measure) const;
     [[nodiscard]] std::vector<std::string> accuracy_items(const StudyMeasure& measure) const;
     [[nodiscard]] const std::string& label_of(std::size_t group) const { return labels_[group]; }
@@ -655,6 +656,14 @@ std::optional<double> ReportBuilder::solves_of(std::size_t group) const {
     return ensemble_statistics(solves).mean;
 }
 
+/// Whether all settings of a group are those of the scene.
+bool ReportBuilder::is_own(std::size_t group) const {
+    bool own = true;
+    for (std::size_t p = 0; p < table_.parameters.size(); ++p)
+        own = own && is_own_setting(table_, p, groups_[group].settings[p]);
+    return own;
+}
+
 /// "1.2 s of CPU time and 412 solves, 0.6 of the scene's own settings, 0.2 of the reference".
 std::string ReportBuilder::cost_text(std::size_t group, double cpu_s) const {
     std::string text = seconds_text(cpu_s) + " of CPU time";
@@ -662,7 +671,9 @@ std::string ReportBuilder::cost_text(std::size_t group, double cpu_s) const {
     const auto own = own_group(table_, groups_);
     if (!own || *own == group) return text;
     const auto own_cost = group_cost(table_, groups_[*own]);
-    if (own_cost && *own_cost > 0.0) text += fmt::format(", {:.2g} of the scene's own settings", cpu_s / *own_cost);
+    if (own_cost && *own_cost > 0.0)
+        text += fmt::format(", {:.2g} of {}", cpu_s / *own_cost,
+                            is_own(*own) ? "the scene's own settings" : "the settings nearest to the scene's own");
     return text;
 }
 
@@ -673,11 +684,8 @@ std::string ReportBuilder::own_sentence(const StudyMeasure& measure) const {
     const auto error = group_error(table_, groups_[*own], measure);
     const auto cost = group_cost(table_, groups_[*own]);
     if (!error || !cost) return "";
-    bool exact = true;
-    for (std::size_t p = 0; p < table_.parameters.size(); ++p)
-        exact = exact && is_own_setting(table_, p, groups_[*own].settings[p]);
     return fmt::format("The {}, {}, have an error of {:.2g} % {} and cost {}.",
-                       exact ? "scene's own settings" : "settings nearest to the scene's own",
+                       is_own(*own) ? "scene's own settings" : "settings nearest to the scene's own",
                        advised_settings(table_, groups_, *own), percent * *error, on_words(measure),
                        cost_text(*own, *cost));
 }
@@ -775,7 +783,7 @@ void ReportBuilder::add_recommendation() {
     }
     add(ReportParagraph{
         "CPU times of single short runs vary by some per cent from one to the next; numbers of solves do "
-        "not."});
+        "not. Of settings whose times are within a tenth of the cheapest the most exact ones are named."});
     auto accurate = accuracy_items(*judged.front());
     if (accurate.empty()) return;
     add(ReportParagraph{

@@ -76,6 +76,7 @@ BlockBalance two_blocks(double left_a, double left_b, double own, bool loaded, b
     balance.left = {Vec3(left_a, 0, 0), Vec3(left_b, 0, 0)};
     balance.position = {Vec2(0, 0), Vec2(0, 1)};
     balance.area = {1.0, 1.0};
+    balance.held = {0, 0};
     if (together) balance.groups = {{0, 1}};
     return balance;
 }
@@ -87,6 +88,16 @@ TEST(BlockVerdict, CountsTheResultantOfBlocksThatHoldTogether) {
     const BlockVerdict group = judge_blocks(two_blocks(1.0, 1.0, 1e4, false, true), nullptr, {.share = 1e-3});
     EXPECT_NEAR(group.error, 2.0 / 2e4, 1e-18);
     EXPECT_TRUE(group.balanced());
+}
+
+TEST(BlockVerdict, NamesTheGroundOfAGroupThatMovesOnlyWhereNothingElseMoves) {
+    BlockBalance balance = two_blocks(1.0, 1.0, 1.0, true, true);
+    balance.held = {1, 0};
+    const BlockVerdict verdict = judge_blocks(balance, nullptr, {});
+    ASSERT_FALSE(verdict.balanced());
+    for (const MovingBlock& each : verdict.moving) EXPECT_EQ(each.block, 1);
+    balance.held = {1, 1};
+    EXPECT_FALSE(judge_blocks(balance, nullptr, {}).balanced());
 }
 
 TEST(BlockVerdict, BlockWithoutLoadsOnlyMustNotDisturbThoseAroundIt) {

@@ -84,6 +84,15 @@ TEST(Summary, NeverTakesAnUnbalancedEquilibriumForAPeak) {
     EXPECT_EQ(numbers.unbalanced_steps, 1);
 }
 
+// The stress has fallen by more than 1 %, but what it settles to is not known.
+TEST(Summary, HasNoResidualStressWhereTheRunEndsWithTheDropBehindItsPeak) {
+    Rows rows = triangle(100e6, 0.3);
+    rows.resize(3 + 60); // to 1.2 % of strain, the peak at 1 %
+    const auto numbers = curve_numbers(rows, rows, 1, Plane::stress);
+    EXPECT_TRUE(numbers.peak_reached);
+    EXPECT_FALSE(numbers.residual_stress.has_value());
+}
+
 TEST(Summary, HasNoPeakReachedAndNoResidualWhileTheStressRises) {
     Rows rows = triangle(100e6, 0.3);
     rows.resize(53); // to 1 % strain

@@ -142,6 +142,17 @@ TEST(RunAnswer, WithoutAPlatenIsWhetherTheBodyStands) {
                 Contains(HasSubstr("Block 7 moves where the run has ended (stage 0, load factor 0.5)")));
 }
 
+TEST(RunAnswer, NamesManyBlocksThatMoveInOneLine) {
+    RunFacts facts;
+    facts.summary.emplace();
+    facts.summary->status = RunStatus::no_equilibrium;
+    for (int b = 0; b < 12; ++b) facts.summary->falling.push_back({std::to_string(b), 1, 0.25, Vec2(0.0, -1.0), 0});
+    EXPECT_THAT(run_answer(facts).warnings,
+                Contains("Blocks 0, 1, 2, 3, 4 and 7 more move where the run has ended (stage 1, load factor 0.25)."));
+    facts.summary->falling.resize(2);
+    EXPECT_THAT(run_answer(facts).warnings, Contains(HasSubstr("Blocks 0 and 1 move where")));
+}
+
 TEST(RunAnswer, OfARunThatWasKilledOrStoppedSaysSo) {
     RunFacts facts = pressed();
     facts.summary->status = RunStatus::interrupted;

@@ -85,6 +85,15 @@ TEST_F(SceneAsRun, CountsValuesAndNeitherCommentsNorTheOrderOfKeys) {
     EXPECT_EQ(what_differs(stress, plain), "analysis.plane is 'stress' there and absent here");
 }
 
+TEST_F(SceneAsRun, OfARunThatGoesOnOnlyBodyLawsAndLoadsCount) {
+    const Scene scene = read_scene_text(test::short_scene);
+    for (const char* free : {"solver.tolerance=1e-6", "output.fields=false", "cracks.every=2"})
+        EXPECT_EQ(body_difference(scene.text, read_scene_text(test::short_scene, {free})), "") << free;
+    EXPECT_EQ(body_difference(scene.text,
+                              read_scene_text(test::short_scene, {"solver.tolerance=1e-6", "analysis.plane=stress"})),
+              "analysis.plane is absent there and 'stress' here");
+}
+
 TEST_F(SceneAsRun, TakesItsTitleFromTheNameOfTheFileWhereThereIsNone) {
     const Scene untitled = read_scene_text(test::short_scene, {}, "slope.yaml");
     const std::string text = write_scene_as_run(untitled);

@@ -46,6 +46,7 @@ TEST(StrengthReduction, BlockOnASlopeHasTheRatioOfTheTangentsAsFactorOfSafety) {
         const double expected = std::tan(30 * degree) / std::tan(slope * degree);
         EXPECT_NEAR(*run.report.results.factor_of_safety, expected, 3e-6 * expected);
         EXPECT_EQ(run.report.unbalanced_steps, 0);
+        for (const FallingBlock& each : run.report.falling) EXPECT_EQ(each.block, "1"); // not the plinth, 0
     }
 }
 

@@ -212,6 +212,14 @@ TEST(CheapestSettings, TakeNoLuckyHits) {
     EXPECT_DOUBLE_EQ(*advice[0].reference_share, 0.25);
 }
 
+// Times of short runs differ by some per cent from one run to the next: 52 seconds are no dearer than 50.
+TEST(CheapestSettings, AreTheMostExactOfThoseThatCostTheSame) {
+    StudyTable table = step_table({{"50", 0.008}, {"52", 0.0004}, {"400", 0.0}});
+    table.reference = 2;
+    EXPECT_EQ(cheapest(table, 0.01), "52");
+    EXPECT_EQ(cheapest(step_table({{"50", 0.008}, {"60", 0.0004}, {"400", 0.0}}), 0.01), "50");
+}
+
 TEST(CheapestSettings, NeedAFinerCaseThatCameToAnEnd) {
     StudyTable table = step_table({{"25", 0.001}, {"50", 0.001}, {"100", 0.001}});
     EXPECT_EQ(cheapest(table, 0.01), "25");

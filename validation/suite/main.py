@@ -18,9 +18,9 @@ directory of the cases and the tables into their READMEs; a run of some cases wr
 Exit codes: 0 all within tolerance, 1 a miss, 2 an unknown case or no program.
 
 examples:
-  scripts/validate
-  scripts/validate incline overturning -o results/today
-  scripts/validate --list
+  kluft validate
+  kluft validate incline overturning -o results/today
+  kluft validate --list
 """
 
 
@@ -29,7 +29,7 @@ def case_names():
 
 
 def arguments(words):
-    parser = argparse.ArgumentParser(prog="validate", description=__doc__, epilog=EPILOG,
+    parser = argparse.ArgumentParser(prog="kluft validate", description=__doc__, epilog=EPILOG,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("cases", nargs="*", metavar="CASE", help="cases to run (default: all)")
     parser.add_argument("-o", "--output", type=Path, default=Path("results/validation"), metavar="DIR",

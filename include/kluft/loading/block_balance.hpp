@@ -39,6 +39,7 @@ struct BlockBalance {
     std::vector<Vec3> left;     ///< external - internal, in the free motions: force, and moment over sqrt(area)
     std::vector<Vec2> position; ///< of the centroid (m)
     std::vector<double> area;   ///< m2
+    std::vector<char> held;     ///< whether its supports hold the block against every rigid motion
     std::vector<std::vector<int>> groups; ///< blocks held together by bonds and locked contact points; two or more each
 };
 /// By what is `left` over.
@@ -53,9 +54,11 @@ struct BlockGoal {
 
 /// The verdict on the blocks of a body.
 struct BlockVerdict {
-    double error = 0.0;              ///< the largest share of a block or group (docs/theory.md, (27))
-    std::vector<MovingBlock> moving; ///< blocks and the blocks of groups that are not balanced, the worst first
-    bool falls = true;               ///< what is left over on all of these has fallen since the solve before
+    double error = 0.0; ///< the largest share of a block or group (docs/theory.md, (27))
+    /// Blocks that are not balanced and the blocks of groups that are not, the worst first; those that supports hold only where
+    /// there are no others.
+    std::vector<MovingBlock> moving;
+    bool falls = true; ///< what is left over on all of these has fallen since the solve before
     [[nodiscard]] bool balanced() const { return moving.empty(); }
 };
 /// Judges blocks and groups by what is left over now and what was `before`, in the solve that this one started from; null

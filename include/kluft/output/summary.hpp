@@ -16,14 +16,15 @@ namespace kluft {
 
 /// The mechanical numbers of a run. Pa and fractions, positive in compression.
 struct CurveNumbers {
-    std::optional<double> peak_stress;     ///< largest axial stress over all balanced equilibria, see peak_row
-    std::optional<double> peak_strain;     ///< axial strain there
-    bool peak_reached = false;             ///< a later balanced equilibrium lies at least 1 % below the peak
-    bool net_locked = false;               ///< see is_net_locked; then no peak is reached
-    std::optional<double> residual_stress; ///< mean axial stress over the last 10 % of the strain, with a peak only
-    std::optional<double> axial_modulus;   ///< slope of the differential stress over the axial strain (Pa)
-    std::optional<double> lateral_ratio;   ///< slope of the lateral strain over the axial one, sign changed
-    std::optional<double> youngs_modulus;  ///< of the rock: the same slopes, converted for plane strain (Pa)
+    std::optional<double> peak_stress; ///< largest axial stress over all balanced equilibria, see peak_row
+    std::optional<double> peak_strain; ///< axial strain there
+    bool peak_reached = false;         ///< a later balanced equilibrium lies at least 1 % below the peak
+    bool net_locked = false;           ///< see is_net_locked; then no peak is reached
+    /// Mean axial stress over the last 10 % of the strain (Pa); none where the peak lies in the last 20 %.
+    std::optional<double> residual_stress;
+    std::optional<double> axial_modulus;  ///< slope of the differential stress over the axial strain (Pa)
+    std::optional<double> lateral_ratio;  ///< slope of the lateral strain over the axial one, sign changed
+    std::optional<double> youngs_modulus; ///< of the rock: the same slopes, converted for plane strain (Pa)
     std::optional<double> poissons_ratio;
     int cracks_tension = 0;
     int cracks_shear = 0;

@@ -22,4 +22,8 @@ namespace kluft {
 /// title that only one of the two has do not count.
 [[nodiscard]] std::string scene_difference(std::string_view earlier, const Scene& scene);
 
+/// The first key of the body, its loads and its laws whose value differs between the text of an earlier scene and this one, as
+/// above; "" where there is none. Keys of `solver`, `cracks` and `output`, and where a stage stops, change with a run that goes on.
+[[nodiscard]] std::string body_difference(std::string_view earlier, const Scene& scene);
+
 } // namespace kluft

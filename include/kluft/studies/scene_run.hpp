@@ -25,6 +25,11 @@ namespace kluft {
 /// directory has results of another scene, unless they may be replaced.
 [[nodiscard]] std::string scene_file_for(const std::filesystem::path& directory, const Scene& scene, bool may_replace);
 
+/// The last state in the directory, from which a run of the scene goes on. Throws InputError as read_state does; where the state
+/// is of another scene, with the first key that differs and those that may.
+[[nodiscard]] State state_to_resume(const std::filesystem::path& directory, const Scene& scene,
+                                    const std::string& fingerprint);
+
 /// Processor time of the runs that a resumed one goes on from (s): that of the last one that said so.
 [[nodiscard]] double earlier_cpu_s(const std::filesystem::path& directory);
 

@@ -156,14 +156,15 @@ struct ModelChoice {
 
 struct Advice {
     double bound = 0.0;                     ///< asked for, a fraction
-    std::optional<std::size_t> group;       ///< the cheapest one that holds it
+    std::optional<std::size_t> group;       ///< a cheapest one that holds it
     double error = 0.0;                     ///< of this group, see group_error
     double cpu_s = 0.0;                     ///< of one of its cases
     std::optional<double> reference_share;  ///< cpu_s over the mean of the references
     std::vector<std::size_t> not_confirmed; ///< cheaper groups below the bound that are not trusted
 };
 
-/// The cheapest group whose error is below each bound. A group counts only if it is confirmed: there is a finer one,
+/// The cheapest group whose error is below each bound; of those that cost up to a tenth more, which is what times of short runs
+/// vary by, the most exact one. A group counts only if it is confirmed: there is a finer one,
 /// and every finer one is below the bound too (finer: equal in all settings but refining ones, and no coarser in any of
 /// these). The table's reference itself counts as confirmed. Groups of other models of the rock, and those with a
 /// case in `unbalanced`, take no part.

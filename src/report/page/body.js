@@ -3,6 +3,7 @@ const ink = { tension: "#d7191c", shear: "#1f4fd8", sliding: "#f5a800", open: "#
 const sequential = ["#fcfbf6", "#dfe5dc", "#b9cac5", "#86a7aa", "#54808b", "#2c5866"];
 const diverging = ["#8c510a", "#d8b365", "#f7f6f2", "#8fb5bd", "#2c5866"];
 const nColours = 64;
+const leastRange = 0.05; // of the largest value, that the colours of a field span
 
 const channels = (hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16));
 /** Colours in equal steps between the stops. */
@@ -150,7 +151,9 @@ class BodyView {
     if (this.options.hold && this.held?.field === this.options.field) [low, high] = this.held.range;
     const signed = low < 0 && high > 0;
     if (signed) { high = Math.max(high, -low); low = -high; }
-    if (!(high > low)) high = low + (Math.abs(low) || 1) * 1e-6;
+    const least = leastRange * Math.max(Math.abs(low), Math.abs(high)); // an even field looks even
+    if (high - low < least) [low, high] = [(low + high - least) / 2, (low + high + least) / 2];
+    if (!(high > low)) high = low + 1e-6;
     this.held = { field: this.options.field, range: [low, high] };
     this.values = { numbers, low, high, colours: signed ? ramps.diverging : ramps.sequential };
     return this.values;

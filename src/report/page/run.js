@@ -313,7 +313,8 @@ function drawCurve() {
 function startCurve() {
   const hasPlaten = run.platen_stage !== null;
   const across = [...(hasPlaten ? ["axial_strain"] : []), "load", "step"];
-  const first = hasPlaten ? "differential_stress" : rows.strength_factor ? "strength_factor" : "sliding";
+  const first = hasPlaten ? "differential_stress" : rows.strength_factor ? "strength_factor"
+    : ["volumetric_strain", "sliding", "open", "locked"].find(varies) ?? "locked";
   const up = Object.keys(columnNames).filter((key) => rows[key] && !across.includes(key) && (key === first || varies(key)));
   fillChoices(byId("curve-y"), up, labelOf, first);
   fillChoices(byId("curve-x"), across, labelOf, rows.strength_factor ? "step" : across[0]);
