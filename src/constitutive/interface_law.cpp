@@ -22,9 +22,9 @@ RoundedShear rounded_shear(double x, double s) {
 
 /// Plastic slip beyond the rounding: the root of k_s d = max(0, |trial| - (1 + s) limit(gap - tan(psi) d)), whose
 /// left side minus right side increases with d. Newton from d = 0, kept inside a bracket (17).
-double plastic_slip(const InterfaceLaw& law, double trial, double elastic_gap, double factor,
-                    const ContactPiece& piece) {
-    const auto limit_at = [&](double d) { return shear_limit(law, elastic_gap - law.tan_dilation * d, piece); };
+template <class LimitAtGap>
+double plastic_slip(const InterfaceLaw& law, double trial, double elastic_gap, double factor, LimitAtGap limit_at_gap) {
+    const auto limit_at = [&](double d) { return limit_at_gap(elastic_gap - law.tan_dilation * d); };
     if (trial <= factor * limit_at(0.0).value) return 0.0;
     double low = 0.0;
     double high = trial / law.shear_stiffness;
@@ -116,7 +116,10 @@ ShearLimit shear_limit(const InterfaceLaw& law, double elastic_gap, const Contac
 }
 
 PointTraction fracture_traction(const InterfaceLaw& law, const PointHistory& start, double gap, double slip,
-                                const ContactPiece& piece) {
+                                const ContactPiece& piece, const std::optional<double>& held_limit) {
+    const auto limit_at = [&](double elastic_gap) {
+        return held_limit ? ShearLimit{*held_limit, 0.0, 0.0} : shear_limit(law, elastic_gap, piece);
+    };
     PointTraction result;
     result.history.dilation = start.dilation;
     const double trial = start.shear_trial + law.shear_stiffness * slip;
@@ -124,10 +127,11 @@ PointTraction fracture_traction(const InterfaceLaw& law, const PointHistory& sta
     const double factor = 1.0 + law.friction_rounding;
     const double undilated = gap - start.dilation;
 
-    const double plastic = law.tan_dilation != 0.0 ? plastic_slip(law, std::abs(trial), undilated, factor, piece) : 0.0;
+    const double plastic =
+        law.tan_dilation != 0.0 ? plastic_slip(law, std::abs(trial), undilated, factor, limit_at) : 0.0;
     const double elastic_gap = undilated - law.tan_dilation * plastic;
     const auto pressure = contact_pressure(law, elastic_gap);
-    const auto limit = shear_limit(law, elastic_gap, piece);
+    const auto limit = limit_at(elastic_gap);
     if (pressure.value <= 0.0 && limit.value <= 0.0) {
         result.state = ContactState::open;
         return result;

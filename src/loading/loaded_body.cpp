@@ -151,11 +151,16 @@ ContactPiece piece_at(const InterfaceLaw& law, const ContactPoint& point, const 
     return {.from = point.piece.from, .to = point.piece.to, .tilt = tilt(point, q)};
 }
 
+double coulomb_limit(const std::vector<InterfaceLaw>& laws, const ContactPoint& point, const Eigen::VectorXd& q) {
+    const InterfaceLaw& law = laws[point.law];
+    return shear_limit(law, gap_and_slip(point, q).gap - point.history.dilation, piece_at(law, point, q)).value;
+}
+
 PointTraction contact_traction(const std::vector<InterfaceLaw>& laws, const ContactPoint& point,
                                const Eigen::VectorXd& q) {
     const auto [gap, slip] = gap_and_slip(point, q);
     const InterfaceLaw& law = laws[point.law];
-    return fracture_traction(law, point.history, gap, slip, piece_at(law, point, q));
+    return fracture_traction(law, point.history, gap, slip, piece_at(law, point, q), point.held_limit);
 }
 
 PointTraction contact_traction(const LoadedBody& body, int i, const Eigen::VectorXd& q) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kluft/equilibrium/held_friction.hpp"
 #include "kluft/equilibrium/left_over.hpp"
 #include "kluft/simulation/mass_term.hpp"
 #include "kluft/simulation/whole_body.hpp"
@@ -46,6 +47,12 @@ bool lags_behind(const EquilibriumProblem& problem, const Equilibrium& found, do
     return std::ranges::none_of(problem.body.placement->contacts, [&](const ContactPoint& point) {
         return contact_traction(*problem.body.laws, point, found.displacement).state == ContactState::sliding;
     });
+}
+
+/// Whether a contact may slide under a limit that follows its pressure.
+bool has_friction(const LoadedBody& body) {
+    return std::ranges::any_of(body.placement->contacts,
+                               [&](const ContactPoint& point) { return (*body.laws)[point.law].tan_friction > 0.0; });
 }
 
 /// Each block and group, and the mass-like term, which holds strains of blocks back too.
@@ -132,11 +139,16 @@ Equilibrium EquilibriumSearch::find_held(EquilibriumProblem problem, Eigen::Vect
                                          const Circumstances& circumstances) {
     Equilibrium found;
     found.displacement = std::move(guess);
+    const bool from_rest = circumstances.unloaded && circumstances.given_loads && has_friction(problem.body) &&
+                           problem.body.kinematics == Kinematics::affine;
+    if (from_rest)
+        found.iterations = approach_with_held_friction(open_close_, problem, pattern_, true, found.displacement);
+    const bool approached = found.displacement != problem.start;
     found.summary = open_close_.solve(problem, pattern_, found.displacement,
-                                      {.unloaded = circumstances.unloaded,
+                                      {.unloaded = circumstances.unloaded && !approached,
                                        .given_loads = circumstances.given_loads,
                                        .block_tolerance = share_of_solve * balance.share});
-    found.iterations = found.summary.iterations;
+    found.iterations += found.summary.iterations;
     found.worst_block = found.summary.worst_block;
     if (found.converged()) settle(problem, balance, found);
     return found;

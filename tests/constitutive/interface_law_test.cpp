@@ -1,5 +1,6 @@
 #include "kluft/constitutive/interface_law.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -69,6 +70,21 @@ TEST(InterfaceLaw, OpenPointCarriesNothingAndForgetsItsShear) {
 }
 
 // The body as it was cut is free of stress: no pressure at gap 0, also with rounding.
+// Friction of a given size has an energy: the shear traction does not know the gap, and the tangent is symmetric.
+TEST(InterfaceLaw, AHeldLimitBoundsTheShearWhateverThePressure) {
+    const InterfaceLaw law = joint();
+    const double limit = 0.3e6;
+    for (const double gap : {1e-4, 0.0, -1e-7, -1e-3}) {
+        for (const double slip : {-1.0, -1e-5, 1e-5, 1.0}) {
+            const auto held = fracture_traction(law, {}, gap, slip, {}, limit);
+            EXPECT_NEAR(held.shear, std::clamp(law.shear_stiffness * slip, -limit, limit), 1e-9 * limit) << gap;
+            EXPECT_DOUBLE_EQ(held.normal, fracture_traction(law, {}, gap, slip).normal);
+            EXPECT_EQ(held.tangent(0, 1), 0.0);
+            EXPECT_EQ(held.tangent(1, 0), 0.0);
+        }
+    }
+}
+
 TEST(InterfaceLaw, PressureIsContinuousAndVanishesWithTheGap) {
     const InterfaceLaw law = joint();
     const double g0 = law.contact_rounding / law.normal_stiffness;

@@ -1,6 +1,8 @@
 // Traction of interfaces from their relative displacement: bonds and fractures (docs/theory.md).
 #pragma once
 
+#include <optional>
+
 #include "kluft/core/vector.hpp"
 
 namespace kluft {
@@ -76,8 +78,10 @@ struct ShearLimit {
 
 /// A point of a fracture: no tension, Coulomb friction with rounding, dilation by plastic slip. `gap` is total,
 /// `slip` counts from where `start` was kept. A point without pressure is open unless a part of its piece is closed and
-/// has cohesion.
+/// has cohesion. With a `held_limit` (Pa) Coulomb's limit is that, whatever the pressure, also where the gap is open: no law of a
+/// contact, but one with an energy, from which an equilibrium is searched (docs/theory.md, (29d)).
 [[nodiscard]] PointTraction fracture_traction(const InterfaceLaw& law, const PointHistory& start, double gap,
-                                              double slip, const ContactPiece& piece = {});
+                                              double slip, const ContactPiece& piece = {},
+                                              const std::optional<double>& held_limit = {});
 
 } // namespace kluft

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <compare>
+#include <optional>
 
 #include <Eigen/Core>
 
@@ -61,6 +62,8 @@ struct ContactPoint {
     int law = 0;                 ///< index of the interface law
     int interface = -1;          ///< the interface of a fracture's own two edges; -1 otherwise
     PointHistory history;        ///< at the start of the load step
+    std::optional<double>
+        held_limit; ///< of the shear traction (Pa), in searches of an equilibrium only; else Coulomb's
     ContactKey key;
 };
 

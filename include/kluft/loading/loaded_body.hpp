@@ -104,6 +104,10 @@ struct GapAndSlip {
 /// The piece of an overlap whose cohesion a point carries, at q; none for a law without cohesion.
 [[nodiscard]] ContactPiece piece_at(const InterfaceLaw& law, const ContactPoint& point, const Eigen::VectorXd& q);
 
+/// Coulomb's limit of a contact point at q, at the dilation that its history has (Pa).
+[[nodiscard]] double coulomb_limit(const std::vector<InterfaceLaw>& laws, const ContactPoint& point,
+                                   const Eigen::VectorXd& q);
+
 /// The traction at q of a contact point, or of a point (0 or 1) of a bond; `i` indexes body.contacts or .bonds.
 [[nodiscard]] PointTraction contact_traction(const std::vector<InterfaceLaw>& laws, const ContactPoint& point,
                                              const Eigen::VectorXd& q);
