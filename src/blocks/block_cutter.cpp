@@ -21,6 +21,7 @@
 #include "kluft/blocks/map_mender.hpp"
 #include "kluft/blocks/triangle_net.hpp"
 #include "kluft/blocks/voronoi_cells.hpp"
+#include "kluft/blocks/whole_cells.hpp"
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/core/memory.hpp"
 #include "kluft/core/place_text.hpp"
@@ -197,12 +198,17 @@ std::optional<Vec2> conflict_of(const SourceSegment& first, const SideOfPolygon&
     return turns_back ? std::optional(first.b) : std::nullopt;
 }
 
+std::vector<SegmentGrid::Segment> pairs_of(const std::vector<SourceSegment>& segments) {
+    std::vector<SegmentGrid::Segment> pairs;
+    pairs.reserve(segments.size());
+    for (const SourceSegment& segment : segments) pairs.emplace_back(segment.a, segment.b);
+    return pairs;
+}
+
 /// "the outline crosses or touches itself at (1, 2)" for the first place where that is so.
 std::string flaw_of_outline(const GeometrySpec& spec, const std::vector<SourceSegment>& segments, const Vec2& origin) {
     const std::vector<SideOfPolygon> sides = sides_of_domain(spec);
-    std::vector<SegmentGrid::Segment> pairs;
-    for (const SourceSegment& side : segments) pairs.emplace_back(side.a, side.b);
-    const SegmentGrid grid(pairs);
+    const SegmentGrid grid(pairs_of(segments));
     for (std::size_t i = 0; i < segments.size(); ++i) {
         for (const int j : grid.near(bounding_box({segments[i].a, segments[i].b}))) {
             if (j <= static_cast<int>(i)) continue;
@@ -285,9 +291,13 @@ void add_traces(std::vector<SourceSegment>& segments, const std::vector<SourceTr
     }
 }
 
-/// Edges of the cells with their centre in the region, and of these only of those that can reach into the domain.
-std::vector<std::pair<Vec2, Vec2>> net_edges(const GeometrySpec& spec, const LocalFrame& frame,
-                                             const SegmentGrid& outline) {
+/// Which hexagons are made exactly: those that something else may touch, and their neighbours, or all.
+enum class ExactCells { where_needed, all };
+
+/// The cells with their centre in the region, and of these only those that can reach into the domain. `others` is all else
+/// that cuts the body.
+HexagonNet net_of(const GeometrySpec& spec, const LocalFrame& frame, const SegmentGrid& outline,
+                  const std::vector<SourceSegment>& others, ExactCells exact) {
     const Tessellation& net = *spec.tessellation;
     const Polygon domain = frame.to_local(spec.domain);
     const Polygon region = net.region ? frame.to_local(*net.region) : Polygon{};
@@ -296,7 +306,14 @@ std::vector<std::pair<Vec2, Vec2>> net_edges(const GeometrySpec& spec, const Loc
         if (!region.empty() && !contains(region, centre)) return false;
         return contains(domain, centre) || std::isfinite(outline.distance(centre, reach));
     };
-    return net.voronoi ? voronoi_edges(*net.voronoi, frame.box, keeps) : hexagon_edges(net.hexagons, frame.box, keeps);
+    if (net.voronoi) return {.whole = {}, .edges = voronoi_edges(*net.voronoi, frame.box, keeps)};
+    if (exact == ExactCells::all) return {.whole = {}, .edges = hexagon_edges(net.hexagons, frame.box, keeps)};
+    const SegmentGrid cutting(pairs_of(others));
+    const double farthest = reach + net.hexagons.spacing; // of what can touch a neighbour
+    const auto is_clear = [&](const Vec2& centre) {
+        return !std::isfinite(cutting.distance(centre, farthest)) && contains(domain, centre);
+    };
+    return hexagon_net(net.hexagons, frame.box, keeps, is_clear);
 }
 
 /// What a net of triangles follows beside the outline and the fractures: construction lines and its region's sides.
@@ -319,15 +336,15 @@ std::vector<SourceSegment> lines_of_net(const GeometrySpec& spec, const LocalFra
 
 struct Cuts {
     std::vector<SourceSegment> segments;
+    WholeCells whole; ///< that no segment touches
     int joined_ends = 0;
 };
 
-Cuts cuts_of(const GeometrySpec& spec, const LocalFrame& frame, const SourceNumbers& numbers) {
+Cuts cuts_of(const GeometrySpec& spec, const LocalFrame& frame, const SourceNumbers& numbers, ExactCells exact) {
     Cuts cuts;
     cuts.segments = outline_segments(spec, frame);
     check_outline(spec, cuts.segments, frame.origin);
-    std::vector<SegmentGrid::Segment> sides;
-    for (const SourceSegment& side : cuts.segments) sides.emplace_back(side.a, side.b);
+    const SegmentGrid outline(pairs_of(cuts.segments));
 
     const std::vector<SourceTrace> traces = local_traces(spec, frame, numbers);
     add_traces(cuts.segments, traces);
@@ -338,8 +355,9 @@ Cuts cuts_of(const GeometrySpec& spec, const LocalFrame& frame, const SourceNumb
         const std::vector<SourceSegment> lines = lines_of_net(spec, frame, numbers);
         cuts.segments.insert(cuts.segments.end(), lines.begin(), lines.end());
     } else if (spec.tessellation) {
-        for (const auto& [a, b] : net_edges(spec, frame, SegmentGrid(sides)))
-            cuts.segments.push_back({a, b, numbers.tessellation});
+        HexagonNet net = net_of(spec, frame, outline, cuts.segments, exact);
+        for (const auto& [a, b] : net.edges) cuts.segments.push_back({a, b, numbers.tessellation});
+        cuts.whole = std::move(net.whole);
     }
     return cuts;
 }
@@ -807,15 +825,16 @@ std::vector<FineDetail> fine_details(const GeometrySpec& spec, double resolution
     return details;
 }
 
-CutBody cut(const GeometrySpec& spec) {
+CutBody cut(const GeometrySpec& spec, ExactCells exact) {
     check_spec(spec);
     const SourceNumbers numbers = number_sources(spec);
     const LocalFrame frame = local_frame(spec.domain);
 
     CutBody body;
-    Cuts cuts = cuts_of(spec, frame, numbers);
+    const Cuts cuts = cuts_of(spec, frame, numbers, exact);
     body.report.joined_ends = cuts.joined_ends;
     PlanarMap map = arrange(cuts.segments);
+    insert_whole_cells(map, cuts.whole, numbers.tessellation);
     take_outside_away(map, numbers);
     std::vector<SourceSegment> free = has_triangles(spec) ? free_pieces(map) : std::vector<SourceSegment>{};
     body.report.pruned_ends = count_free_pieces(map, numbers, 2.0 * resolution(spec, frame));
@@ -841,17 +860,17 @@ CutBody cut(const GeometrySpec& spec) {
     return body;
 }
 
-CutBody body_of(const GeometrySpec& spec) {
-    return spec.blocks.empty() ? cut(spec) : CutBody{assemble_blocks(spec), {}};
+CutBody body_of(const GeometrySpec& spec, ExactCells exact) {
+    CutBody body = spec.blocks.empty() ? cut(spec, exact) : CutBody{assemble_blocks(spec), {}};
+    measure(body.system, body.report);
+    return_freed_memory(); // a multiple of what the body needs, which the run would otherwise not get
+    return body;
 }
 
 } // namespace
 
-CutBody cut_blocks(const GeometrySpec& spec) {
-    CutBody body = body_of(spec);
-    measure(body.system, body.report);
-    return_freed_memory(); // five times what the body needs, which the run would otherwise not get
-    return body;
-}
+CutBody cut_blocks(const GeometrySpec& spec) { return body_of(spec, ExactCells::where_needed); }
+
+CutBody cut_blocks_exactly(const GeometrySpec& spec) { return body_of(spec, ExactCells::all); }
 
 } // namespace kluft

@@ -103,57 +103,160 @@ void check(const HexagonLattice& lattice) {
     }
 }
 
+/// The hexagons that can meet a box, by rows, and what becomes of each.
+class LatticeCells {
+public:
+    LatticeCells(const HexagonLattice& lattice, const Box& box) : lattice_(lattice), frame_(lattice), box_(box) {
+        const double d = lattice.spacing;
+        const double reach = hexagon_reach(lattice);
+        const Box covered = bounding_box({frame_.unrotated(box.lower), frame_.unrotated(box.upper),
+                                          frame_.unrotated({box.lower.x(), box.upper.y()}),
+                                          frame_.unrotated({box.upper.x(), box.lower.y()})});
+        const double row = 0.5 * sqrt3 * d;
+        const double n_cells = ((covered.upper.y() - covered.lower.y() + 2.0 * reach) / row + 3.0) *
+                               ((covered.upper.x() - covered.lower.x() + 2.0 * reach) / d + 3.0);
+        constexpr double most_in_box = 5.0 * most_cells; // of which the body may fill a part
+        if (n_cells > most_in_box) {
+            throw InputError(
+                fmt::format("geometry.tessellation.hexagons.spacing: {} m makes {:.2g} hexagons, more than "
+                            "{:.0g} in one scene",
+                            d, n_cells, most_in_box));
+        }
+        const auto below = [](double x) { return static_cast<std::int64_t>(std::floor(x)); };
+        const auto above = [](double x) { return static_cast<std::int64_t>(std::ceil(x)); };
+        first_row_ = below((covered.lower.y() - reach) / row);
+        const std::int64_t last_row = above((covered.upper.y() + reach) / row);
+        for (std::int64_t j = first_row_; j <= last_row; ++j) {
+            const double shift = 0.5 * static_cast<double>(j);
+            const std::int64_t first = below((covered.lower.x() - reach) / d - shift);
+            const std::int64_t last = above((covered.upper.x() + reach) / d - shift);
+            rows_.push_back({first, std::vector<Cell>(static_cast<std::size_t>(last - first + 1))});
+        }
+    }
+
+    void classify(const std::function<bool(const Vec2&)>& keeps, const std::function<bool(const Vec2&)>& is_clear) {
+        const double reach = hexagon_reach(lattice_);
+        for_each([&](std::int64_t i, std::int64_t j, Cell& cell) {
+            const Vec2 c = frame_.position(centre(i, j));
+            cell.kept = c.x() >= box_.lower.x() - reach && c.x() <= box_.upper.x() + reach &&
+                        c.y() >= box_.lower.y() - reach && c.y() <= box_.upper.y() + reach && keeps(c);
+        });
+        int n_whole = 0;
+        for_each([&](std::int64_t i, std::int64_t j, Cell& cell) {
+            const bool inside = cell.kept && std::ranges::all_of(neighbours, [&](const auto& step) {
+                                    return is_kept(i + step[0], j + step[1]);
+                                });
+            if (inside && is_clear(frame_.position(centre(i, j)))) cell.whole = n_whole++;
+        });
+    }
+
+    /// Edges that are sides of a hexagon that is not whole.
+    [[nodiscard]] std::vector<std::pair<Vec2, Vec2>> edges() {
+        std::vector<std::pair<Vec2, Vec2>> edges;
+        for_each([&](std::int64_t i, std::int64_t j, const Cell& cell) {
+            if (!cell.kept) return;
+            for (int k = 0; k < 6; ++k) {
+                const std::int64_t i_across = i + neighbours[k][0];
+                const std::int64_t j_across = j + neighbours[k][1];
+                // The first three edges are this cell's own; the others only where the cell across is not kept.
+                if (k >= 3 && is_kept(i_across, j_across)) continue;
+                if (cell.whole >= 0 && whole_at(i_across, j_across) >= 0) continue;
+                const Vec2 a = frame_.vertex(corner(i, j, k));
+                const Vec2 b = frame_.vertex(corner(i, j, (k + 1) % 6));
+                if (boxes_meet(box_, a, b)) edges.emplace_back(a, b);
+            }
+        });
+        return edges;
+    }
+
+    [[nodiscard]] WholeCells whole_cells() {
+        WholeCells whole;
+        for_each([&](std::int64_t i, std::int64_t j, const Cell& cell) {
+            if (cell.whole < 0) return;
+            WholeCell& added = whole.cells.emplace_back();
+            for (int k = 0; k < 6; ++k) {
+                added.vertices[k] = number_of_corner(i, j, k, whole.vertices);
+                added.across[k] = whole_at(i + neighbours[k][0], j + neighbours[k][1]);
+            }
+        });
+        return whole;
+    }
+
+private:
+    struct Cell {
+        bool kept = false;
+        int whole = -1; ///< number among the whole cells
+        int top = -1;   ///< numbers of its vertices at (0, 2) and (0, -2) among those of the whole cells
+        int bottom = -1;
+    };
+    struct Row {
+        std::int64_t first = 0;
+        std::vector<Cell> cells;
+    };
+
+    template <class Visit> void for_each(const Visit& visit) {
+        std::int64_t j = first_row_;
+        for (Row& row : rows_) {
+            std::int64_t i = row.first;
+            for (Cell& cell : row.cells) visit(i++, j, cell);
+            ++j;
+        }
+    }
+
+    [[nodiscard]] const Cell* find(std::int64_t i, std::int64_t j) const {
+        const std::int64_t r = j - first_row_;
+        if (r < 0 || r >= std::ssize(rows_)) return nullptr;
+        const std::int64_t c = i - rows_[r].first;
+        return c < 0 || c >= std::ssize(rows_[r].cells) ? nullptr : &rows_[r].cells[c];
+    }
+
+    [[nodiscard]] bool is_kept(std::int64_t i, std::int64_t j) const {
+        const Cell* cell = find(i, j);
+        return cell != nullptr && cell->kept;
+    }
+
+    [[nodiscard]] int whole_at(std::int64_t i, std::int64_t j) const {
+        const Cell* cell = find(i, j);
+        return cell == nullptr ? -1 : cell->whole;
+    }
+
+    /// Each vertex is the top or the bottom of exactly one hexagon. Of a whole one, all six of these are kept ones.
+    int number_of_corner(std::int64_t i, std::int64_t j, int k, std::vector<Vec2>& vertices) {
+        constexpr std::array<std::array<int, 2>, 6> steps{{{1, -1}, {0, 1}, {0, 0}, {-1, 1}, {0, -1}, {0, 0}}};
+        const std::int64_t r = j + steps[k][1] - first_row_;
+        Cell& holder = rows_[r].cells[i + steps[k][0] - rows_[r].first];
+        int& number = k % 2 == 0 ? holder.top : holder.bottom;
+        if (number < 0) {
+            number = static_cast<int>(vertices.size());
+            vertices.push_back(frame_.vertex(corner(i, j, k)));
+        }
+        return number;
+    }
+
+    HexagonLattice lattice_;
+    LatticeFrame frame_;
+    Box box_;
+    std::int64_t first_row_ = 0;
+    std::vector<Row> rows_;
+};
+
 } // namespace
 
 double hexagon_reach(const HexagonLattice& lattice) { return lattice.spacing * (1.0 / sqrt3 + lattice.jitter); }
 
 double hexagon_area(double spacing) { return 0.5 * sqrt3 * spacing * spacing; }
 
+HexagonNet hexagon_net(const HexagonLattice& lattice, const Box& box, const std::function<bool(const Vec2&)>& keeps,
+                       const std::function<bool(const Vec2&)>& is_clear) {
+    check(lattice);
+    LatticeCells cells(lattice, box);
+    cells.classify(keeps, is_clear);
+    return {.whole = cells.whole_cells(), .edges = cells.edges()};
+}
+
 std::vector<std::pair<Vec2, Vec2>> hexagon_edges(const HexagonLattice& lattice, const Box& box,
                                                  const std::function<bool(const Vec2&)>& keeps) {
-    check(lattice);
-    const LatticeFrame frame(lattice);
-    const double d = lattice.spacing;
-    const double reach = hexagon_reach(lattice);
-    const Box covered = bounding_box({frame.unrotated(box.lower), frame.unrotated(box.upper),
-                                      frame.unrotated({box.lower.x(), box.upper.y()}),
-                                      frame.unrotated({box.upper.x(), box.lower.y()})});
-    const double row = 0.5 * sqrt3 * d;
-    const double n_cells = ((covered.upper.y() - covered.lower.y() + 2.0 * reach) / row + 3.0) *
-                           ((covered.upper.x() - covered.lower.x() + 2.0 * reach) / d + 3.0);
-    constexpr double most_in_box = 5.0 * most_cells; // of which the body may fill a part
-    if (n_cells > most_in_box) {
-        throw InputError(fmt::format("geometry.tessellation.hexagons.spacing: {} m makes {:.2g} hexagons, more than "
-                                     "{:.0g} in one scene",
-                                     d, n_cells, most_in_box));
-    }
-    const auto below = [](double x) { return static_cast<std::int64_t>(std::floor(x)); };
-    const auto above = [](double x) { return static_cast<std::int64_t>(std::ceil(x)); };
-    const std::int64_t first_row = below((covered.lower.y() - reach) / row);
-    const std::int64_t last_row = above((covered.upper.y() + reach) / row);
-
-    const auto kept = [&](std::int64_t i, std::int64_t j) {
-        const Vec2 c = frame.position(centre(i, j));
-        return c.x() >= box.lower.x() - reach && c.x() <= box.upper.x() + reach && c.y() >= box.lower.y() - reach &&
-               c.y() <= box.upper.y() + reach && keeps(c);
-    };
-    std::vector<std::pair<Vec2, Vec2>> edges;
-    for (std::int64_t j = first_row; j <= last_row; ++j) {
-        const double shift = 0.5 * static_cast<double>(j);
-        const std::int64_t first = below((covered.lower.x() - reach) / d - shift);
-        const std::int64_t last = above((covered.upper.x() + reach) / d - shift);
-        for (std::int64_t i = first; i <= last; ++i) {
-            if (!kept(i, j)) continue;
-            for (int k = 0; k < 6; ++k) {
-                // The first three edges are this cell's own; the others only where the cell across is not kept.
-                if (k >= 3 && kept(i + neighbours[k][0], j + neighbours[k][1])) continue;
-                const Vec2 a = frame.vertex(corner(i, j, k));
-                const Vec2 b = frame.vertex(corner(i, j, (k + 1) % 6));
-                if (boxes_meet(box, a, b)) edges.emplace_back(a, b);
-            }
-        }
-    }
-    return edges;
+    return hexagon_net(lattice, box, keeps, [](const Vec2& /*centre*/) { return false; }).edges;
 }
 
 } // namespace kluft

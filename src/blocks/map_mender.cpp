@@ -60,13 +60,14 @@ public:
         grid_.emplace(std::move(pairs));
     }
 
-    [[nodiscard]] std::vector<int> of(const Segment& segment) const {
-        return grid_ ? grid_->near(bounding_box({segment.start, segment.end})) : all_;
+    [[nodiscard]] std::vector<int> of(const Segment& segment) {
+        return grid_ ? grid_->near(bounding_box({segment.start, segment.end}), asked_) : all_;
     }
 
 private:
     std::vector<int> all_;
     std::optional<SegmentGrid> grid_;
+    std::vector<char> asked_; // marks of the grid's
 };
 
 /// Half-edges of a face that have more than a vertex in common with another one of it, or no length.
@@ -76,7 +77,7 @@ std::vector<int> conflicting_half_edges(PlanarMap& map, int face) {
     for (const int h : list) {
         segments.push_back({map.start(h), map.end(h), map.positions[map.start(h)], map.positions[map.end(h)]});
     }
-    const Candidates candidates(segments);
+    Candidates candidates(segments);
     std::vector<int> found;
     for (int i = 0; i < static_cast<int>(list.size()); ++i) {
         const Segment& segment = segments[i];

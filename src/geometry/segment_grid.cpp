@@ -50,18 +50,35 @@ int SegmentGrid::column(double x) const {
 
 int SegmentGrid::row(double y) const { return static_cast<int>(std::clamp((y - lower_.y()) / cell_, 0.0, n_y_ - 1.0)); }
 
-std::vector<int> SegmentGrid::near(const Box& box) const {
-    std::vector<int> found;
+template <class Visit> void SegmentGrid::visit_cells(const Box& box, const Visit& visit) const {
     const int first_row = std::max(0, row(box.lower.y()) - 1);
     const int last_row = std::min(n_y_ - 1, row(box.upper.y()) + 1);
     for (int r = first_row; r <= last_row; ++r) {
-        for (int c = column(box.lower.x()); c <= column(box.upper.x()); ++c) {
-            const auto& cell = cells_[static_cast<std::size_t>(r) * n_x_ + c];
-            found.insert(found.end(), cell.begin(), cell.end());
-        }
+        for (int c = column(box.lower.x()); c <= column(box.upper.x()); ++c)
+            visit(cells_[static_cast<std::size_t>(r) * n_x_ + c]);
     }
+}
+
+std::vector<int> SegmentGrid::near(const Box& box) const {
+    std::vector<int> found;
+    visit_cells(box, [&found](const std::vector<int>& cell) { found.insert(found.end(), cell.begin(), cell.end()); });
     std::sort(found.begin(), found.end());
     found.erase(std::unique(found.begin(), found.end()), found.end());
+    return found;
+}
+
+std::vector<int> SegmentGrid::near(const Box& box, std::vector<char>& asked) const {
+    asked.resize(segments_.size(), 0);
+    std::vector<int> found;
+    visit_cells(box, [&](const std::vector<int>& cell) {
+        for (const int i : cell) {
+            if (asked[i] != 0) continue;
+            asked[i] = 1;
+            found.push_back(i);
+        }
+    });
+    for (const int i : found) asked[i] = 0;
+    std::sort(found.begin(), found.end());
     return found;
 }
 

@@ -83,19 +83,44 @@ void say_stiffness(const Scene& scene, const Model& model, Lines& lines) {
     }
 }
 
-/// Largest memory of a run with a factor of so many bytes, fitted to measured ones: "Memory" in docs/theory.md.
+/// What a run takes beside the program, the factor and the fractures (bytes), fitted to measured runs.
+struct MemoryOfBlocks {
+    double run = 0.0;      ///< until the factor is gone
+    double pictures = 0.0; ///< with the blocks, when they are drawn
+};
+
+MemoryOfBlocks memory_of_affine_blocks(double n_blocks) {
+    constexpr double per_block = 7.4e3;
+    constexpr double pictures_per_block = 2.6e3;
+    return {.run = per_block * n_blocks, .pictures = pictures_per_block * n_blocks};
+}
+
+/// Blocks of the matrix have a quarter of the entries of affine ones, vectors half of them. Contacts that open, close or
+/// slide make the linear systems take vectors (Krylov's), which whole bodies do not need.
+MemoryOfBlocks memory_of_rigid_blocks(double n_blocks, bool has_fractures) {
+    constexpr double per_block = 4.2e3;
+    constexpr double vectors_per_block = 1.7e3;
+    constexpr double more_per_block = 4.3e3; // of small bodies
+    constexpr double most_more = 12e6;
+    constexpr double pictures_per_block = 5.0e3;
+    return {.run = (per_block + (has_fractures ? vectors_per_block : 0.0)) * n_blocks +
+                   std::min(more_per_block * n_blocks, most_more),
+            .pictures = pictures_per_block * n_blocks};
+}
+
+/// Largest memory of a run with a factor of so many bytes: "Memory" in docs/theory.md.
 double estimated_memory(const Scene& scene, const Model& model, double factor) {
     constexpr double program = 28e6;
-    constexpr double per_block = 7.4e3;
     constexpr double per_fracture = 2.2e3; // interface that is no bond
     constexpr double pictures = 48e6;      // with the program; they are drawn when the factor is gone
-    constexpr double pictures_per_block = 2.6e3;
     const BlockSystem& system = model.system;
     const auto n_fractures = std::ranges::count_if(
         system.interfaces, [&](const Interface& interface) { return model.bonds[law_of(interface)] == 0; });
-    const double run =
-        program + per_block * system.n_blocks() + per_fracture * static_cast<double>(n_fractures) + factor;
-    return scene.output.pictures ? std::max(run, pictures + pictures_per_block * system.n_blocks()) : run;
+    const MemoryOfBlocks blocks = scene.kinematics == Kinematics::rigid
+                                      ? memory_of_rigid_blocks(system.n_blocks(), n_fractures > 0)
+                                      : memory_of_affine_blocks(system.n_blocks());
+    const double run = program + blocks.run + per_fracture * static_cast<double>(n_fractures) + factor;
+    return scene.output.pictures ? std::max(run, pictures + blocks.pictures) : run;
 }
 
 double say_memory(const Scene& scene, const Model& model, Lines& lines) {

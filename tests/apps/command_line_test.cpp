@@ -1341,7 +1341,8 @@ double megabytes_in(const std::string& out) {
 }
 
 // The estimate against the largest resident memory of the run, by the kernel's count: within 20 % for 500 and 2000
-// blocks, whole, with fractures, or of fractures alone, with pictures and without.
+// blocks, affine and rigid, whole, with fractures, or of fractures alone, with pictures and without; of 8000 rigid blocks too,
+// of which the program itself is a small part.
 TEST_F(SlowCommandLine, CheckEstimatesTheLargestMemoryOfARun) {
 #ifdef KLUFT_SANITIZED
     GTEST_SKIP() << "sanitizers multiply the memory";
@@ -1357,12 +1358,17 @@ TEST_F(SlowCommandLine, CheckEstimatesTheLargestMemoryOfARun) {
     const Words without_pictures{"--set", "output.pictures=false"};
     const Words fine{"--set", "geometry.tessellation.hexagons.spacing=0.0243"};
     const Words loose{"--set", "geometry.tessellation.interface=joint"};
+    const Words rigid{"--set", "analysis.kinematics=rigid"};
+    const Words finer{"--set", "geometry.tessellation.hexagons.spacing=0.0122"};
     expect_estimate({"whole.yaml"});
     for (const Words& scene : {Words{"whole.yaml"}, Words{"fractured.yaml"}, with({"whole.yaml"}, loose)}) {
         expect_estimate(with(scene, without_pictures));
         expect_estimate(with(with(scene, fine), without_pictures));
+        expect_estimate(with(with(scene, rigid), without_pictures));
+        expect_estimate(with(with(scene, rigid), fine));
     }
     expect_estimate(with({"fractured.yaml"}, fine));
+    expect_estimate(with(with({"whole.yaml"}, rigid), finer));
 }
 
 // ---- determinism ---------------------------------------------------------------------------------------------------

@@ -108,6 +108,57 @@ TEST(HexagonLattice, JitterFillsADiscOfItsSize) {
     EXPECT_LT(sum.norm() / n, 0.05 * r);
 }
 
+// Each edge of the net lies between two whole hexagons, or is among the other edges; also the sides of whole hexagons that
+// have no whole one across are.
+TEST(HexagonLattice, IsTheSameNetInWholeHexagonsAndOtherEdges) {
+    for (const double rotation : {0.0, 0.4}) {
+        const HexagonLattice lattice{.spacing = 0.05, .rotation = rotation, .jitter = 0.1};
+        const Box box{Vec2(0, 0), Vec2(1, 1)};
+        const auto keeps = [](const Vec2& centre) { return (centre - Vec2(0.5, 0.5)).norm() < 0.5; };
+        const auto is_clear = [](const Vec2& centre) {
+            return centre.x() > 0.1 && centre.x() < 0.6 && centre.y() > 0.1 && centre.y() < 0.9;
+        };
+        std::set<std::pair<Point, Point>> expected;
+        for (const auto& [a, b] : hexagon_edges(lattice, box, keeps)) expected.insert(std::minmax(key(a), key(b)));
+
+        const HexagonNet net = hexagon_net(lattice, box, keeps, is_clear);
+        std::set<std::pair<Point, Point>> found;
+        for (const auto& [a, b] : net.edges) EXPECT_TRUE(found.insert(std::minmax(key(a), key(b))).second);
+        const auto& cells = net.whole.cells;
+        const auto side = [&](int cell, int k) {
+            const auto& corners = cells[cell].vertices;
+            return std::pair(net.whole.vertices[corners[k]], net.whole.vertices[corners[(k + 1) % 6]]);
+        };
+        for (int c = 0; c < static_cast<int>(cells.size()); ++c) {
+            for (int k = 0; k < 6; ++k) {
+                const auto [a, b] = side(c, k);
+                const int across = cells[c].across[k];
+                const bool is_other_edge = found.contains(std::minmax(key(a), key(b)));
+                if (across > c) {
+                    EXPECT_EQ(side(across, (k + 3) % 6), std::pair(b, a));
+                    EXPECT_TRUE(found.insert(std::minmax(key(a), key(b))).second);
+                } else {
+                    EXPECT_TRUE(is_other_edge);
+                }
+            }
+        }
+        EXPECT_EQ(found, expected);
+        // 0.5 m by 0.8 m but for the corners and a row along the rim of the net
+        EXPECT_NEAR(static_cast<double>(cells.size()), 0.36 / hexagon_area(0.05), 18.0);
+    }
+}
+
+TEST(HexagonLattice, HasNoWholeHexagonWhereNoneIsClearOrKept) {
+    const HexagonLattice lattice{.spacing = 0.05, .offset = {0.5, 0.5}};
+    const Box box{Vec2(0, 0), Vec2(1, 1)};
+    const auto nowhere = [](const Vec2&) { return false; };
+    EXPECT_TRUE(hexagon_net(lattice, box, everywhere, nowhere).whole.cells.empty());
+    EXPECT_TRUE(hexagon_net(lattice, box, nowhere, everywhere).whole.cells.empty());
+    const auto one = [](const Vec2& centre) { return (centre - Vec2(0.5, 0.5)).norm() < 1e-12; };
+    EXPECT_TRUE(hexagon_net(lattice, box, one, everywhere).whole.cells.empty()); // its neighbours are not kept
+    EXPECT_EQ(hexagon_net(lattice, box, everywhere, one).whole.cells.size(), 1U);
+}
+
 TEST(HexagonLattice, RefusesSpacingsAndJittersOutOfRange) {
     EXPECT_THROW(whole_net({.spacing = 0.0}), InputError);
     EXPECT_THROW(whole_net({.spacing = -1.0}), InputError);

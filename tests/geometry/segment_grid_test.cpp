@@ -34,6 +34,31 @@ TEST(SegmentGrid, FindsTheNearestSegmentWithinTheLimit) {
     }
 }
 
+// Every segment with a point in the box is found, each once and in order, also by many questions with the same marks.
+TEST(SegmentGrid, FindsWhatIsNearABoxWithMarksAsWithout) {
+    std::mt19937_64 random(6);
+    const auto unit = [&random] { return static_cast<double>(random() >> 11U) * 0x1.0p-53; };
+    std::vector<SegmentGrid::Segment> segments;
+    for (int i = 0; i < 300; ++i) {
+        const Vec2 a(unit(), unit());
+        segments.emplace_back(a, i % 3 == 0 ? Vec2(a.x(), unit()) : Vec2(unit(), unit()));
+    }
+    const SegmentGrid grid(segments);
+    std::vector<char> asked;
+    for (int k = 0; k < 100; ++k) {
+        const Box box = bounding_box({Vec2(unit(), unit()), Vec2(unit(), unit())});
+        const std::vector<int> found = grid.near(box, asked);
+        EXPECT_EQ(found, grid.near(box));
+        for (int i = 0; i < 300; ++i) {
+            const auto in_box = [&box](const Vec2& p) {
+                return (p.array() >= box.lower.array()).all() && (p.array() <= box.upper.array()).all();
+            };
+            const bool has_end_there = in_box(segments[i].first) || in_box(segments[i].second);
+            EXPECT_TRUE(!has_end_there || std::ranges::binary_search(found, i)) << i;
+        }
+    }
+}
+
 TEST(SegmentGrid, IsEmptyWithoutSegmentsAndHoldsASinglePoint) {
     EXPECT_TRUE(SegmentGrid({}).near({Vec2(0, 0), Vec2(1, 1)}).empty());
     const SegmentGrid point({{Vec2(2, 3), Vec2(2, 3)}});

@@ -76,4 +76,9 @@ struct CutBody {
 /// specification is out of range.
 [[nodiscard]] CutBody cut_blocks(const GeometrySpec& spec);
 
+/// The same body, in every bit, with all hexagons in the exact subdivision. cut_blocks puts there only those that come
+/// within a spacing of the outline, a hole or a trace, and those along the rim of the net; all others it makes from the
+/// lattice's vertices as they are. The tests compare the two.
+[[nodiscard]] CutBody cut_blocks_exactly(const GeometrySpec& spec);
+
 } // namespace kluft

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "kluft/blocks/geometry_spec.hpp"
+#include "kluft/blocks/whole_cells.hpp"
 #include "kluft/geometry/polygon.hpp"
 
 namespace kluft {
@@ -19,6 +20,19 @@ namespace kluft {
 /// Throws InputError for a spacing that is not positive and finite or a jitter outside [0, 0.25).
 [[nodiscard]] std::vector<std::pair<Vec2, Vec2>> hexagon_edges(const HexagonLattice& lattice, const Box& box,
                                                                const std::function<bool(const Vec2&)>& keeps);
+
+/// A net in two parts: cells that nothing cuts, and the edges of all others.
+struct HexagonNet {
+    WholeCells whole;
+    std::vector<std::pair<Vec2, Vec2>> edges; ///< each once
+};
+
+/// The net of `hexagon_edges`. A hexagon is whole if its centre `is_clear` and all six neighbours are kept, whole or not: all
+/// sides of a whole one without another across are among `edges`, and the cells along the rim of the net are not whole. All
+/// vertices of a hexagon whose centre is clear must lie in `box`.
+[[nodiscard]] HexagonNet hexagon_net(const HexagonLattice& lattice, const Box& box,
+                                     const std::function<bool(const Vec2&)>& keeps,
+                                     const std::function<bool(const Vec2&)>& is_clear);
 
 /// Farthest that a vertex lies from its hexagon's centre (m).
 [[nodiscard]] double hexagon_reach(const HexagonLattice& lattice);

@@ -21,9 +21,14 @@ public:
     /// Distance from p to the nearest segment where that is at most `limit`, otherwise infinity (m).
     [[nodiscard]] double distance(const Vec2& p, double limit) const;
 
+    /// The same, for many questions to one grid: `asked`, empty before the first of them, takes a mark for each segment, so
+    /// that what lies in many cells of the box is no longer sorted as often.
+    [[nodiscard]] std::vector<int> near(const Box& box, std::vector<char>& asked) const;
+
     [[nodiscard]] const Segment& segment(int i) const { return segments_[i]; }
 
 private:
+    template <class Visit> void visit_cells(const Box& box, const Visit& visit) const;
     [[nodiscard]] int column(double x) const;
     [[nodiscard]] int row(double y) const;
 
