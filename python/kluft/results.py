@@ -160,23 +160,33 @@ class Results:
             raise InputError(f"{self.directory}: expected a run with a peak of the axial stress, found none")
         whole = rows[~(rows["net_broken"] >= 0.95)]  # a net that is all but broken may have locked
         rows = whole if len(whole) > 0 else rows[:1]
-        return int(rows["step"][np.argmax(np.abs(rows["axial_stress"]))])
+        return int(rows["step"][np.argmax(self._sense * rows["axial_stress"])])
 
     @property
     def peak(self) -> np.void:
         """The row of `equilibria` with the peak of the axial stress. Throws InputError where there is none."""
         balanced = self.equilibria[self.equilibria["balanced"]]
+        balanced = balanced[balanced["stage"] >= (self.summary.get("platen_stage") or 0)]
         stress = self.summary.get("peak_stress")
         if len(balanced) == 0 or not self.moves_platen:
             raise InputError(f"{self.directory}: expected a run with a peak of the axial stress, found none")
         if stress is None:
-            return balanced[np.argmax(np.abs(balanced["axial_stress"]))]
+            return balanced[np.argmax(self._sense * balanced["axial_stress"])]
         return balanced[np.argmin(np.abs(balanced["axial_stress"] - stress))]
 
     @property
     def moves_platen(self) -> bool:
         """Whether there is a curve of stress over strain."""
+        if "platen_stage" in self.summary:
+            return self.summary["platen_stage"] is not None
         return bool(np.any(self.history["axial_strain"] != 0.0))
+
+    @property
+    def _sense(self) -> float:
+        """-1 where the platen pulls: stresses and strains of a strength are negative then."""
+        strains = self.history["axial_strain"]
+        moved = strains[(strains != 0.0) & (self.history["stage"] >= (self.summary.get("platen_stage") or 0))]
+        return -1.0 if len(moved) > 0 and moved[-1] < 0.0 else 1.0
 
     def plot(self, *, ax: Any = None, label: str | None = None) -> Any:
         """Differential stress over axial strain with the peak; of a run without a platen its blocks. Returns the Axes."""

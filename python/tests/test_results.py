@@ -4,9 +4,19 @@ import zlib
 
 import numpy as np
 import pytest
+from conftest import small_scene
 
 import kluft
 from kluft.vtu import data_arrays
+
+
+def test_a_run_without_a_platen_has_no_peak(tmp_path):
+    scene = small_scene()
+    scene["stages"] = [{"name": "pressure", "pressure": {"left": "1 MPa", "right": "1 MPa", "top": "1 MPa"}}]
+    results = scene.run(tmp_path / "pressed")
+    assert not results.moves_platen
+    with pytest.raises(kluft.InputError, match="a peak of the axial stress"):
+        results.fields("peak")
 
 
 def test_tables_have_the_rows_and_columns_of_the_files(results, directory):

@@ -51,15 +51,18 @@ BlockPattern pattern_of_bonds(const Model& model, const std::vector<Bond>& bonds
 Eigen::VectorXd lateral_extension(const Model& model, const Gauges& gauges) {
     const BlockSystem& system = model.system;
     Eigen::VectorXd row = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n_block_unknowns) * system.n_blocks());
-    for (const int side : gauges.lateral) {
-        const BoundaryFrame frame = boundary_frame(system, side);
-        for (const auto& [b, e] : system.boundaries[side].edges) {
-            const Edge& edge = system.blocks[b].edges[e];
-            const Vec2 extent = edge_end(system, edge) - edge_start(system, edge);
-            const Vec2 xi =
-                block_coordinates(system.blocks[b], 0.5 * (edge_start(system, edge) + edge_end(system, edge)));
-            const double share = extent.norm() / (frame.length * gauges.width);
-            row.segment<n_block_unknowns>(n_block_unknowns * b) += share * displacement_row(frame.normal, xi);
+    for (const Side& side : gauges.lateral) {
+        const double length = length_of(system, side);
+        for (const int i : side) {
+            const Vec2 normal = boundary_frame(system, i).normal;
+            for (const auto& [b, e] : system.boundaries[i].edges) {
+                const Edge& edge = system.blocks[b].edges[e];
+                const Vec2 extent = edge_end(system, edge) - edge_start(system, edge);
+                const Vec2 xi =
+                    block_coordinates(system.blocks[b], 0.5 * (edge_start(system, edge) + edge_end(system, edge)));
+                const double share = extent.norm() / (length * gauges.width);
+                row.segment<n_block_unknowns>(n_block_unknowns * b) += share * displacement_row(normal, xi);
+            }
         }
     }
     return row;
@@ -70,7 +73,7 @@ Gauges gauges_of_specimen(const Model& model) {
     if (gauges.moved < 0 || gauges.opposite < 0)
         throw InputError("boundaries: expected two opposite boundaries with names, between which the body is "
                          "compressed for youngs_modulus and poissons_ratio; found none");
-    if (gauges.lateral.size() != 2)
+    if (gauges.lateral[0].empty())
         throw InputError(fmt::format("boundaries: expected two boundaries across '{}', on which the lateral strain is "
                                      "measured for youngs_modulus and poissons_ratio; found none",
                                      model.system.boundaries[gauges.moved].name));

@@ -33,7 +33,15 @@ Vec2 mean_position(const BlockSystem& system, const Edges& edges) {
     return length > 0.0 ? Vec2(sum / length) : sum;
 }
 
-constexpr double same_plane = 1e-9; ///< of the body's larger side
+Edges edges_of(const BlockSystem& system, const Side& side) {
+    Edges edges;
+    for (const int i : side)
+        edges.insert(edges.end(), system.boundaries[i].edges.begin(), system.boundaries[i].edges.end());
+    return edges;
+}
+
+constexpr double same_plane = 1e-9;     ///< of the body's larger side
+constexpr double same_direction = 1e-6; ///< of the cosine between normals
 
 /// Whether a line from a point along a direction meets the body farther on than a distance.
 bool meets_body(const BlockSystem& system, const Vec2& from, const Vec2& direction, double distance) {
@@ -98,24 +106,28 @@ Vec2 mean_displacement(const BlockSystem& system, const Eigen::VectorXd& q, int 
     return length > 0.0 ? Vec2(sum / length) : sum;
 }
 
-std::vector<int> lateral_boundaries(const BlockSystem& system, int boundary) {
+std::array<Side, 2> lateral_sides(const BlockSystem& system, int boundary) {
     const Vec2 normal = boundary_frame(system, boundary).normal;
     const Vec2 lateral(normal.y(), -normal.x());
-    std::vector<int> result;
-    for (const double side : {1.0, -1.0}) {
-        int best = -1;
+    std::array<Side, 2> sides;
+    for (int k = 0; k < 2; ++k) {
         double most_lateral = 0.7;
         for (int i = 0; i < static_cast<int>(system.boundaries.size()); ++i) {
-            const double cosine = side * lateral.dot(boundary_frame(system, i).normal);
-            if (cosine > most_lateral) {
-                most_lateral = cosine;
-                best = i;
-            }
+            const double cosine = (k == 0 ? 1.0 : -1.0) * lateral.dot(boundary_frame(system, i).normal);
+            if (cosine < most_lateral - same_direction) continue;
+            if (cosine > most_lateral + same_direction) sides[k].clear();
+            most_lateral = std::max(most_lateral, cosine);
+            sides[k].push_back(i);
         }
-        if (best >= 0) result.push_back(best);
     }
-    if (result.size() < 2) result.clear();
-    return result;
+    if (sides[0].empty() || sides[1].empty()) return {};
+    return sides;
+}
+
+double length_of(const BlockSystem& system, const Side& side) {
+    double length = 0.0;
+    for (const int i : side) length += boundary_frame(system, i).length;
+    return length;
 }
 
 std::vector<BoundaryEdge> outer_edges(const BlockSystem& system, int boundary) {
@@ -156,17 +168,18 @@ PlatenForce width_across(const BlockSystem& system, int boundary) {
     const Vec2 lateral(normal.y(), -normal.x());
     for_each_edge(system, outer_edges(system, boundary),
                   [&](int, const Vec2& start, const Vec2& end) { force.width += std::abs(lateral.dot(end - start)); });
-    const auto sides = lateral_boundaries(system, boundary);
-    if (sides.empty()) return force;
-    const double apart = std::abs(lateral.dot(mean_position(system, sides[0]) - mean_position(system, sides[1])));
+    const auto sides = lateral_sides(system, boundary);
+    if (sides[0].empty()) return force;
+    const double apart = std::abs(lateral.dot(mean_position(system, edges_of(system, sides[0])) -
+                                              mean_position(system, edges_of(system, sides[1]))));
     force.width = std::max(force.width, apart);
     const double of_all_parts = force.width / apart; // columns side by side widen each
-    for (const int i : sides) {
-        const double side = i == sides.front() ? of_all_parts : -of_all_parts;
-        const double length = boundary_frame(system, i).length;
-        for_each_edge(system, i, [&](int b, const Vec2& start, const Vec2& end) {
+    for (int k = 0; k < 2; ++k) {
+        const double sense = k == 0 ? of_all_parts : -of_all_parts;
+        const double length = length_of(system, sides[k]);
+        for_each_edge(system, edges_of(system, sides[k]), [&](int b, const Vec2& start, const Vec2& end) {
             const Vec2 xi = block_coordinates(system.blocks[b], 0.5 * (start + end));
-            const double share = side * (end - start).norm() / length;
+            const double share = sense * (end - start).norm() / length;
             force.widening.segment<n_block_unknowns>(n_block_unknowns * b) += share * displacement_row(lateral, xi);
         });
     }

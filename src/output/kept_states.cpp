@@ -1,7 +1,6 @@
 #include "kluft/output/kept_states.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace kluft {
 
@@ -14,7 +13,8 @@ int cracks_of(const StepRecord& row) { return row.cracks_tension + row.cracks_sh
 bool is_higher(const StepRecord& row, const std::optional<StepRecord>& than, std::optional<int> platen_stage) {
     if (!platen_stage || row.stage < *platen_stage || !row.balanced) return false;
     if (!than) return true;
-    return std::abs(row.axial_stress) > std::abs(than->axial_stress) && !(row.net_broken >= broken_net);
+    const double sense = row.axial_strain < 0.0 ? -1.0 : 1.0; // of the platen
+    return sense * row.axial_stress > sense * than->axial_stress && !(row.net_broken >= broken_net);
 }
 
 } // namespace

@@ -28,6 +28,7 @@ constexpr double elastic_share = 0.3;    // of the peak differential stress, whe
 constexpr double ratio_slack = 1e-3;     // of Poisson's ratio, for round-off
 constexpr double fall_after_peak = 0.01; // of the peak
 constexpr double residual_share = 0.1;   // of the strain
+constexpr double strain_rounding = 1e-9; // relative
 constexpr double locking_share = 0.95;   // of the net's bonds in the middle half of the body that have failed
 constexpr double locking_rise = 0.05;    // of the largest stress until then
 
@@ -36,6 +37,17 @@ Rows balanced_rows(const Rows& rows) {
     for (const StepRecord& row : rows)
         if (row.balanced && std::isfinite(row.axial_stress) && std::isfinite(row.axial_strain)) balanced.push_back(row);
     return balanced;
+}
+
+bool is_at_rest(const StepRecord& row) { return row.axial_stress == 0.0 && row.axial_strain == 0.0; }
+
+/// Balanced rows under load: from the first stage on that moves a platen, where one does. A pressure that was there before, and may be
+/// gone, is no strength.
+Rows loaded_rows(const Rows& rows, std::optional<int> platen_stage) {
+    Rows loaded = balanced_rows(rows);
+    std::erase_if(loaded,
+                  [&](const StepRecord& row) { return is_at_rest(row) || row.stage < platen_stage.value_or(0); });
+    return loaded;
 }
 
 /// Balanced rows up to the first one in which the net hardly has a bond left.
@@ -51,11 +63,15 @@ std::optional<StepRecord> largest_row(const Rows& rows, double sense) {
     return largest == rows.end() ? std::nullopt : std::optional(*largest);
 }
 
-bool falls_after_peak(const Rows& balanced, double peak, double sense) {
-    const auto at = std::find_if(balanced.begin(), balanced.end(),
-                                 [&](const StepRecord& row) { return sense * row.axial_stress >= sense * peak; });
+/// While the platen stays or goes on: a stress that falls because the platen goes back says nothing of a strength.
+bool falls_after_peak(const Rows& balanced, const StepRecord& peak, double sense) {
+    if (peak.axial_stress == 0.0) return false;
+    const double fallen = sense * peak.axial_stress - fall_after_peak * std::abs(peak.axial_stress);
+    const double gone_back = sense * peak.axial_strain - strain_rounding * std::abs(peak.axial_strain);
+    const auto at = std::ranges::find_if(
+        balanced, [&](const StepRecord& row) { return sense * row.axial_stress >= sense * peak.axial_stress; });
     return std::any_of(at, balanced.end(), [&](const StepRecord& row) {
-        return sense * row.axial_stress <= sense * peak - fall_after_peak * std::abs(peak);
+        return sense * row.axial_stress <= fallen && sense * row.axial_strain >= gone_back;
     });
 }
 
@@ -149,6 +165,9 @@ void add_elastic_constants(const Rows& equilibria, const Rows& history, int plat
     }
     numbers.axial_modulus = slope(stress);
     numbers.lateral_ratio = slope(lateral);
+    const bool is_measured =
+        std::ranges::any_of(lateral, [](const std::pair<double, double>& point) { return point.second != 0.0; });
+    if (!is_measured) numbers.lateral_ratio.reset(); // no two sides between which it could be
     if (!numbers.axial_modulus || !numbers.lateral_ratio) return;
     const double ratio = *numbers.lateral_ratio;
     const double nu = plane == Plane::strain ? ratio / (1.0 + ratio) : ratio;
@@ -269,7 +288,7 @@ double platen_sense(const std::vector<StepRecord>& rows, std::optional<int> plat
 }
 
 bool is_net_locked(const std::vector<StepRecord>& rows, std::optional<int> platen_stage) {
-    const Rows balanced = balanced_rows(rows);
+    const Rows balanced = loaded_rows(rows, platen_stage);
     const double sense = platen_sense(rows, platen_stage);
     const auto before = largest_row(rows_with_bonds(balanced), sense);
     const auto largest = largest_row(balanced, sense);
@@ -278,7 +297,7 @@ bool is_net_locked(const std::vector<StepRecord>& rows, std::optional<int> plate
 }
 
 std::optional<StepRecord> peak_row(const std::vector<StepRecord>& rows, std::optional<int> platen_stage) {
-    const Rows balanced = balanced_rows(rows);
+    const Rows balanced = loaded_rows(rows, platen_stage);
     return largest_row(is_net_locked(rows, platen_stage) ? rows_with_bonds(balanced) : balanced,
                        platen_sense(rows, platen_stage));
 }
@@ -292,8 +311,8 @@ CurveNumbers curve_numbers(const std::vector<StepRecord>& equilibria, const std:
         numbers.peak_strain = peak->axial_strain;
         numbers.jumps_to_peak = peak->jumps;
         numbers.net_locked = is_net_locked(all, platen_stage);
-        numbers.peak_reached = !numbers.net_locked && falls_after_peak(balanced_rows(all), peak->axial_stress,
-                                                                       platen_sense(all, platen_stage));
+        numbers.peak_reached = platen_stage && !numbers.net_locked &&
+                               falls_after_peak(loaded_rows(all, platen_stage), *peak, platen_sense(all, platen_stage));
     }
     if (numbers.peak_reached) numbers.residual_stress = residual_stress(history, platen_stage, *numbers.peak_strain);
     if (platen_stage) add_elastic_constants(all, history, *platen_stage, plane, numbers);
@@ -312,6 +331,16 @@ std::string status_name(RunStatus status) {
     return "";
 }
 
+namespace {
+
+/// The number that is the run's strength; null where it asks for none.
+Json strength_measure(const RunSummary& summary) {
+    if (summary.results.factor_of_safety) return "factor_of_safety";
+    return summary.platen_stage ? Json("axial_stress") : Json(nullptr);
+}
+
+} // namespace
+
 std::string summary_json(const RunSummary& summary) {
     const CurveNumbers& numbers = summary.numbers;
     Json json;
@@ -320,6 +349,7 @@ std::string summary_json(const RunSummary& summary) {
     json["peak_stress"] = json_number(numbers.peak_stress);
     json["peak_strain"] = json_number(numbers.peak_strain);
     json["peak_reached"] = numbers.peak_reached;
+    json["strength_measure"] = strength_measure(summary);
     json["net_locked"] = numbers.net_locked;
     json["residual_stress"] = json_number(numbers.residual_stress);
     json["youngs_modulus"] = json_number(numbers.youngs_modulus);

@@ -168,6 +168,11 @@ void add_doubts(const RunFacts& facts, std::vector<std::string>& warnings) {
             fmt::format("{} before the peak: at fixed loads the body lost its balance and moved to another "
                         "one, so that the peak depends on that motion.",
                         counted(numbers.jumps_to_peak, "jump", "jumps")));
+    if (!facts.platen_stage && numbers.jumps > 0)
+        warnings.push_back(
+            fmt::format("{}: at fixed loads the body lost its balance and moved on to where it stands now; "
+                        "jumps.csv says how far.",
+                        counted(numbers.jumps, "jump", "jumps")));
     if (numbers.unbalanced_steps > 0)
         warnings.push_back(
             fmt::format("{} not balanced: hollow in the curve, and left out where the peak is looked for.",

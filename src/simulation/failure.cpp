@@ -1,8 +1,11 @@
 #include "kluft/simulation/failure.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -15,7 +18,8 @@ namespace kluft {
 
 namespace {
 
-constexpr double clear_motion = 0.1; ///< of a block in a load step, in spacings of hexagons of its size
+constexpr double clear_motion = 0.1;     ///< of a block in a load step, in spacings of hexagons of its size
+constexpr double share_of_largest = 0.1; ///< of the farthest motion: a block that moves less stands beside it
 constexpr double clear_turn =
     0.1; ///< rotation times sqrt(area) over motion: a block turns too, as one that topples does
 
@@ -42,15 +46,26 @@ std::string direction_text(const Vec2& direction) {
     return fmt::format("({:.2g}, {:.2g})", rounded(direction.x()), rounded(direction.y()));
 }
 
+/// Where some have moved, others that have not stand: what presses on them is not balanced, and so are they not.
+std::vector<MovingBlock> those_that_move(std::vector<MovingBlock> moving, const std::vector<double>& lengths) {
+    const double largest = lengths.empty() ? 0.0 : std::ranges::max(lengths);
+    std::vector<MovingBlock> result;
+    for (std::size_t i = 0; i < moving.size(); ++i)
+        if (lengths[i] >= share_of_largest * largest) result.push_back(moving[i]);
+    return result;
+}
+
 } // namespace
 
 std::vector<MovingBlock> moving_on(const BlockSystem& system, const Eigen::VectorXd& before, const Eigen::VectorXd& now,
                                    std::vector<MovingBlock> moving) {
+    std::vector<double> lengths; // of the motions
     for (MovingBlock& each : moving) {
         const Block& block = system.blocks[each.block];
         const int first = n_block_unknowns * each.block;
         const Vec2 motion = now.segment<2>(first) - before.segment<2>(first);
         const double length = motion.norm();
+        lengths.push_back(length);
         if (length <= clear_motion * spacing_of(block)) continue;
         const double turned =
             std::remainder(rotation_of(now, each.block, block.size) - rotation_of(before, each.block, block.size),
@@ -59,7 +74,7 @@ std::vector<MovingBlock> moving_on(const BlockSystem& system, const Eigen::Vecto
         each.direction = motion / length;
         each.turn = turns ? (turned > 0.0 ? 1 : -1) : 0;
     }
-    return moving;
+    return those_that_move(std::move(moving), lengths);
 }
 
 std::string description(const Model& model, const std::vector<MovingBlock>& moving) {

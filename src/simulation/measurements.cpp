@@ -107,7 +107,7 @@ Gauges make_gauges(const Model& model) {
     gauges.lateral_normal = {gauges.axial_normal.y(), -gauges.axial_normal.x()};
     gauges.opposite = opposite_boundary(system, gauges.moved);
     gauges.length = distance_across(system, gauges.moved);
-    gauges.lateral = lateral_boundaries(system, gauges.moved);
+    gauges.lateral = lateral_sides(system, gauges.moved);
     gauges.width = width_across(system, gauges.moved).width;
     return gauges;
 }
@@ -129,7 +129,11 @@ Strains measure_strains(const Model& model, const Gauges& gauges, const Loads& l
     };
     const auto shortening = [&](int a, int b) { return -outward(a) - (b >= 0 ? outward(b) : 0.0); };
     strains.axial = shortening(gauges.moved, gauges.opposite) / gauges.length;
-    if (gauges.lateral.size() == 2) strains.lateral = shortening(gauges.lateral[0], gauges.lateral[1]) / gauges.width;
+    if (gauges.lateral[0].empty()) return strains;
+    for (const Side& side : gauges.lateral)
+        for (const int i : side)
+            strains.lateral -=
+                outward(i) * boundary_frame(model.system, i).length / (length_of(model.system, side) * gauges.width);
     return strains;
 }
 
@@ -194,9 +198,13 @@ StepRecord measure_step(const Model& model, const Gauges& gauges, const State& s
         const double width = gauges.width * (1.0 - total.lateral);
         record.axial_stress = stress_on(gauges.moved, width, gauges.axial_normal);
     }
-    for (const int side : gauges.lateral) {
-        const double height = gauges.length * (1.0 - total.axial);
-        record.lateral_stress += 0.5 * stress_on(side, height, boundary_frame(model.system, side).normal);
+    const double height = gauges.length * (1.0 - total.axial);
+    for (const Side& side : gauges.lateral) {
+        for (const int i : side) {
+            const BoundaryFrame frame = boundary_frame(model.system, i);
+            const double share = frame.length / length_of(model.system, side);
+            record.lateral_stress += 0.5 * share * stress_on(i, height * share, frame.normal);
+        }
     }
     record.differential_stress = record.axial_stress - record.lateral_stress;
     record.cracks_tension = static_cast<int>(std::ranges::count(state.body.interfaces, InterfaceStatus::tension_crack));

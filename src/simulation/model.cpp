@@ -278,6 +278,26 @@ void warn_of_uneven_platens(Model& model) {
     }
 }
 
+/// What presses a specimen from the side is measured on two sides that have boundaries of their own.
+void warn_of_unmeasured_sides(Model& model) {
+    const auto motion =
+        std::ranges::find_if(model.loads.stages, [](const Stage& stage) { return stage.motion.has_value(); });
+    if (motion == model.loads.stages.end()) return;
+    const int moved = motion->motion->boundary;
+    if (!lateral_sides(model.system, moved)[0].empty()) return;
+    const int opposite = opposite_boundary(model.system, moved);
+    for (const Stage& stage : model.loads.stages) {
+        for (const auto& [boundary, pressure] : stage.pressure) {
+            if (pressure == 0.0 || boundary == moved || boundary == opposite) continue;
+            model.warnings.push_back(fmt::format(
+                "the pressure on '{}' is in no lateral stress, and lateral strains and Poisson's ratio are not "
+                "measured: no two sides across '{}' have boundaries of their own; give each of them one",
+                model.system.boundaries[boundary].name, model.system.boundaries[moved].name));
+            return;
+        }
+    }
+}
+
 } // namespace
 
 Model build_model(BlockSystem system, const ModelInput& input) {
@@ -334,6 +354,7 @@ Model build_model(BlockSystem system, const ModelInput& input) {
     model.overlap_points = overlap_points(system, fracture_laws);
     model.system = std::move(system);
     warn_of_uneven_platens(model);
+    warn_of_unmeasured_sides(model);
     refuse_contradicting_supports(model);
     return model;
 }

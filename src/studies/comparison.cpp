@@ -144,9 +144,11 @@ std::optional<double> matching_distance(const FinishedRun& a, const FinishedRun&
 std::optional<CurveDifference> difference_of_curves(const FinishedRun& a, const FinishedRun& b) {
     const auto peak = peak_row(a.fine_rows(), a.platen_stage);
     if (!peak || !a.numbers.peak_strain || !b.numbers.peak_strain) return std::nullopt;
+    if (*a.numbers.peak_strain * *b.numbers.peak_strain < 0.0) return std::nullopt; // one pressed, one pulled
     return curve_difference(platen_rows(a.history, a.platen_stage.value_or(0)),
                             platen_rows(b.history, b.platen_stage.value_or(0)),
-                            std::min(*a.numbers.peak_strain, *b.numbers.peak_strain), peak->differential_stress);
+                            std::min(std::abs(*a.numbers.peak_strain), std::abs(*b.numbers.peak_strain)),
+                            std::abs(peak->differential_stress));
 }
 
 /// `tested`: a platen moves in one of the runs; without one strain and modulus mean nothing.
@@ -316,8 +318,11 @@ std::vector<CrackMatch> match_cracks(const std::vector<CrackRecord>& a, const st
 
 std::vector<Vec2> growing_curve(const std::vector<StepRecord>& rows) {
     std::vector<Vec2> curve;
+    const auto last =
+        std::find_if(rows.rbegin(), rows.rend(), [](const StepRecord& row) { return row.axial_strain != 0.0; });
+    const double sense = last != rows.rend() && last->axial_strain < 0.0 ? -1.0 : 1.0; // of the platen
     for (const StepRecord& row : rows) {
-        const Vec2 point(row.axial_strain, row.differential_stress);
+        const Vec2 point = sense * Vec2(row.axial_strain, row.differential_stress);
         if (!row.balanced || !point.allFinite()) continue;
         if (curve.empty() || point.x() > curve.back().x()) curve.push_back(point);
     }

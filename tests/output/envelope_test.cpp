@@ -35,12 +35,14 @@ TEST(Envelope, TakesTheLateralStressAtThePeak) {
     rows[1].lateral_stress = 0.21e6;
     rows[2].axial_stress = 1.0e6;
     rows[2].lateral_stress = 0.2e6;
-    const PeakPoint point = peak_point("c", rows);
+    const PeakPoint point = peak_point("c", rows, 0);
     EXPECT_EQ(point.sigma_1, 1.4e6);
     EXPECT_EQ(point.sigma_3, 0.21e6);
     EXPECT_TRUE(point.peak_reached);
     rows[2].axial_stress = 1.39e6;
-    EXPECT_FALSE(peak_point("c", rows).peak_reached);
+    EXPECT_FALSE(peak_point("c", rows, 0).peak_reached);
+    rows[2].axial_stress = 1.0e6;
+    EXPECT_FALSE(peak_point("c", rows).peak_reached); // without a platen nothing is tested
     EXPECT_THROW((void)peak_point("c", {}), InputError);
 }
 

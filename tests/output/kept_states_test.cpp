@@ -44,12 +44,20 @@ TEST(KeptStates, AreTheFirstTheEndsOfStagesAndEveryNth) {
     EXPECT_TRUE(states.keeps(5));
 }
 
-TEST(KeptStates, LargestStressIsThatOfThePlatensStageBySizeAndBalanced) {
+/// Of a specimen that is pulled.
+StepRecord pulled(int step, double stress) {
+    StepRecord row = state_row(step, stress);
+    row.axial_strain = -1e-4 * step;
+    return row;
+}
+
+// Pulled under a lateral pressure the axial stress begins in compression: what counts is the sense of the platen.
+TEST(KeptStates, LargestStressIsThatOfThePlatensStageInItsSenseAndBalanced) {
     KeptStates states({.platen_stage = 1});
-    StepRecord unbalanced = state_row(4, -9.0);
+    StepRecord unbalanced = pulled(4, -9.0);
     unbalanced.balanced = false;
-    EXPECT_THAT(kept(states, {state_row(0, 8.0, 0, 0), state_row(1, 8.0, 0, 0), state_row(2, -3.0), state_row(3, -5.0),
-                              unbalanced, state_row(5, 4.0)}),
+    EXPECT_THAT(kept(states, {state_row(0, 8.0, 0, 0), state_row(1, 8.0, 0, 0), pulled(2, 7.0), pulled(3, -5.0),
+                              unbalanced, pulled(5, -4.0)}),
                 ElementsAre(0, 1, 3));
     EXPECT_EQ(states.for_its_stress(), 3);
     EXPECT_EQ(KeptStates({}).for_its_stress(), std::nullopt);

@@ -93,6 +93,51 @@ TEST(Summary, HasNoResidualStressWhereTheRunEndsWithTheDropBehindItsPeak) {
     EXPECT_FALSE(numbers.residual_stress.has_value());
 }
 
+// A pressure that was there before the platen moved, and was taken away, is no strength.
+TEST(Summary, LooksForThePeakFromThePlatensStageOn) {
+    Rows rows = triangle(100e6, 0.3);
+    rows[1].axial_stress = 30e6;
+    const auto numbers = curve_numbers(rows, rows, 1, Plane::stress);
+    EXPECT_DOUBLE_EQ(*numbers.peak_stress, 1.2e6);
+    EXPECT_DOUBLE_EQ(*numbers.peak_strain, 0.01);
+}
+
+TEST(Summary, HasNoPeakWhereTheRunEndsBeforeThePlatenMoves) {
+    Rows rows = triangle(100e6, 0.3);
+    rows.resize(1);
+    const auto at_rest = curve_numbers(rows, rows, 0, Plane::stress);
+    EXPECT_FALSE(at_rest.peak_stress || at_rest.peak_reached);
+    const Rows pressed = {row(0, 0, 0, 0, 0, 0), row(1, 0, 0, 0, 0, 20e6)};
+    const auto numbers = curve_numbers(pressed, pressed, 1, Plane::stress);
+    EXPECT_FALSE(numbers.peak_stress || numbers.peak_reached);
+}
+
+// A stress that falls while the platen goes back says nothing of a strength.
+TEST(Summary, IsNotAtItsPeakWhereThePlatenTurnsBack) {
+    Rows rows = triangle(100e6, 0.3);
+    rows.resize(3 + 30);
+    for (int i = 1; i <= 10; ++i) {
+        StepRecord back = rows[static_cast<std::size_t>(32 - i)];
+        back.step = 32 + i;
+        rows.push_back(back);
+    }
+    const auto numbers = curve_numbers(rows, rows, 1, Plane::stress);
+    EXPECT_FALSE(numbers.peak_reached);
+    EXPECT_FALSE(numbers.residual_stress.has_value());
+}
+
+TEST(Summary, RunWithoutAPlatenReachesNoPeak) {
+    Rows rows = triangle(100e6, 0.3);
+    EXPECT_FALSE(curve_numbers(rows, rows, std::nullopt, Plane::stress).peak_reached);
+}
+
+TEST(Summary, HasNoPoissonsRatioWithoutSidesToMeasureItOn) {
+    const Rows rows = triangle(100e6, 0.0);
+    const auto numbers = curve_numbers(rows, rows, 1, Plane::strain);
+    EXPECT_TRUE(numbers.axial_modulus.has_value());
+    EXPECT_FALSE(numbers.lateral_ratio || numbers.youngs_modulus || numbers.poissons_ratio);
+}
+
 TEST(Summary, HasNoPeakReachedAndNoResidualWhileTheStressRises) {
     Rows rows = triangle(100e6, 0.3);
     rows.resize(53); // to 1 % strain

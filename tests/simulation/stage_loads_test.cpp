@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "kluft/kinematics/affine.hpp"
@@ -241,7 +242,48 @@ TEST(BoundaryFrame, OfAnUprightRectangleHasNormalsAlongTheAxes) {
         EXPECT_LT((mean_position(model.system, i) - middles[i]).norm(), 1e-12);
         EXPECT_EQ(opposite_boundary(model.system, i), (i + 2) % 4);
     }
-    EXPECT_EQ(lateral_boundaries(model.system, top), (std::vector<int>{right, left}));
+    EXPECT_EQ(lateral_sides(model.system, top), (std::array<Side, 2>{Side{right}, Side{left}}));
+}
+
+// A side in two boundaries is one side, in whatever order they stand.
+TEST(BoundaryFrame, LateralSidesAreAllBoundariesThatFaceAcross) {
+    const auto lateral_stress = [](const std::string& boundaries) {
+        const SceneRun run = run_scene(R"(
+kluft: 1
+analysis: {plane: stress}
+materials: {rock: {youngs_modulus: 1 GPa, poissons_ratio: 0.2}}
+geometry: {domain: {polygon: [[0, 0], [1, 0], [1, 1], [1, 2], [0, 2], [0, 1]]}}
+boundaries: )" + boundaries + R"(
+stages:
+  - {name: pressure, pressure: {low_right: 1 MPa, high_right: 3 MPa, low_left: 1 MPa, high_left: 3 MPa}}
+  - {name: platen, strain: {boundary: top, value: 0.1 %}, steps: 2}
+)");
+        return run.history.back().lateral_stress;
+    };
+    const double expected = 2e6; // the mean of 1 and 3 MPa on halves of a side
+    EXPECT_NEAR(lateral_stress(
+                    "{bottom: {sides: [0], support: smooth}, low_right: {sides: [1]}, high_right: {sides: [2]}, top: "
+                    "{sides: [3]}, high_left: {sides: [4]}, low_left: {sides: [5]}}"),
+                expected, 2e-3 * expected);
+    EXPECT_NEAR(
+        lateral_stress("{high_left: {sides: [4]}, high_right: {sides: [2]}, low_left: {sides: [5]}, top: {sides: [3]}, "
+                       "low_right: {sides: [1]}, bottom: {sides: [0], support: smooth}}"),
+        expected, 2e-3 * expected);
+}
+
+TEST(BoundaryFrame, APressureOnNoSideOfItsOwnIsWarnedOf) {
+    const SceneRun run = run_scene(R"(
+kluft: 1
+analysis: {plane: stress}
+materials: {rock: {youngs_modulus: 1 GPa, poissons_ratio: 0.2}}
+geometry: {domain: {polygon: [[0, 0], [1, 0], [1, 2], [0, 2]]}}
+boundaries: {bottom: {sides: [0], support: pinned}, mantle: {sides: [1, 3]}, top: {sides: [2]}}
+stages:
+  - {name: pressure, pressure: {mantle: 1 MPa}}
+  - {name: platen, strain: {boundary: top, value: 0.1 %}, steps: 2}
+)");
+    EXPECT_THAT(run.model.warnings,
+                testing::Contains(testing::HasSubstr("the pressure on 'mantle' is in no lateral stress")));
 }
 
 // ---- what a run reaches --------------------------------------------------------------------------------------------

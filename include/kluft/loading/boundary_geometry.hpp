@@ -1,6 +1,7 @@
 // The sides of a body before loading: where they lie, which way they face, which lie across.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include <Eigen/Core>
@@ -31,8 +32,13 @@ struct BoundaryFrame {
 /// the body without one (m).
 [[nodiscard]] double distance_across(const BlockSystem& system, int boundary);
 
-/// The two boundaries across `boundary`, on the side of its normal turned clockwise first; empty if there are not two.
-[[nodiscard]] std::vector<int> lateral_boundaries(const BlockSystem& system, int boundary);
+/// The boundaries on one side of a body.
+using Side = std::vector<int>;
+/// The two sides across `boundary`, that of its normal turned clockwise first: on each all boundaries that face it most. Both are
+/// empty if there are not two.
+[[nodiscard]] std::array<Side, 2> lateral_sides(const BlockSystem& system, int boundary);
+/// Length of all boundaries of a side (m).
+[[nodiscard]] double length_of(const BlockSystem& system, const Side& side);
 
 /// Edges of a boundary that a platen on it can be laid on: no part of the body lies in front of them, as it does of the
 /// floor and the roof of an opening.

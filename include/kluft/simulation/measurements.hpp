@@ -1,9 +1,11 @@
 // Strains, stresses and counts of an equilibrium, as rock engineers read them: positive in compression.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "kluft/fracture/crack_check.hpp"
+#include "kluft/loading/boundary_geometry.hpp"
 #include "kluft/loading/loaded_body.hpp"
 #include "kluft/simulation/model.hpp"
 #include "kluft/simulation/stage_loads.hpp"
@@ -16,7 +18,7 @@ namespace kluft {
 struct Gauges {
     int moved = -1; ///< boundary of the first platen that moves; the upper one without any
     int opposite = -1;
-    std::vector<int> lateral;          ///< the two boundaries across, empty if there are none
+    std::array<Side, 2> lateral;       ///< the boundaries across; empty if there are not two sides
     Vec2 axial_normal = Vec2::UnitY(); ///< outward normal of `moved`
     Vec2 lateral_normal = Vec2::UnitX();
     double length = 0.0;         ///< distance of moved and opposite boundary before loading (m)

@@ -36,7 +36,7 @@ struct CurveDifference {
 /// Points of the grid on which curves are compared: equal steps of the axial strain, both ends included.
 inline constexpr int n_curve_points = 201;
 
-/// Difference of the curves differential_stress(axial_strain), linear between their balanced rows, at n_curve_points
+/// Difference of the curves differential_stress(axial_strain), both positive in the sense of the platen, linear between their balanced rows, at n_curve_points
 /// strains from where both begin to `end` or where the first of them ends. Rows in which the strain does not grow beyond
 /// all before are left out. `scale`: the stress that differences are divided by (Pa). Nothing without a common range or
 /// with a scale that is not positive.
