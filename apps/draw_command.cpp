@@ -24,6 +24,7 @@
 #include "kluft/output/kept_states.hpp"
 #include "kluft/output/state_file.hpp"
 #include "kluft/output/summary.hpp"
+#include "kluft/report/run_of_results.hpp"
 #include "kluft/scene/quantity.hpp"
 #include "kluft/scene/scene_model.hpp"
 #include "kluft/scene/scene_reader.hpp"
@@ -131,7 +132,7 @@ BlocksPlot plot_of(const Scene& scene) {
 /// Before and after, from the last saved state and the scene that is saved with it.
 void draw_blocks_of_run(const DrawArguments& arguments, const std::vector<fs::path>& pictures) {
     const fs::path directory = arguments.sources.front();
-    const auto [scene, built] = read_run(directory);
+    const auto [scene, built] = run_of_results(directory);
     const State state = read_state(directory / "state.h5", fingerprint(built.model));
     auto history = read_curve(directory, {}).history;
     std::erase_if(history, [&](const StepRecord& record) { return record.step > state.at.step; });
@@ -186,7 +187,7 @@ void draw_state_of_run(const DrawArguments& arguments) {
     if (arguments.curve || arguments.histories || !arguments.marks.empty())
         throw InputError("--step, --field, --scale and --window: expected a picture of blocks, found one of a curve");
     const int step = step_asked_for(arguments.step, directory);
-    const RunOfResults run = read_run(directory);
+    const RunOfResults run = run_of_results(directory);
     const BlockSystem& system = run.built.model.system;
     const FieldRecord fields = read_fields(directory, step, system);
     const std::string name = arguments.field.empty() ? "sigma_1" : arguments.field;
@@ -254,7 +255,10 @@ void draw_scene(const DrawArguments& arguments) {
 
 ExitCode draw(const DrawArguments& arguments) {
     require_possible_output(arguments.picture);
-    if (!arguments.picture.empty()) (void)picture_format(arguments.picture);
+    if (!arguments.picture.empty()) {
+        (void)picture_format(arguments.picture);
+        require_directory_of(arguments.picture);
+    }
     const bool several = arguments.sources.size() > 1;
     for (const auto& source : arguments.sources) {
         if (!fs::exists(source)) {

@@ -1,5 +1,6 @@
 // kluft export DIR -o FILE.gpkg|FILE.geojson
 #include <filesystem>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -11,6 +12,8 @@
 #include "kluft/output/atomic_file.hpp"
 #include "kluft/output/field_reader.hpp"
 #include "kluft/output/result_map.hpp"
+#include "kluft/report/run_of_results.hpp"
+#include "kluft/scene/scene_as_run.hpp"
 #include "results_run.hpp"
 #include "standard_output.hpp"
 
@@ -43,10 +46,18 @@ ExitCode export_map(const ExportArguments& arguments) {
     const fs::path file =
         arguments.output.empty() ? fs::path(run_name(directory) + ".gpkg") : fs::path(arguments.output);
     const MapFormat format = map_format(file);
+    require_directory_of(file.string());
     require_possible_output(file.string());
     if (!gdal_problem().empty()) throw InputError(gdal_problem());
     const int step = step_asked_for(arguments.step, directory);
-    const RunOfResults run = read_run(directory);
+    const RunOfResults run = run_of_results(directory);
+    for (const std::string& map : geometry_files(run.scene)) {
+        std::error_code gone;
+        if (fs::equivalent(file, map, gone))
+            throw InputError(
+                fmt::format("{}: expected another file for the map, found one that the scene reads; choose it with -o",
+                            file.string()));
+    }
     const BlockSystem& system = run.built.model.system;
     const std::string& crs = run.scene.geometry.crs;
     if (crs.empty()) tell("no coordinate system is written: neither the maps of the scene nor geometry.crs name one\n");

@@ -10,10 +10,13 @@
 #include <system_error>
 
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "kluft/core/diagnostics.hpp"
 
 namespace kluft {
+
+namespace fs = std::filesystem;
 
 namespace {
 
@@ -72,11 +75,25 @@ ExitCode tell_failure() noexcept {
 }
 
 void require_possible_output(const std::string& path) {
+    const auto refuse = [&](int error) {
+        throw InputError("-o: expected a name for the results, found " + path + " (" +
+                         std::generic_category().message(error) + ")");
+    };
     struct stat status {};
-    if (stat((path + ".part").c_str(), &status) == 0 || (errno != ENAMETOOLONG && errno != ENOTDIR && errno != ELOOP))
-        return;
-    throw InputError("-o: expected a name for the results, found " + path + " (" +
-                     std::generic_category().message(errno) + ")");
+    if (stat((path + ".part").c_str(), &status) != 0 && (errno == ENAMETOOLONG || errno == ENOTDIR || errno == ELOOP))
+        refuse(errno);
+    if (path.empty() || stat(path.c_str(), &status) == 0) return;
+    fs::path place = fs::absolute(path).parent_path(); // or the next one above it that is there
+    std::error_code error;
+    while (!fs::exists(place, error) && place.has_relative_path()) place = place.parent_path();
+    if (access(place.c_str(), W_OK | X_OK) != 0) refuse(errno);
+}
+
+void require_directory_of(const std::string& file) {
+    const fs::path place = fs::absolute(file).parent_path();
+    std::error_code error;
+    if (!fs::is_directory(place, error))
+        throw InputError("-o: expected a file in a directory that is there, found " + file);
 }
 
 } // namespace kluft

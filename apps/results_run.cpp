@@ -12,10 +12,8 @@
 #include "kluft/output/field_series.hpp"
 #include "kluft/output/history_table.hpp"
 #include "kluft/output/kept_states.hpp"
-#include "kluft/output/state_file.hpp"
 #include "kluft/output/summary.hpp"
 #include "kluft/scene/quantity.hpp"
-#include "kluft/scene/scene_reader.hpp"
 #include "kluft/studies/finished_run.hpp"
 #include "standard_output.hpp"
 
@@ -60,18 +58,6 @@ int peak_step(const fs::path& directory) {
 }
 
 } // namespace
-
-RunOfResults read_run(const fs::path& directory) {
-    const fs::path saved = directory / "state.h5";
-    if (!fs::exists(saved)) {
-        throw InputError(directory.string() + ": expected a directory of results, found no state.h5 in it, from which "
-                                              "the blocks are made");
-    }
-    RunOfResults run;
-    run.scene = read_scene_text(read_state_scene(saved), {}, saved);
-    run.built = build_scene_model(run.scene);
-    return run;
-}
 
 int step_asked_for(const std::string& text, const fs::path& directory) {
     const std::vector<int> steps = kept_steps(directory);

@@ -6,8 +6,6 @@
 #include <string>
 
 #include "kluft/output/curve_picture.hpp"
-#include "kluft/scene/scene.hpp"
-#include "kluft/scene/scene_model.hpp"
 
 namespace kluft {
 
@@ -23,15 +21,6 @@ struct RunHeading {
 [[nodiscard]] bool moves_no_platen(const std::filesystem::path& directory);
 
 [[nodiscard]] RunCurve read_curve(const std::filesystem::path& directory, const std::string& label);
-
-/// The scene and the body of a run.
-struct RunOfResults {
-    Scene scene;
-    SceneModel built;
-};
-
-/// From the last saved state. Throws InputError without one.
-[[nodiscard]] RunOfResults read_run(const std::filesystem::path& directory);
 
 /// Of the states that a run keeps, the one that `text` asks for: a load step, "peak", "last" or "" for it. Tells where the
 /// peak itself is not kept. Throws InputError for one that is not kept.

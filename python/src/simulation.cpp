@@ -20,6 +20,7 @@
 
 #include <csignal>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "kluft/assembly/blas.hpp"
 #include "kluft/core/diagnostics.hpp"
@@ -104,7 +105,12 @@ public:
     std::optional<std::string> advance(const py::object& show) {
         require_standing();
         if (closed_ || (ended_ && report_.status != RunStatus::interrupted)) return std::nullopt;
+        if (is_a_copy())
+            throw std::runtime_error(
+                "a simulation that has been started does not go on in a process that was forked from its own; "
+                "make one there");
         stop_ = false;
+        if (closed_) stop_ = true; // by another thread, just now
         std::optional<py::error_already_set> interrupt;
         go_on();
         while (is_computing()) {
@@ -131,11 +137,15 @@ public:
     void close() {
         closed_ = true;
         stop_ = true;
-        if (!worker_.joinable()) return;
         snapshot_.reset();
         const py::gil_scoped_release others;
+        {
+            const std::lock_guard only(joining_);
+            if (!worker_.joinable()) return;
+            if (is_a_copy()) return worker_.detach(); // the thread is none of this process
+        }
         hand_over();
-        worker_.join();
+        join_worker();
     }
 
     /// Saves the state with all its rows.
@@ -251,6 +261,7 @@ private:
             open_files();
         }
         computes_ = true;
+        started_in_ = getpid();
         const WithoutSignals during_the_start;
         worker_ = std::thread([this] { run(); });
     }
@@ -270,9 +281,18 @@ private:
         return !turn_changed_.wait_for(lock, pause, [&] { return !computes_; });
     }
 
+    /// Several threads of Python may wait for the end.
+    void join_worker() {
+        const std::lock_guard only(joining_);
+        if (worker_.joinable()) worker_.join();
+    }
+
+    /// Whether the process was forked since the run was started.
+    [[nodiscard]] bool is_a_copy() const { return started_in_ != 0 && started_in_ != getpid(); }
+
     void join() {
         const py::gil_scoped_release others;
-        if (worker_.joinable()) worker_.join();
+        join_worker();
         if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
     }
 
@@ -307,7 +327,7 @@ private:
             std::unique_lock lock(turn_);
             computes_ = false;
             turn_changed_.notify_all();
-            turn_changed_.wait(lock, [&] { return computes_; });
+            turn_changed_.wait(lock, [&] { return computes_ || closed_; });
         }
         start_computing();
     }
@@ -372,7 +392,9 @@ private:
     bool computes_ = false;          ///< it is the turn of the run; guarded by turn_
     std::atomic<bool> ended_{false}; ///< the run has nothing more to do
     std::atomic<bool> stop_{false};
-    bool closed_ = false;
+    std::atomic<bool> closed_{false};
+    std::mutex joining_;   ///< of the thread
+    pid_t started_in_ = 0; ///< the process in which the thread was started; 0: none was
     std::exception_ptr failure_;
     std::optional<Progress> progress_; ///< guarded by turn_
 

@@ -7,6 +7,7 @@ import time
 
 import numpy as np
 import pytest
+from conftest import small_scene
 
 import kluft
 
@@ -147,3 +148,29 @@ def test_a_full_disk_has_a_type_of_its_own(scene, tmp_path):
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
     assert simulation.status == "out_of_resources"
+
+
+def test_closing_while_another_thread_computes_ends_the_run():
+    scene = small_scene(**{"stages.1.steps": 400})
+    for pause in (0.0, 0.02, 0.05, 0.08):
+        simulation = kluft.Simulation(scene)
+        thread = threading.Thread(target=simulation.run)
+        thread.start()
+        time.sleep(pause)
+        simulation.close()
+        thread.join(timeout=60)
+        assert not thread.is_alive()
+
+
+def test_a_forked_process_does_not_go_on_with_a_started_simulation(scene):
+    simulation = kluft.Simulation(scene)
+    next(simulation)
+    child = os.fork()
+    if child == 0:
+        try:
+            next(simulation)
+        except RuntimeError as error:
+            os._exit(7 if "forked" in str(error) else 1)
+        os._exit(0)
+    assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 7
+    next(simulation)

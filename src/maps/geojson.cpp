@@ -11,6 +11,7 @@
 
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/core/input_file.hpp"
+#include "kluft/maps/map_file.hpp"
 
 namespace kluft {
 
@@ -18,7 +19,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double farthest = 1e9;                  ///< m from the origin, as of lengths in a scene
 constexpr std::size_t largest_file = 100'000'000; ///< bytes: some million points
 
 /// Where in a file something is said, as the errors name it.
@@ -101,8 +101,8 @@ Vec2 point_of(const json& position, const Place& place) {
         position.is_array() && position.size() >= 2 && position[0].is_number() && position[1].is_number();
     if (!sound) place.fail(fmt::format("expected a position [x, y], got {}", text_of(position)));
     const Vec2 point(position[0].get<double>(), position[1].get<double>());
-    if (!(point.lpNorm<Eigen::Infinity>() <= farthest))
-        place.fail(fmt::format("expected a position within {:g} m, got {}", farthest, text_of(position)));
+    if (!(point.lpNorm<Eigen::Infinity>() <= farthest_position))
+        place.fail(fmt::format("expected a position within {:g} m, got {}", farthest_position, text_of(position)));
     return point;
 }
 

@@ -122,7 +122,12 @@ std::vector<Vec2> path_of(OGRGeometryH geometry) {
         (void)KLUFT_GDAL(OGR_G_GetPoints)(geometry, x.data(), sizeof(double), y.data(), sizeof(double), nullptr, 0);
     std::vector<Vec2> path;
     path.reserve(x.size());
-    for (std::size_t i = 0; i < x.size(); ++i) path.emplace_back(x[i], y[i]);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        path.emplace_back(x[i], y[i]);
+        if (!(path.back().lpNorm<Eigen::Infinity>() <= farthest_position))
+            throw InputError(fmt::format("expected a position within {:g} m or degrees, got [{:g}, {:g}]",
+                                         farthest_position, x[i], y[i]));
+    }
     return path;
 }
 
@@ -155,6 +160,15 @@ void add_parts(OGRGeometryH geometry, MapFeature& feature, int depth) {
     }
 }
 
+/// Throws InputError with the feature's number.
+void add_parts_of(OGRGeometryH geometry, MapFeature& feature) {
+    try {
+        add_parts(geometry, feature, 0);
+    } catch (const InputError& error) {
+        throw InputError(fmt::format("feature {}: {}", feature.id, error.what()));
+    }
+}
+
 MapFeature feature_of(OGRFeatureH read, int n_fields) {
     MapFeature feature;
     feature.id = KLUFT_GDAL(OGR_F_GetFID)(read);
@@ -165,7 +179,7 @@ MapFeature feature_of(OGRFeatureH read, int n_fields) {
                                KLUFT_GDAL(OGR_G_DestroyGeometry));
     if (!straight) return feature;
     feature.type = type_name(KLUFT_GDAL(OGR_GT_Flatten)(KLUFT_GDAL(OGR_G_GetGeometryType)(straight.get())));
-    add_parts(straight.get(), feature, 0);
+    add_parts_of(straight.get(), feature);
     return feature;
 }
 

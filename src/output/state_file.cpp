@@ -401,6 +401,10 @@ State read_state(const std::filesystem::path& path, const std::string& expected_
     return read_image(path, [&](hid_t file) { return state_in(file, path.string(), expected_fingerprint); });
 }
 
+std::string read_state_fingerprint(const std::filesystem::path& path) {
+    return read_image(path, [](hid_t file) { return read_text(file, "fingerprint"); });
+}
+
 std::string read_state_scene(const std::filesystem::path& path) { return read_bytes(path, "scene", "scene"); }
 
 std::string read_state_tables(const std::filesystem::path& path) {

@@ -177,6 +177,9 @@ void add_doubts(const RunFacts& facts, std::vector<std::string>& warnings) {
         warnings.push_back(
             fmt::format("{} not balanced: hollow in the curve, and left out where the peak is looked for.",
                         counted(numbers.unbalanced_steps, "load step is", "load steps are")));
+    if (!facts.tables_are_whole)
+        warnings.emplace_back(
+            "The tables in the directory do not give the numbers of summary.json: one of them is cut or was changed.");
     if (facts.n_merged > 0)
         warnings.push_back(fmt::format("{} merged with a neighbour when the body was cut (geometry.minimum_area).",
                                        counted(static_cast<int>(facts.n_merged), "sliver was", "slivers were")));
@@ -189,6 +192,7 @@ RunAnswer run_answer(const RunFacts& facts) {
     RunAnswer answer = facts.reduces_strength ? factor_of_safety(facts)
                        : facts.platen_stage   ? strength(facts)
                                               : equilibrium(facts);
+    answer.firm = answer.firm && facts.tables_are_whole;
     add_end(facts, answer.warnings);
     add_doubts(facts, answer.warnings);
     if (facts.summary)

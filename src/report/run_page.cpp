@@ -16,13 +16,12 @@
 #include "kluft/output/field_series.hpp"
 #include "kluft/output/history_table.hpp"
 #include "kluft/output/kept_states.hpp"
-#include "kluft/output/state_file.hpp"
 #include "kluft/report/number_table.hpp"
 #include "kluft/report/report_page.hpp"
 #include "kluft/report/run_answer.hpp"
+#include "kluft/report/run_of_results.hpp"
 #include "kluft/scene/scene_as_run.hpp"
 #include "kluft/scene/scene_model.hpp"
-#include "kluft/scene/scene_reader.hpp"
 #include "kluft/simulation/measurements.hpp"
 #include "kluft/simulation/strength_reduction.hpp"
 #include "page_files.hpp"
@@ -210,6 +209,15 @@ std::string json_states(const std::vector<int>& steps) {
 bool looks_for_factor_of_safety(const Model& model) { return reduction_of(model.loads, 0) != nullptr; }
 
 /// What is known of the run with the model that it ran.
+constexpr double same_number = 1e-6; ///< relative
+
+/// Whether the tables give other numbers than the run wrote at its end.
+bool differ(const CurveNumbers& told, const CurveNumbers& found) {
+    const double a = told.peak_stress.value_or(0.0);
+    const double b = found.peak_stress.value_or(0.0);
+    return told.steps != found.steps || std::abs(a - b) > same_number * std::max(std::abs(a), std::abs(b));
+}
+
 RunFacts facts_of(const fs::path& directory, const Rows& history, const Rows& equilibria, const Scene& scene,
                   const Model& model, const CutReport& cut) {
     RunFacts facts;
@@ -222,6 +230,7 @@ RunFacts facts_of(const fs::path& directory, const Rows& history, const Rows& eq
     facts.last = history.back();
     facts.n_merged = cut.merged.size();
     facts.reduces_strength = looks_for_factor_of_safety(model);
+    facts.tables_are_whole = !facts.summary || !differ(facts.summary->numbers, facts.numbers);
     return facts;
 }
 
@@ -282,14 +291,8 @@ void write_run_page(const fs::path& directory, const Scene& scene, const Model& 
 }
 
 fs::path write_run_page(const fs::path& directory) {
-    const fs::path saved = directory / "state.h5";
-    if (!fs::exists(saved))
-        throw InputError(directory.string() +
-                         ": expected a directory of results, found no state.h5 in it, which has the "
-                         "scene as run");
-    const Scene scene = read_scene_text(read_state_scene(saved), {}, saved);
-    const SceneModel built = build_scene_model(scene);
-    write_run_page(directory, scene, built.model, built.cut);
+    const RunOfResults run = run_of_results(directory);
+    write_run_page(directory, run.scene, run.built.model, run.built.cut);
     return directory / "report.html";
 }
 

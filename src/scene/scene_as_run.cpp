@@ -166,6 +166,13 @@ std::string body_difference(std::string_view earlier, const Scene& scene) {
     return digest_of_leaves(there) == digest_of_leaves(here) ? "" : first_difference(there, here);
 }
 
+std::vector<std::string> geometry_files(const Scene& scene) {
+    std::vector<std::string> files;
+    for (const Leaf& leaf : leaves_of(tree_of_text(scene.text)))
+        if (names_geometry_file(leaf.path)) files.push_back(leaf.value);
+    return files;
+}
+
 bool is_scene_as_run(std::string_view text) { return text.starts_with(heading.substr(0, heading.find('\n'))); }
 
 std::string scene_difference(std::string_view earlier, const Scene& scene) {

@@ -11,6 +11,7 @@
 #include <yaml-cpp/parser.h>
 
 #include "kluft/core/diagnostics.hpp"
+#include "kluft/scene/scene_text.hpp"
 
 namespace kluft {
 
@@ -73,7 +74,11 @@ public:
         refuse_anchor(mark, anchor);
         refuse_tag(mark, tag);
         SceneNode node = node_at(mark, SceneNode::Kind::scalar);
-        node.text = value;
+        if (!is_scene_text(value)) // the parser makes single bytes of \N and \_
+            errors_.add(
+                position(mark), {},
+                "expected a text in UTF-8, found an escape (\\N, \\_, \\0 or a control character) that makes none");
+        node.text = is_scene_text(value) ? value : "";
         node.quoted = tag == "!";
         insert(std::move(node));
     }

@@ -1124,6 +1124,53 @@ TEST_F(CommandLine, PictureThatDoesNotFitLeavesNothing) {
     EXPECT_FALSE(fs::exists(path("tiny.png.part")));
 }
 
+// Old fields on a new body would be nobody's results.
+TEST_F(CommandLine, ResultsWhoseMapHasChangedAreNeitherReportedNorExported) {
+    const auto map = [](double end) {
+        return R"({"type": "LineString", "coordinates": [[-1, 0.1], [1, )" + std::to_string(end) + "]]}";
+    };
+    write("map.geojson", map(0.3));
+    write("tiny.yaml", std::regex_replace(tiny_scene, std::regex("\n  tessellation"),
+                                          "\n  fractures: [{file: map.geojson, interface: joint}]\n  tessellation"));
+    ASSERT_EQ(kluft({"run", "tiny.yaml", "-o", "r", "--quiet"}).code, 0);
+    const std::string report = content_of(path("r/report.html"));
+    EXPECT_EQ(kluft({"report", "r"}).code, 0);
+    write("map.geojson", map(0.31));
+    const auto changed = HasSubstr("a file of the geometry has changed since the run");
+    expect_refused({"report", "r"}, changed);
+    expect_refused({"draw", "r", "--step", "last", "-o", "r.png"}, changed);
+    if (gdal_problem().empty()) expect_refused({"export", "r", "-o", "r.geojson"}, changed);
+    EXPECT_EQ(content_of(path("r/report.html")), report);
+    write("map.geojson", map(0.3));
+    if (gdal_problem().empty())
+        expect_refused({"export", "r", "-o", "map.geojson"}, HasSubstr("found one that the scene reads"));
+}
+
+TEST_F(CommandLine, AReportSaysWhereATableIsNotTheWholeOne) {
+    write("tiny.yaml", tiny_scene);
+    ASSERT_EQ(kluft({"run", "tiny.yaml", "-o", "r", "--quiet"}).code, 0);
+    const std::string table = content_of(path("r/equilibria.csv"));
+    for (const char* name : {"history.csv", "equilibria.csv"}) {
+        const std::string whole = content_of(path(std::string("r/") + name));
+        write(std::string("r/") + name, whole.substr(0, whole.find('\n', whole.size() / 2) + 1));
+        ASSERT_EQ(kluft({"report", "r"}).code, 0);
+        EXPECT_THAT(content_of(path("r/report.html")), HasSubstr("do not give the numbers of summary.json")) << name;
+        write(std::string("r/") + name, whole);
+    }
+    ASSERT_EQ(kluft({"report", "r"}).code, 0);
+    EXPECT_THAT(content_of(path("r/report.html")), Not(HasSubstr("do not give the numbers of summary.json")));
+}
+
+TEST_F(CommandLine, AFileInADirectoryThatIsNotThereIsRefused) {
+    write("tiny.yaml", tiny_scene);
+    ASSERT_EQ(kluft({"run", "tiny.yaml", "-o", "r", "--quiet"}).code, 0);
+    expect_refused({"draw", "r", "--step", "last", "-o", "absent/x.png"},
+                   HasSubstr("expected a file in a directory that is there"));
+    if (gdal_problem().empty())
+        expect_refused({"export", "r", "-o", "absent/x.gpkg"},
+                       HasSubstr("expected a file in a directory that is there"));
+}
+
 TEST_F(CommandLine, ARunIsExportedAsAMapInTheSystemOfItsScene) {
     write("tiny.yaml", std::regex_replace(tiny_scene, std::regex("domain: \\{rectangle: \\{"),
                                           "crs: EPSG:25832\n  domain: {rectangle: {origin: [691400, 5334600], "));

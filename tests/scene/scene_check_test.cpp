@@ -72,6 +72,18 @@ TEST(SceneErrors, MissingKeysPointToTheMappingThatLacksThem) {
 }
 
 /// The mistyped key is reported, not the one that it was meant to be.
+// The parser of YAML makes a byte of each that is no character of UTF-8: no later reader would take the results.
+TEST(SceneErrors, EscapesThatMakeNoUtf8AreRefused) {
+    const std::string scene = test::short_scene;
+    const std::size_t second_line = scene.find('\n', scene.find("kluft: 1")) + 1;
+    for (const char* escape : {R"(\N)", R"(\_)", R"(\0)"}) {
+        const std::string title = std::string("title: \"a") + escape + "b\"\n";
+        EXPECT_THAT([&] { (void)read_scene_text(scene.substr(0, second_line) + title + scene.substr(second_line)); },
+                    testing::ThrowsMessage<InputError>(testing::HasSubstr("expected a text in UTF-8")))
+            << escape;
+    }
+}
+
 TEST(SceneErrors, AMistypedRequiredKeyIsOneError) {
     EXPECT_THAT(errors_with({"materials.rock.youngs_modulus=null", "materials.rock.young_modulus=1 GPa"}),
                 ElementsAre(AllOf(HasSubstr("materials.rock.young_modulus: expected one of "),

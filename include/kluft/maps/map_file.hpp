@@ -9,6 +9,8 @@
 
 namespace kluft {
 
+inline constexpr double farthest_position = 1e9; ///< m from the origin, as of lengths in a scene
+
 /// Whether the name is that of a GeoPackage or of a shapefile.
 [[nodiscard]] bool is_map_file(const std::filesystem::path& file);
 

@@ -18,6 +18,9 @@ void write_state(const std::filesystem::path& path, const State& state, const st
 /// number that is none, of another version, or has a fingerprint other than `expected_fingerprint`.
 [[nodiscard]] State read_state(const std::filesystem::path& path, const std::string& expected_fingerprint);
 
+/// The fingerprint that a state was saved with. Throws InputError like read_state.
+[[nodiscard]] std::string read_state_fingerprint(const std::filesystem::path& path);
+
 /// The text of the scene that a saved state belongs to. Throws InputError like read_state, and for a state without it.
 [[nodiscard]] std::string read_state_scene(const std::filesystem::path& path);
 

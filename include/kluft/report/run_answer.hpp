@@ -20,6 +20,7 @@ struct RunFacts {
     std::optional<StepRecord> last; ///< row of the last load step
     std::size_t n_merged = 0;       ///< pieces too small that were merged when the body was cut
     bool reduces_strength = false;  ///< a stage looks for the factor of safety
+    bool tables_are_whole = true;   ///< they give the numbers that the run wrote at its end
 };
 
 struct RunAnswer {

@@ -3,6 +3,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "kluft/scene/scene.hpp"
 
@@ -12,6 +13,9 @@ namespace kluft {
 /// files absolute, so that reading it gives the same scene wherever it lies. A scene without a title gets its name as one.
 /// A comment holds the digest of what it says and of the files' content.
 [[nodiscard]] std::string write_scene_as_run(const Scene& scene);
+
+/// The files that the geometry of the scene is read from, as their names stand in it once it has been read: absolute.
+[[nodiscard]] std::vector<std::string> geometry_files(const Scene& scene);
 
 /// Whether write_scene_as_run wrote the text.
 [[nodiscard]] bool is_scene_as_run(std::string_view text);

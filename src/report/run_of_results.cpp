@@ -1,0 +1,26 @@
+#include "kluft/report/run_of_results.hpp"
+
+#include "kluft/core/diagnostics.hpp"
+#include "kluft/output/state_file.hpp"
+#include "kluft/scene/scene_reader.hpp"
+#include "kluft/simulation/fingerprint.hpp"
+
+namespace kluft {
+
+RunOfResults run_of_results(const std::filesystem::path& directory) {
+    const std::filesystem::path saved = directory / "state.h5";
+    if (!std::filesystem::exists(saved))
+        throw InputError(directory.string() +
+                         ": expected a directory of results, found no state.h5 in it, which has the scene as "
+                         "run");
+    RunOfResults run;
+    run.scene = read_scene_text(read_state_scene(saved), {}, saved);
+    run.built = build_scene_model(run.scene);
+    if (fingerprint(run.built.model) != read_state_fingerprint(saved))
+        throw InputError(directory.string() +
+                         ": expected the body that the results are of, found another one: a file of the "
+                         "geometry has changed since the run");
+    return run;
+}
+
+} // namespace kluft
