@@ -101,7 +101,8 @@ double estimated_memory(const Scene& scene, const Model& model, double factor) {
 double say_memory(const Scene& scene, const Model& model, Lines& lines) {
     std::vector<std::pair<int, int>> pairs;
     for (const Interface& interface : model.system.interfaces) pairs.emplace_back(interface.block_a, interface.block_b);
-    const FactorCost cost = factor_cost(BlockPattern(model.system.n_blocks(), pairs, model.kinematics));
+    const FactorCost cost = factor_cost(BlockPattern(model.system.n_blocks(), pairs, model.kinematics),
+                                        scene.solver.reuse ? Factorization::rounded_cholesky : Factorization::cholesky);
     const bool unsymmetric_factors = scene.solver.tangent == Tangent::unsymmetric && !scene.solver.reuse;
     const double factor = (unsymmetric_factors ? 3.0 : 1.0) * cost.bytes;
     const double memory = estimated_memory(scene, model, factor);
