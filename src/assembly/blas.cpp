@@ -89,6 +89,29 @@ double largest_difference(int n, const std::vector<double>& a, const std::vector
     return largest;
 }
 
+/// The same of products in single precision, -A B' and the lower triangle of -A A'.
+bool single_products_are_right(int n, const std::vector<double>& a, const std::vector<double>& b) {
+    constexpr double roundoff = 1e-5;
+    const std::vector<float> single_a(a.begin(), a.end());
+    const std::vector<float> single_b(b.begin(), b.end());
+    std::vector<float> product(a.size());
+    std::vector<float> square(a.size());
+    subtract_product(n, n, n, single_a.data(), n, single_b.data(), n, product.data(), n);
+    subtract_square(n, n, single_a.data(), n, square.data(), n);
+    for (int column = 0; column < n; ++column) {
+        for (int row = column; row < n; ++row) {
+            double of_both = product[place(n, row, column)];
+            double of_a = square[place(n, row, column)];
+            for (int k = 0; k < n; ++k) {
+                of_both += a[place(n, row, k)] * b[place(n, column, k)];
+                of_a += a[place(n, row, k)] * a[place(n, column, k)];
+            }
+            if (!(std::abs(of_both) < n * roundoff && std::abs(of_a) < n * roundoff * n)) return false;
+        }
+    }
+    return true;
+}
+
 } // namespace
 
 void solve_lower_triangle(int n, int width, const double* l, int ldl, double* x, int ldx) {
@@ -187,6 +210,7 @@ bool blas_computes_rightly() {
         std::vector<double> x = b;
         solve_lower_triangle(n, n, a.data(), n, x.data(), n);
         if (!(largest_difference(n, a, x, b, true) < n * roundoff)) return false;
+        if (!single_products_are_right(n, a, b)) return false;
     }
     return true;
 }

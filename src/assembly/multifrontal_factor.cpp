@@ -228,7 +228,8 @@ struct MultifrontalFactor::Numbers {
     }
 
     void do_task(int t, Stacks& stacks, std::vector<float>& least_pivots) {
-        const auto [first, last] = f.plan_.tasks[t];
+        const int first = f.plan_.tasks[t].first;
+        const int last = f.plan_.tasks[t].last;
         const Sharing alone = [](int n, const std::function<void(int)>& body) {
             for (int i = 0; i < n; ++i) body(i);
         };

@@ -83,7 +83,7 @@ void say_stiffness(const Scene& scene, const Model& model, Lines& lines) {
     }
 }
 
-/// Largest memory of a run with a factor of so many bytes, fitted to measured ones: "Memory" in docs/theory.md.
+/// Largest memory of a run with a factor that takes so many bytes, fitted to measured ones: "Memory" in docs/theory.md.
 double estimated_memory(const Scene& scene, const Model& model, double factor) {
     constexpr double program = 28e6;
     constexpr double per_block = 7.4e3;
@@ -105,7 +105,7 @@ double say_memory(const Scene& scene, const Model& model, Lines& lines) {
                                         scene.solver.reuse ? Factorization::rounded_cholesky : Factorization::cholesky);
     const bool unsymmetric_factors = scene.solver.tangent == Tangent::unsymmetric && !scene.solver.reuse;
     const double factor = (unsymmetric_factors ? 3.0 : 1.0) * cost.bytes;
-    const double memory = estimated_memory(scene, model, factor);
+    const double memory = estimated_memory(scene, model, factor + cost.working_bytes);
     lines.push_back(
         {"memory", fmt::format("about {:.3g} MB, of which the factor {:.3g} MB ({:.3g} flops by Cholesky's method)",
                                1e-6 * memory, 1e-6 * factor, cost.flops)});
