@@ -16,7 +16,7 @@ namespace {
 using namespace kluft;
 
 void describe(const bench::Body& body) {
-    const FactorCost cost = factor_cost(body.pattern());
+    const FactorCost cost = factor_cost(body.pattern(), Factorization::rounded_cholesky);
     benchmark::AddCustomContext("blocks", std::to_string(body.model().system.n_blocks()));
     benchmark::AddCustomContext("interfaces", std::to_string(body.model().system.n_interfaces()));
     benchmark::AddCustomContext("factor_flops", fmt::format("{:.17g}", cost.flops));

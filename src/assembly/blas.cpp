@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <mutex>
 #include <random>
 #include <ranges>
 #include <string_view>
@@ -18,6 +19,8 @@ extern "C" {
 void openblas_set_num_threads(int n_threads);
 int openblas_get_num_threads();
 char* openblas_get_corename();
+void* blas_memory_alloc(int which);
+void blas_memory_free(void* space);
 void omp_set_max_active_levels(int n_levels);
 void dtrsm_(const char* side, const char* uplo, const char* trans, const char* diag, const int* m, const int* n,
             const double* alpha, const double* a, const int* lda, double* b, const int* ldb);
@@ -26,6 +29,11 @@ void dgemm_(const char* trans_a, const char* trans_b, const int* m, const int* n
             const int* ldc);
 void dgemv_(const char* trans, const int* m, const int* n, const double* alpha, const double* a, const int* lda,
             const double* x, const int* incx, const double* beta, double* y, const int* incy);
+void sgemm_(const char* trans_a, const char* trans_b, const int* m, const int* n, const int* k, const float* alpha,
+            const float* a, const int* lda, const float* b, const int* ldb, const float* beta, float* c,
+            const int* ldc);
+void ssyrk_(const char* uplo, const char* trans, const int* n, const int* k, const float* alpha, const float* a,
+            const int* lda, const float* beta, float* c, const int* ldc);
 }
 // NOLINTEND(readability-identifier-naming)
 
@@ -40,6 +48,19 @@ bool has_wide_kernels(std::string_view core) {
                                                       "SkylakeX", "Cooperlake", "SapphireRapids"};
     return std::ranges::find(wide, core) != wide.end();
 }
+
+bool has_room_for_work_spaces(int n) {
+    const std::size_t bytes = static_cast<std::size_t>(n) * (136U << 20U);
+    void* const space = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (space == MAP_FAILED) return false;
+    munmap(space, bytes);
+    return true;
+}
+
+constexpr int max_own_threads = 32;
+std::mutex own_threads_mutex;
+int n_own_threads = 0; ///< how many exist
+int threads_before = 1;
 
 /// The place of an entry of an n x n matrix that is stored by columns.
 std::size_t place(int n, int row, int column) {
@@ -66,6 +87,29 @@ double largest_difference(int n, const std::vector<double>& a, const std::vector
         }
     }
     return largest;
+}
+
+/// The same of products in single precision, -A B' and the lower triangle of -A A'.
+bool single_products_are_right(int n, const std::vector<double>& a, const std::vector<double>& b) {
+    constexpr double roundoff = 1e-5;
+    const std::vector<float> single_a(a.begin(), a.end());
+    const std::vector<float> single_b(b.begin(), b.end());
+    std::vector<float> product(a.size());
+    std::vector<float> square(a.size());
+    subtract_product(n, n, n, single_a.data(), n, single_b.data(), n, product.data(), n);
+    subtract_square(n, n, single_a.data(), n, square.data(), n);
+    for (int column = 0; column < n; ++column) {
+        for (int row = column; row < n; ++row) {
+            double of_both = product[place(n, row, column)];
+            double of_a = square[place(n, row, column)];
+            for (int k = 0; k < n; ++k) {
+                of_both += a[place(n, row, k)] * b[place(n, column, k)];
+                of_a += a[place(n, row, k)] * a[place(n, column, k)];
+            }
+            if (!(std::abs(of_both) < n * roundoff && std::abs(of_a) < n * roundoff * n)) return false;
+        }
+    }
+    return true;
 }
 
 } // namespace
@@ -95,20 +139,47 @@ void multiply(int m, int n, const double* a, int lda, const double* x, double* y
     dgemv_("N", &m, &n, &one, a, &lda, x, &next, &zero, y, &next);
 }
 
+void subtract_product(int m, int n, int k, const float* a, int lda, const float* b, int ldb, float* c, int ldc) {
+    const float one = 1.0F;
+    const float minus_one = -1.0F;
+    sgemm_("N", "T", &m, &n, &k, &minus_one, a, &lda, b, &ldb, &one, c, &ldc);
+}
+
+void subtract_square(int n, int k, const float* a, int lda, float* c, int ldc) {
+    const float one = 1.0F;
+    const float minus_one = -1.0F;
+    ssyrk_("L", "N", &n, &k, &minus_one, a, &lda, &one, c, &ldc);
+}
+
 void prepare_blas() {
     // CHOLMOD's own loops ask for four threads whatever the number of processors, to move a few numbers each: without
     // them a factorization takes half the time at 600 blocks, three quarters at 50 000.
     omp_set_max_active_levels(0);
-    constexpr std::size_t work_space_bytes = 136U << 20U;
     static bool taken = false;
     if (taken) return;
-    void* const space = mmap(nullptr, work_space_bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (space == MAP_FAILED) throw ResourceError("out of memory: no address space for the work space of the BLAS");
-    munmap(space, work_space_bytes);
+    if (!has_room_for_work_spaces(1))
+        throw ResourceError("out of memory: no address space for the work space of the BLAS");
     const double a = 1.0;
     double x = 1.0;
     solve_lower_triangle(1, 1, &a, 1, &x, 1);
     taken = true;
+}
+
+OwnThreads::OwnThreads(int n_threads) {
+    const std::lock_guard lock(own_threads_mutex);
+    if (n_own_threads++ == 0) threads_before = openblas_get_num_threads();
+    openblas_set_num_threads(1);
+    number_ = std::clamp(n_threads, 1, max_own_threads);
+    if (number_ > 1 && !has_room_for_work_spaces(number_)) number_ = 1;
+    if (number_ == 1) return;
+    std::array<void*, max_own_threads> spaces{};
+    for (int i = 0; i < number_; ++i) spaces[i] = blas_memory_alloc(0); // all at once, or it would be the same one
+    for (int i = 0; i < number_; ++i) blas_memory_free(spaces[i]);
+}
+
+OwnThreads::~OwnThreads() {
+    const std::lock_guard lock(own_threads_mutex);
+    if (--n_own_threads == 0) openblas_set_num_threads(threads_before);
 }
 
 void set_blas_threads(int n_threads) { openblas_set_num_threads(n_threads); }
@@ -139,6 +210,7 @@ bool blas_computes_rightly() {
         std::vector<double> x = b;
         solve_lower_triangle(n, n, a.data(), n, x.data(), n);
         if (!(largest_difference(n, a, x, b, true) < n * roundoff)) return false;
+        if (!single_products_are_right(n, a, b)) return false;
     }
     return true;
 }

@@ -17,6 +17,9 @@ namespace {
 /// with two copies of the matrix. Below, fresh pages would cost more than they are worth.
 constexpr double large_factor = 8e6;
 
+/// Unknowns from which on a body has a multifrontal factor, where single precision is enough.
+constexpr std::int64_t multifrontal_unknowns = 20'000;
+
 /// Least share of a diagonal entry that elimination may leave for the factor to be rounded: rounding to 6e-8 of the
 /// diagonal then stays far below it.
 constexpr double roundable_pivot_ratio = 1e-5;
@@ -105,6 +108,20 @@ cholmod_sparse lower_triangle(BlockColumns& columns) {
     return view;
 }
 
+/// Of each supernode its own columns and the rows below.
+std::vector<std::int64_t> unknowns_of(const BlockSupernodes& s) {
+    std::vector<std::int64_t> rows;
+    rows.reserve(s.nu * (s.first_block.back() + s.rows.size()));
+    for (int k = 0; k < s.size(); ++k) {
+        const auto add = [&](int block) {
+            for (int i = 0; i < s.nu; ++i) rows.push_back(static_cast<std::int64_t>(s.nu) * block + i);
+        };
+        for (int block = s.first_block[k]; block < s.first_block[k + 1]; ++block) add(block);
+        for (const int block : s.rows_below(k)) add(block);
+    }
+    return rows;
+}
+
 } // namespace
 
 CholeskyFactor::CholeskyFactor() : cholmod_(std::make_unique<Cholmod>()) {}
@@ -113,6 +130,21 @@ CholeskyFactor::~CholeskyFactor() = default;
 void CholeskyFactor::analyze(const BlockPattern& pattern, const std::vector<int>& position) {
     cholmod_l_free_factor(&cholmod_->factor, &cholmod_->common);
     columns_ = BlockColumns(pattern, position, BlockColumns::Part::lower);
+    multifrontal_.reset();
+    rounded_ = nullptr;
+    is_multifrontal_ = columns_.size() >= multifrontal_unknowns;
+    if (is_multifrontal_) {
+        multifrontal_ = std::make_unique<MultifrontalFactor>();
+        multifrontal_->analyze(pattern, position);
+        rows_ = unknowns_of(multifrontal_->supernodes());
+    } else {
+        analyze_for_cholmod();
+    }
+    find_path_tree();
+}
+
+void CholeskyFactor::analyze_for_cholmod() {
+    if (cholmod_->factor != nullptr) return;
     columns_.gather_structure();
     cholmod_sparse matrix = lower_triangle(columns_);
     matrix.xtype = CHOLMOD_PATTERN;
@@ -122,7 +154,10 @@ void CholeskyFactor::analyze(const BlockPattern& pattern, const std::vector<int>
     if (cholmod_->factor == nullptr || cholmod_->factor->is_super == 0) {
         throw ResourceError("the symbolic analysis failed");
     }
-    const int n = static_cast<int>(cholmod_->factor->nsuper);
+}
+
+void CholeskyFactor::find_path_tree() {
+    const int n = is_multifrontal_ ? multifrontal_->supernodes().size() : static_cast<int>(cholmod_->factor->nsuper);
     parent_.assign(n, -1);
     of_column_.assign(columns_.size(), 0);
     for (int k = 0; k < n; ++k) {
@@ -135,8 +170,25 @@ void CholeskyFactor::analyze(const BlockPattern& pattern, const std::vector<int>
     }
 }
 
+bool CholeskyFactor::factorize_in_single(const BlockMatrix& matrix) {
+    if (!multifrontal_) return false;
+    if (!is_multifrontal_) forget();
+    if (!multifrontal_->factorize(matrix)) return false;
+    rounded_ = multifrontal_->values();
+    if (!is_multifrontal_) {
+        is_multifrontal_ = true;
+        find_path_tree();
+    }
+    return true;
+}
+
 void CholeskyFactor::gather(const BlockMatrix& matrix) {
     if (is_large()) forget();
+    analyze_for_cholmod();
+    if (is_multifrontal_) {
+        is_multifrontal_ = false;
+        find_path_tree();
+    }
     columns_.gather(matrix);
 }
 
@@ -193,6 +245,7 @@ double CholeskyFactor::least_pivot_ratio() {
 
 void CholeskyFactor::forget() {
     rounded_ = nullptr;
+    if (multifrontal_) multifrontal_->forget();
     cholmod_->free_numbers();
 }
 
@@ -232,19 +285,36 @@ const double* CholeskyFactor::values(const Supernode& supernode, std::vector<dou
     return room.data();
 }
 
-bool CholeskyFactor::is_large() const { return cost().bytes >= large_factor; }
+bool CholeskyFactor::is_large() const {
+    return multifrontal_ || sizeof(double) * static_cast<double>(cholmod_->factor->xsize) >= large_factor;
+}
 
-FactorCost CholeskyFactor::cost() const {
+FactorCost CholeskyFactor::cost(Precision precision) {
+    if (multifrontal_ && precision == Precision::single) {
+        const BlockSupernodes& supernodes = multifrontal_->supernodes();
+        return {supernodes.nonzeros, supernodes.flops, multifrontal_->bytes(), multifrontal_->front_bytes()};
+    }
+    analyze_for_cholmod();
     const cholmod_common& common = cholmod_->common;
-    return {common.lnz, common.fl, static_cast<double>(sizeof(double)) * static_cast<double>(cholmod_->factor->xsize)};
+    const double bytes = static_cast<double>(sizeof(double)) * static_cast<double>(cholmod_->factor->xsize);
+    return {common.lnz, common.fl, bytes, 0.0};
 }
 
 Supernode CholeskyFactor::supernode(int k) const {
+    Supernode s;
+    if (is_multifrontal_) {
+        const BlockSupernodes& all = multifrontal_->supernodes();
+        s.first_column = static_cast<std::int64_t>(all.nu) * all.first_block[k];
+        s.n_columns = all.n_columns(k);
+        s.n_rows = s.n_columns + all.n_below(k);
+        s.rows = rows_.data() + s.first_column + all.nu * all.row_starts[k];
+        s.first_value = all.value_starts[k];
+        return s;
+    }
     const cholmod_factor& f = *cholmod_->factor;
     const auto* first = static_cast<const std::int64_t*>(f.super);
     const auto* row_starts = static_cast<const std::int64_t*>(f.pi);
     const auto* value_starts = static_cast<const std::int64_t*>(f.px);
-    Supernode s;
     s.first_column = first[k];
     s.n_columns = static_cast<int>(first[k + 1] - first[k]);
     s.n_rows = static_cast<int>(row_starts[k + 1] - row_starts[k]);

@@ -48,10 +48,21 @@ struct LinearSolver::Backend {
     }
 
     bool factorize() {
-        ++statistics.factorizations;
         if (kind == Factorization::lu) return lu.factorize();
         changes.start(cholesky, position, nu);
         return cholesky.factorize(kind == Factorization::cholesky ? Precision::full : Precision::single);
+    }
+
+    /// Where the body is large and single precision is enough; the matrix is read where it stands.
+    bool factorize_in_single(const BlockMatrix& matrix, Factorization new_kind) {
+        ++statistics.factorizations;
+        if (new_kind != Factorization::rounded_cholesky) return false;
+        kind = new_kind;
+        lu.forget();
+        if (cholesky.is_large()) gmres.release();
+        if (!cholesky.factorize_in_single(matrix)) return false;
+        changes.start(cholesky, position, nu);
+        return true;
     }
 
     void solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
@@ -85,12 +96,17 @@ void LinearSolver::analyze(const BlockPattern& pattern) {
 
 bool LinearSolver::factorize(const BlockMatrix& matrix, Factorization kind) {
     const Stopwatch watch(backend_->statistics.factorize_seconds);
+    if (backend_->factorize_in_single(matrix, kind)) return true;
     backend_->gather(matrix, kind);
     return backend_->factorize();
 }
 
 bool LinearSolver::factorize(BlockMatrix&& matrix, Factorization kind) {
     const Stopwatch watch(backend_->statistics.factorize_seconds);
+    if (backend_->factorize_in_single(matrix, kind)) {
+        matrix.release();
+        return true;
+    }
     backend_->gather(matrix, kind);
     matrix.release();
     return backend_->factorize();
@@ -149,10 +165,10 @@ SolveReport LinearSolver::solve(const BlockMatrix& matrix, const Eigen::VectorXd
 
 const LinearSolverStatistics& LinearSolver::statistics() const { return backend_->statistics; }
 
-FactorCost factor_cost(const BlockPattern& pattern) {
+FactorCost factor_cost(const BlockPattern& pattern, Factorization kind) {
     CholeskyFactor factor;
     factor.analyze(pattern, elimination_order(pattern));
-    return factor.cost();
+    return factor.cost(kind == Factorization::rounded_cholesky ? Precision::single : Precision::full);
 }
 
 } // namespace kluft

@@ -108,7 +108,7 @@ MemoryOfBlocks memory_of_rigid_blocks(double n_blocks, bool has_fractures) {
             .pictures = pictures_per_block * n_blocks};
 }
 
-/// Largest memory of a run with a factor of so many bytes: "Memory" in docs/theory.md.
+/// Largest memory of a run with a factor that takes so many bytes, fitted to measured ones: "Memory" in docs/theory.md.
 double estimated_memory(const Scene& scene, const Model& model, double factor) {
     constexpr double program = 28e6;
     constexpr double per_fracture = 2.2e3; // interface that is no bond
@@ -126,10 +126,11 @@ double estimated_memory(const Scene& scene, const Model& model, double factor) {
 double say_memory(const Scene& scene, const Model& model, Lines& lines) {
     std::vector<std::pair<int, int>> pairs;
     for (const Interface& interface : model.system.interfaces) pairs.emplace_back(interface.block_a, interface.block_b);
-    const FactorCost cost = factor_cost(BlockPattern(model.system.n_blocks(), pairs, model.kinematics));
+    const FactorCost cost = factor_cost(BlockPattern(model.system.n_blocks(), pairs, model.kinematics),
+                                        scene.solver.reuse ? Factorization::rounded_cholesky : Factorization::cholesky);
     const bool unsymmetric_factors = scene.solver.tangent == Tangent::unsymmetric && !scene.solver.reuse;
     const double factor = (unsymmetric_factors ? 3.0 : 1.0) * cost.bytes;
-    const double memory = estimated_memory(scene, model, factor);
+    const double memory = estimated_memory(scene, model, factor + cost.working_bytes);
     lines.push_back(
         {"memory", fmt::format("about {:.3g} MB, of which the factor {:.3g} MB ({:.3g} flops by Cholesky's method)",
                                1e-6 * memory, 1e-6 * factor, cost.flops)});

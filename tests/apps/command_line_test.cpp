@@ -1389,7 +1389,7 @@ double megabytes_in(const std::string& out) {
 
 // The estimate against the largest resident memory of the run, by the kernel's count: within 20 % for 500 and 2000
 // blocks, affine and rigid, whole, with fractures, or of fractures alone, with pictures and without; of 8000 rigid blocks too,
-// of which the program itself is a small part.
+// of which the program itself is a small part, and of 5100 affine ones, whose factor is made in single precision.
 TEST_F(SlowCommandLine, CheckEstimatesTheLargestMemoryOfARun) {
 #ifdef KLUFT_SANITIZED
     GTEST_SKIP() << "sanitizers multiply the memory";
@@ -1416,6 +1416,8 @@ TEST_F(SlowCommandLine, CheckEstimatesTheLargestMemoryOfARun) {
     }
     expect_estimate(with({"fractured.yaml"}, fine));
     expect_estimate(with(with({"whole.yaml"}, rigid), finer));
+    const Words large{"--set", "geometry.tessellation.hexagons.spacing=0.0152"};
+    expect_estimate(with(with({"whole.yaml"}, large), without_pictures));
 }
 
 // ---- determinism ---------------------------------------------------------------------------------------------------

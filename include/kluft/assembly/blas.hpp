@@ -15,9 +15,29 @@ void multiply(int m, int n, int k, const double* a, int lda, const double* b, in
 void multiply_transposed(int m, int n, const double* a, int lda, const double* x, double* y);
 void multiply(int m, int n, const double* a, int lda, const double* x, double* y);
 
+/// C := C - A B' and the lower triangle of C := C - A A', in single precision; A is m x k, B is n x k, C m x n.
+void subtract_product(int m, int n, int k, const float* a, int lda, const float* b, int ldb, float* c, int ldc);
+void subtract_square(int n, int k, const float* a, int lda, float* c, int ldc);
+
 /// To be called before the first use. The BLAS maps its work space then and tries for ever where the system refuses it:
 /// takes it now. Leaves all threads to the BLAS. Throws ResourceError out of memory.
 void prepare_blas();
+
+/// While one exists, each call of the BLAS is computed by the thread that calls. Threads that call at the same time then need
+/// a work space each: they are taken here, for as many threads as asked for, or fewer.
+class OwnThreads {
+public:
+    explicit OwnThreads(int n_threads);
+    ~OwnThreads();
+    OwnThreads(const OwnThreads&) = delete;
+    OwnThreads& operator=(const OwnThreads&) = delete;
+
+    /// For how many threads there is a work space; at least one.
+    [[nodiscard]] int number() const { return number_; }
+
+private:
+    int number_ = 1;
+};
 
 /// Number of threads of the BLAS (OpenBLAS) for the whole process.
 void set_blas_threads(int n_threads);

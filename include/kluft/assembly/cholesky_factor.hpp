@@ -1,5 +1,6 @@
-// The factor L L' = K of a symmetric positive definite stiffness by CHOLMOD's supernodal method, and its parts along a
-// path of the elimination tree. CHOLMOD is not seen outside this unit.
+// The factor L L' = K of a symmetric positive definite stiffness, and its parts along a path of the elimination tree: by
+// CHOLMOD's supernodal method in double precision, or of a large body by the multifrontal method in single precision.
+// CHOLMOD is not seen outside this unit.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +10,7 @@
 #include <Eigen/Core>
 
 #include "kluft/assembly/block_columns.hpp"
+#include "kluft/assembly/multifrontal_factor.hpp"
 
 namespace kluft {
 
@@ -21,11 +23,13 @@ struct Supernode {
     std::int64_t first_value = 0; ///< of n_rows x n_columns, by columns; the upper triangle of the top is not used
 };
 
-/// Nonzeros of L, flops of one factorization and bytes of the stored factor, by the symbolic count.
+/// Nonzeros of L, flops of one factorization, bytes of the stored factor and those that are taken besides while it is made,
+/// by the symbolic count.
 struct FactorCost {
     double nonzeros = 0.0;
     double flops = 0.0;
     double bytes = 0.0;
+    double working_bytes = 0.0;
 };
 
 /// Precision in which a factor is kept.
@@ -44,6 +48,9 @@ public:
 
     /// Symbolic analysis; forgets the earlier factor. Throws ResourceError out of memory.
     void analyze(const BlockPattern& pattern, const std::vector<int>& position);
+    /// By the multifrontal method. False if the body is too small for it to be faster or the matrix too ill-conditioned for
+    /// single precision; there is no factor then, and the other way remains. Throws ResourceError out of memory.
+    [[nodiscard]] bool factorize_in_single(const BlockMatrix& matrix);
     /// Copies what the next `factorize` reads; there is no factor until then.
     void gather(const BlockMatrix& matrix);
     /// False if the gathered matrix is not positive definite. Throws ResourceError out of memory.
@@ -54,10 +61,12 @@ public:
     void solve_lower(std::vector<double>& x);
     void solve_upper(std::vector<double>& x);
 
-    [[nodiscard]] FactorCost cost() const;
+    /// Of a factor of that precision, or of the one in double precision where the body is small.
+    [[nodiscard]] FactorCost cost(Precision precision);
     /// Whether the factor is so large that memory is given up for it, rather than taken anew afterwards.
     [[nodiscard]] bool is_large() const;
 
+    /// Of the factor that there is.
     [[nodiscard]] int n_supernodes() const { return static_cast<int>(parent_.size()); }
     [[nodiscard]] Supernode supernode(int k) const;
     /// The numbers of a supernode, n_rows x n_columns by columns; `room` holds them if they are kept rounded.
@@ -69,13 +78,18 @@ public:
 private:
     struct Cholmod;
     std::unique_ptr<Cholmod> cholmod_;
+    void analyze_for_cholmod();
+    void find_path_tree();
     [[nodiscard]] bool has_finite_pivots() const;
     [[nodiscard]] double least_pivot_ratio();
 
     BlockColumns columns_;
-    const float* rounded_ = nullptr; ///< the numbers of the factor, if it is kept in single precision
-    std::vector<float> copy_;        ///< those of a small one, which is kept in double precision too
-    std::vector<double> work_;       ///< for one supernode
+    std::unique_ptr<MultifrontalFactor> multifrontal_; ///< of a large body
+    bool is_multifrontal_ = false;                     ///< the factor that there is
+    std::vector<std::int64_t> rows_;                   ///< unknowns of the supernodes of the multifrontal factor
+    const float* rounded_ = nullptr;                   ///< the numbers of the factor, if it is kept in single precision
+    std::vector<float> copy_;                          ///< those of a small one, which is kept in double precision too
+    std::vector<double> work_;                         ///< for one supernode
     std::vector<int> parent_;
     std::vector<int> of_column_;
 };

@@ -1,5 +1,5 @@
-// Sparse direct solution of K x = b on a block pattern, with the factor reused as long as K changes little: CHOLMOD's
-// supernodal L L' of a symmetric positive definite reference, low-rank changes on top of it, and Krylov refinement
+// Sparse direct solution of K x = b on a block pattern, with the factor reused as long as K changes little: the
+// L L' of a symmetric positive definite reference by CHOLMOD or the multifrontal method, low-rank changes on top of it, and Krylov refinement
 // against the K of the moment; or UMFPACK's L U of K itself. The only entrance to the units of either.
 #pragma once
 
@@ -16,7 +16,7 @@ namespace kluft {
 
 enum class Factorization {
     cholesky,         ///< supernodal LL' of the lower triangle; fails on an indefinite matrix
-    rounded_cholesky, ///< the same, kept in single precision unless the matrix is too ill-conditioned: to be refined
+    rounded_cholesky, ///< the same in single precision, unless the matrix is too ill-conditioned for it: to be refined
     lu                ///< with pivoting inside fronts
 };
 
@@ -58,7 +58,7 @@ public:
     /// Numeric factorization; false if the matrix is singular or, for `cholesky`, not positive definite.
     /// Throws ResourceError out of memory.
     [[nodiscard]] bool factorize(const BlockMatrix& matrix, Factorization kind);
-    /// The same, and the values of the matrix are gone before the factor takes its memory.
+    /// The same, and the values of the matrix are gone afterwards; before a factor in double precision takes its memory.
     [[nodiscard]] bool factorize(BlockMatrix&& matrix, Factorization kind);
 
     /// Puts low-rank changes on top of a Cholesky factor: the complete list of what has changed since `factorize`.
@@ -83,7 +83,8 @@ private:
     std::unique_ptr<Backend> backend_;
 };
 
-/// Cost of a factorization of the pattern by CHOLMOD's symbolic count. Throws ResourceError out of memory.
-[[nodiscard]] FactorCost factor_cost(const BlockPattern& pattern);
+/// Cost of a factorization of the pattern by the symbolic count, of L U that of a Cholesky factorization. Throws
+/// ResourceError out of memory.
+[[nodiscard]] FactorCost factor_cost(const BlockPattern& pattern, Factorization kind);
 
 } // namespace kluft
