@@ -74,11 +74,10 @@ public:
         refuse_anchor(mark, anchor);
         refuse_tag(mark, tag);
         SceneNode node = node_at(mark, SceneNode::Kind::scalar);
-        if (!is_scene_text(value)) // the parser makes single bytes of \N and \_
-            errors_.add(
-                position(mark), {},
-                "expected a text in UTF-8, found an escape (\\N, \\_, \\0 or a control character) that makes none");
-        node.text = is_scene_text(value) ? value : "";
+        const bool is_text = is_utf8(value); // the parser makes single bytes of \N and \_
+        if (!is_text)
+            errors_.add(position(mark), {}, "expected a text in UTF-8, found an escape (\\N or \\_) that makes none");
+        node.text = is_text ? value : "";
         node.quoted = tag == "!";
         insert(std::move(node));
     }
