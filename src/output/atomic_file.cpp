@@ -21,9 +21,11 @@ namespace {
 
 fs::path directory_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
 
-void write_directly(const fs::path& path, std::string_view content) {
+using Write = std::function<void(const Put& put)>;
+
+void write_directly(const fs::path& path, const Write& write) {
     FileDescriptor file(path, O_WRONLY);
-    file.write(content);
+    write([&](std::string_view bytes) { file.write(bytes); });
     file.close();
 }
 
@@ -50,12 +52,12 @@ FileDescriptor own_part(const fs::path& part) {
     throw_system_error(part, "another process does not finish it", EBUSY);
 }
 
-void write_and_rename(const fs::path& path, std::string_view content) {
+void write_and_rename(const fs::path& path, const Write& write) {
     const fs::path part = partial_name(path);
     FileDescriptor file = own_part(part);
     try {
         file.empty();
-        file.write(content);
+        write([&](std::string_view bytes) { file.write(bytes); });
         file.sync();
         if (std::rename(part.c_str(), path.c_str()) != 0) throw_system_error(path, "cannot rename to it", errno);
     } catch (...) {
@@ -80,13 +82,17 @@ fs::path followed(const fs::path& path) {
 fs::path partial_name(const fs::path& path) { return path.string() + ".part"; }
 
 void write_file(const fs::path& path, std::string_view content) {
+    write_file(path, [&](const Put& put) { put(content); });
+}
+
+void write_file(const fs::path& path, const Write& write) {
     const fs::path target = followed(path);
     std::error_code error;
     const fs::file_status status = fs::status(target, error);
     if (fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status))
-        write_directly(target, content);
+        write_directly(target, write);
     else
-        write_and_rename(target, content);
+        write_and_rename(target, write);
 }
 
 std::string read_file(const fs::path& path) {

@@ -122,7 +122,8 @@ void FieldSeries::add(const BlockSystem& system, const FieldRecord& fields, cons
     const auto write = [&](const KeptFile& kind, const std::string& content) {
         write_file(directory_ / name_of(kind, record.step), content);
     };
-    write(contacts_file, contacts_csv(system, fields.contacts, names_.laws));
+    write_file(directory_ / name_of(contacts_file, record.step),
+               [&](const Put& put) { put_contacts_csv(system, fields.contacts, names_.laws, put); });
     write(supports_file, supports_csv(system, fields.supports));
     write(blocks_file, blocks_vtu(system, fields, names_.fields, record));
     write(interfaces_file, interfaces_vtu(system, fields, names_.fields, record));

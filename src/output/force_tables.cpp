@@ -56,21 +56,23 @@ std::string_view name_at(const std::vector<std::string>& names, int i) {
 
 } // namespace
 
-std::string contacts_csv(const BlockSystem& system, const std::vector<ContactForce>& contacts,
-                         const std::vector<std::string>& law_names) {
-    constexpr std::size_t bytes_per_row = 230;
+void put_contacts_csv(const BlockSystem& system, const std::vector<ContactForce>& contacts,
+                      const std::vector<std::string>& law_names, const Put& put) {
+    constexpr std::size_t part = 1'000'000; // bytes
     const std::vector<std::string> names = as_cells(law_names);
     std::string text =
         "block_a,block_b,x,y,length,normal_x,normal_y,normal_traction,shear_traction,state,law,x_b,y_b\n";
-    text.reserve(text.size() + bytes_per_row * contacts.size());
     for (const ContactForce& each : contacts) {
         const Vec2 a = system.origin + each.place_a;
         const Vec2 b = system.origin + each.place_b;
         fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{},{},{},{},{},{},{},{}\n", each.block_a, each.block_b,
                        a.x(), a.y(), each.length, each.normal.x(), each.normal.y(), 0.0 - each.normal_traction,
                        each.shear_traction, word_of(each.state), name_at(names, each.law), b.x(), b.y());
+        if (text.size() < part) continue;
+        put(text);
+        text.clear();
     }
-    return text;
+    put(text);
 }
 
 std::string supports_csv(const BlockSystem& system, const std::vector<SupportForce>& supports) {

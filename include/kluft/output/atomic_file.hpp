@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -13,6 +14,11 @@ namespace kluft {
 /// pipe) is written to directly.
 /// Throws ResourceError (file and the system's reason) and leaves the old file as it was.
 void write_file(const std::filesystem::path& path, std::string_view content);
+
+/// Takes the next bytes of a file.
+using Put = std::function<void(std::string_view bytes)>;
+/// The same for content that is not in memory as a whole: `write` is called once and puts it part by part.
+void write_file(const std::filesystem::path& path, const std::function<void(const Put& put)>& write);
 
 /// The bytes of a regular file of at most 8 GB. Throws InputError when it cannot be read.
 [[nodiscard]] std::string read_file(const std::filesystem::path& path);

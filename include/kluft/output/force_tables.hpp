@@ -6,6 +6,7 @@
 
 #include "kluft/blocks/block_system.hpp"
 #include "kluft/loading/acting_forces.hpp"
+#include "kluft/output/atomic_file.hpp"
 
 namespace kluft {
 
@@ -14,9 +15,9 @@ namespace kluft {
 /// point stands for (m), the normal from a to b, the tractions (Pa; normal positive in compression, shear positive where b
 /// has moved against a along the normal turned by +90 degrees), `bonded, sticking, sliding` or `open`, and the name of the
 /// interface. Force on a: length (-normal_traction normal + shear_traction tangent) at (x, y); on b the opposite at (x_b, y_b).
-/// `law_names`: one per law. Numbers are read back exactly. Memory: about 230 bytes a row.
-[[nodiscard]] std::string contacts_csv(const BlockSystem& system, const std::vector<ContactForce>& contacts,
-                                       const std::vector<std::string>& law_names);
+/// `law_names`: one per law. Numbers are read back exactly. Puts the table part by part: of a million blocks it has 1.2 GB.
+void put_contacts_csv(const BlockSystem& system, const std::vector<ContactForce>& contacts,
+                      const std::vector<std::string>& law_names, const Put& put);
 
 /// One row per force from outside the body, `block, boundary, fx, fy, x, y, kind`: force (N per metre of thickness), its current
 /// place (scene coordinates, m), and `weight, pressure, force, platen, support` or `fixed`; no boundary where it has none.
