@@ -153,7 +153,8 @@ void add_check_command(CLI::App& app, Command& command) {
     CLI::App* sub = app.add_subcommand("check", "Say what a scene amounts to, without running it");
     sub->add_option("scene", arguments->scene, "Scene file (YAML)")->required();
     sub->add_option("--set", arguments->overrides, "Replace a value of the scene")->take_all()->allow_extra_args(false);
-    sub->add_flag("--json", arguments->json, "For programs: one object of JSON");
+    sub->add_flag("--json", arguments->json,
+                  "For programs: one object of JSON, of a scene with mistakes with its problems");
     sub->footer(
         "Examples:\n  kluft check models/triaxial/case-3-all.yaml\n  kluft check models/outcrop-kb7.yaml --json");
     sub->callback([arguments, &command] { command = [arguments] { return kluft::check(*arguments); }; });

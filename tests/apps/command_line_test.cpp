@@ -440,6 +440,20 @@ TEST_F(CommandLine, CheckSaysTheSameToPrograms) {
     EXPECT_TRUE(json.at("warnings").empty()); // what a run of it would warn of: plane strain is a note
 }
 
+TEST_F(CommandLine, CheckTellsProgramsWhatIsWrongWhere) {
+    write("bad.yaml", std::regex_replace(tiny_scene, std::regex("density"), "desnity"));
+    const Result result = kluft({"check", "bad.yaml", "--json"});
+    EXPECT_EQ(result.code, 2);
+    const auto problems = nlohmann::json::parse(result.out).at("problems");
+    ASSERT_FALSE(problems.empty());
+    EXPECT_EQ(problems.at(0).at("line"), 4);
+    EXPECT_THAT(problems.at(0).at("path"), "materials.rock.desnity");
+    EXPECT_THAT(problems.at(0).at("message").get<std::string>(), HasSubstr("density"));
+    EXPECT_THAT(result.err, HasSubstr("desnity"));
+    const auto absent = nlohmann::json::parse(kluft({"check", "absent.yaml", "--json"}).out).at("problems");
+    EXPECT_EQ(absent.size(), 1U);
+}
+
 TEST_F(CommandLine, CheckAcceptsEveryTriaxialCase) {
     int n_cases = 0;
     for (const auto& entry : fs::directory_iterator(model("triaxial"))) {
