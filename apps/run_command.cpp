@@ -130,7 +130,9 @@ ExitCode simulate(const SceneModel& built, const Scene& scene, State& state, Run
     }
     const std::string closing = closing_line(report, summary, directory);
     log.info(closing);
-    if (scene.output.report && !memory_ran_out()) write_report(built, scene, writer, summary, log, directory);
+    const bool has_begun = report.status != RunStatus::out_of_resources || state.at.step > 0;
+    if (scene.output.report && has_begun && !memory_ran_out())
+        write_report(built, scene, writer, summary, log, directory);
     if (!quiet) say("{}\n", closing);
     if (const std::string lost = lost_output(); !lost.empty()) {
         log.error(lost);

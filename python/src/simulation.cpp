@@ -346,7 +346,8 @@ private:
             output_->writer->finish(outcome, state_, [&] { return fields_of_state(model(), state_); });
         closing_ = closing_line(report_, summary, output_->directory);
         output_->log->info(closing_);
-        if (scene_.output.report) write_run_page(output_->directory, scene_, model(), built_.cut);
+        const bool has_begun = report_.status != RunStatus::out_of_resources || state_.at.step > 0;
+        if (scene_.output.report && has_begun) write_run_page(output_->directory, scene_, model(), built_.cut);
         output_->writer.reset();
         output_->lock.reset();
     }
