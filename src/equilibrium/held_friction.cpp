@@ -1,7 +1,6 @@
 #include "kluft/equilibrium/held_friction.hpp"
 
 #include <cmath>
-#include <utility>
 
 namespace kluft {
 
@@ -30,27 +29,27 @@ double renew_limits(const std::vector<InterfaceLaw>& laws, const Eigen::VectorXd
 
 } // namespace
 
-int approach_with_held_friction(OpenCloseSolver& solver, const EquilibriumProblem& problem, const BlockPattern& pattern,
-                                bool unloaded, Eigen::VectorXd& q) {
+HeldFrictionApproach approach_with_held_friction(OpenCloseSolver& solver, const EquilibriumProblem& problem,
+                                                 const BlockPattern& pattern, Eigen::VectorXd& q) {
     Placement placement = *problem.body.placement;
     EquilibriumProblem held = problem;
     held.body.placement = &placement;
-    for (ContactPoint& point : placement.contacts)
-        point.held_limit = unloaded ? no_slip : coulomb_limit(*problem.body.laws, point, q);
-    int n_solves = 0;
+    for (ContactPoint& point : placement.contacts) point.held_limit = no_slip;
+    HeldFrictionApproach approach;
     double change = 1.0;
     Eigen::VectorXd next = q;
     for (int round = 0; round < max_rounds && change > settled; ++round) {
         const OpenCloseSummary found = solver.solve(held, pattern, next,
-                                                    {.unloaded = unloaded && round == 0,
+                                                    {.unloaded = round == 0,
                                                      .given_loads = true,
                                                      .tolerance_share = change > far ? far_tolerance : near_tolerance});
-        n_solves += found.iterations;
+        approach.n_solves += found.iterations;
         if (!found.converged()) break;
         q = next;
+        approach.is_moved = true;
         change = renew_limits(*problem.body.laws, q, placement);
     }
-    return n_solves;
+    return approach;
 }
 
 } // namespace kluft

@@ -141,14 +141,13 @@ Equilibrium EquilibriumSearch::find_held(EquilibriumProblem problem, Eigen::Vect
     found.displacement = std::move(guess);
     const bool from_rest = circumstances.unloaded && circumstances.given_loads && has_friction(problem.body) &&
                            problem.body.kinematics == Kinematics::affine;
-    if (from_rest)
-        found.iterations = approach_with_held_friction(open_close_, problem, pattern_, true, found.displacement);
-    const bool approached = found.displacement != problem.start;
+    HeldFrictionApproach approach;
+    if (from_rest) approach = approach_with_held_friction(open_close_, problem, pattern_, found.displacement);
     found.summary = open_close_.solve(problem, pattern_, found.displacement,
-                                      {.unloaded = circumstances.unloaded && !approached,
+                                      {.unloaded = circumstances.unloaded && !approach.is_moved,
                                        .given_loads = circumstances.given_loads,
                                        .block_tolerance = share_of_solve * balance.share});
-    found.iterations += found.summary.iterations;
+    found.iterations = approach.n_solves + found.summary.iterations;
     found.worst_block = found.summary.worst_block;
     if (found.converged()) settle(problem, balance, found);
     return found;

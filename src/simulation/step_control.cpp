@@ -47,10 +47,9 @@ std::vector<double> slip_indices(const Model& model, const LoadedBody& body, con
         if (fracture < 0) continue;
         if (fracture >= static_cast<int>(indices.size())) indices.resize(static_cast<std::size_t>(fracture) + 1, 0.0);
         const InterfaceLaw& law = (*body.laws)[point.law];
-        const auto [gap, slip] = gap_and_slip(point, q);
-        const double limit = shear_limit(law, gap - point.history.dilation, piece_at(law, point, q)).value;
+        const double limit = coulomb_limit(*body.laws, point, q);
         if (limit <= 0.0) continue;
-        const double trial = point.history.shear_trial + law.shear_stiffness * slip;
+        const double trial = point.history.shear_trial + law.shear_stiffness * gap_and_slip(point, q).slip;
         indices[fracture] = std::max(indices[fracture], std::abs(trial) / limit);
     }
     return indices;

@@ -7,11 +7,15 @@
 
 namespace kluft {
 
-/// Solves the problem with the shear traction of each contact point limited by a constant, and again with the limits of what was
-/// found, until they stay: then q is as good as an equilibrium, from which `solver.solve` finds it. `unloaded`: contacts carry no
-/// force yet, and the first limits are those of points that do not slide at all; else they are those at q. Where a solution is not
-/// found q stays as it was. Returns the linear solves.
-int approach_with_held_friction(OpenCloseSolver& solver, const EquilibriumProblem& problem, const BlockPattern& pattern,
-                                bool unloaded, Eigen::VectorXd& q);
+struct HeldFrictionApproach {
+    int n_solves = 0;      ///< linear
+    bool is_moved = false; ///< q is one of the solutions; else it stayed as it was
+};
+
+/// Of a body whose contacts carry no force yet: solves the problem with no point sliding, then with the shear traction of each point
+/// limited by what Coulomb's limit is in the solution before, until these limits stay. From the last solution, q,
+/// `solver.solve` finds the equilibrium. Where one is not found q is the last that was.
+HeldFrictionApproach approach_with_held_friction(OpenCloseSolver& solver, const EquilibriumProblem& problem,
+                                                 const BlockPattern& pattern, Eigen::VectorXd& q);
 
 } // namespace kluft
