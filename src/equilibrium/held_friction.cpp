@@ -7,10 +7,9 @@ namespace kluft {
 namespace {
 
 constexpr int max_rounds = 20;
-constexpr double settled = 1e-6;       ///< change of the limits over their sum: the next solve finds nothing to do
+constexpr double settled = 1e-5;       ///< change of the limits over their sum: the next solve finds little to do
 constexpr double far = 1e-2;           ///< the same: the limits will change by more than what a solve leaves
 constexpr double far_tolerance = 10.0; ///< of the tolerance, as long as they do
-constexpr double near_tolerance = 0.1; ///< of the tolerance, then
 constexpr double no_slip = 1e200;      ///< Pa
 
 /// Takes the limits at q. By how much they have changed, over their sum, with the lengths that the points stand for.
@@ -39,13 +38,13 @@ HeldFrictionApproach approach_with_held_friction(OpenCloseSolver& solver, const 
     double change = 1.0;
     Eigen::VectorXd next = q;
     for (int round = 0; round < max_rounds && change > settled; ++round) {
-        const OpenCloseSummary found = solver.solve(held, pattern, next,
-                                                    {.unloaded = round == 0,
-                                                     .given_loads = true,
-                                                     .tolerance_share = change > far ? far_tolerance : near_tolerance});
+        const OpenCloseSummary found = solver.solve(
+            held, pattern, next,
+            {.unloaded = round == 0, .given_loads = true, .tolerance_share = change > far ? far_tolerance : 1.0});
         approach.n_solves += found.iterations;
         if (!found.converged()) break;
         q = next;
+        held.start = q; // the mass-like term does not pull back to where the body stood without loads
         approach.is_moved = true;
         change = renew_limits(*problem.body.laws, q, placement);
     }

@@ -143,6 +143,7 @@ Equilibrium EquilibriumSearch::find_held(EquilibriumProblem problem, Eigen::Vect
                            problem.body.kinematics == Kinematics::affine;
     HeldFrictionApproach approach;
     if (from_rest) approach = approach_with_held_friction(open_close_, problem, pattern_, found.displacement);
+    if (approach.is_moved) problem.start = found.displacement;
     found.summary = open_close_.solve(problem, pattern_, found.displacement,
                                       {.unloaded = circumstances.unloaded && !approach.is_moved,
                                        .given_loads = circumstances.given_loads,

@@ -9,8 +9,8 @@ namespace kluft {
 /// pieces. Does nothing where the C library has no call for it.
 void return_freed_memory();
 
-/// From now on pieces of a megabyte and more go back as soon as they are freed. The GNU allocator would otherwise raise
-/// that limit to the largest piece freed so far, and keep up to twice as much. Does nothing elsewhere.
+/// From now on pieces of a megabyte and more go back as soon as they are freed, and smaller ones once sixteen megabytes lie free at the
+/// end of the heap. The GNU allocator would otherwise raise those limits with the largest piece freed so far. Does nothing elsewhere.
 void return_large_pieces();
 
 /// Asks for huge pages in a large piece of memory that is not in use yet. Does nothing for a small one and where the

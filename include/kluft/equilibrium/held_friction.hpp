@@ -13,8 +13,8 @@ struct HeldFrictionApproach {
 };
 
 /// Of a body whose contacts carry no force yet: solves the problem with no point sliding, then with the shear traction of each point
-/// limited by what Coulomb's limit is in the solution before, until these limits stay. From the last solution, q,
-/// `solver.solve` finds the equilibrium. Where one is not found q is the last that was.
+/// limited by what Coulomb's limit is in the solution before, until these limits stay, the mass-like term each time from the solution before. From the last
+/// solution, q, `solver.solve` finds the equilibrium. Where one is not found q is the last that was.
 HeldFrictionApproach approach_with_held_friction(OpenCloseSolver& solver, const EquilibriumProblem& problem,
                                                  const BlockPattern& pattern, Eigen::VectorXd& q);
 
