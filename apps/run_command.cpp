@@ -160,11 +160,7 @@ ExitCode run(const RunArguments& arguments) {
     const SceneModel built = build_scene_model(scene);
     const Model& model = built.model;
     const int unknowns = unknowns_per_block(model.kinematics) * model.system.n_blocks();
-    if (needs_one_blas_thread(scene, model)) {
-        set_blas_threads(1);
-    } else if (arguments.threads > 0) {
-        set_blas_threads(arguments.threads);
-    }
+    if (arguments.threads > 0) set_blas_threads(arguments.threads);
 
     RunWriterOptions options = run_writer_options(scene, model);
     std::optional<DirectoryLock> lock;

@@ -316,8 +316,7 @@ private:
 
     void start_computing() {
         computing.lock();
-        const int own = threads_ > 0 ? threads_ : threads_of_process();
-        set_blas_threads(needs_one_blas_thread(scene_, model()) ? 1 : own);
+        set_blas_threads(threads_ > 0 ? threads_ : threads_of_process());
     }
 
     /// Waits until Python wants the next load step.

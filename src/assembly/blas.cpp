@@ -60,7 +60,7 @@ bool has_room_for_work_spaces(int n) {
 constexpr int max_own_threads = 32;
 std::mutex own_threads_mutex;
 int n_own_threads = 0; ///< how many exist
-int threads_before = 1;
+int threads_before = 1; ///< of the BLAS, before the first of them
 
 /// The place of an entry of an n x n matrix that is stored by columns.
 std::size_t place(int n, int row, int column) {
@@ -182,9 +182,16 @@ OwnThreads::~OwnThreads() {
     if (--n_own_threads == 0) openblas_set_num_threads(threads_before);
 }
 
-void set_blas_threads(int n_threads) { openblas_set_num_threads(n_threads); }
+void set_blas_threads(int n_threads) {
+    const std::lock_guard lock(own_threads_mutex);
+    threads_before = n_threads;
+    if (n_own_threads == 0) openblas_set_num_threads(n_threads);
+}
 
-int blas_threads() { return openblas_get_num_threads(); }
+int blas_threads() {
+    const std::lock_guard lock(own_threads_mutex);
+    return n_own_threads == 0 ? openblas_get_num_threads() : threads_before;
+}
 
 std::string blas_core() { return openblas_get_corename(); }
 

@@ -871,7 +871,7 @@ std::vector<KeyRule> option_rules() {
          .type = KeyType::boolean,
          .fallback = "false",
          .doc = "Bit-identical runs for any number of threads, also where a run is resumed (but not in the midst of a "
-                "strength reduction): one BLAS thread, and a new factor in each load step."},
+                "strength reduction): a new factor in each load step."},
         {.path = "output", .type = KeyType::mapping, .doc = "What a run writes beside its tables."},
         {.path = "output.fields",
          .type = KeyType::boolean,

@@ -104,7 +104,7 @@ State initial_state(const Model& model) {
 
 RunReport run_simulation(const Model& model, const CrackOptions& cracks, const SolverOptions& solver, State& state,
                          StepObserver& observer, const std::atomic<bool>& stop) {
-    if (solver.repeatable) set_blas_threads(1);
+    const OwnThreads of_run(1); // those of the BLAS would wait for work in a loop, and take as much time as the run
     EquilibriumSearch search(model, solver);
     Journal journal(model, state, observer, solver.accuracy > 0.0 ? 0 : number_of_steps(model), &search);
     RunReport report = report_of(journal, [&] {

@@ -23,8 +23,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int unknowns_worth_threads = 20000;
-
 std::string peak_in_words(const CurveNumbers& numbers) {
     if (numbers.net_locked)
         return " before the net locked (its loose cells carry more without a bond: no strength of the rock)";
@@ -41,11 +39,6 @@ std::string difference_from_state(const fs::path& state, const Scene& scene) {
 }
 
 } // namespace
-
-bool needs_one_blas_thread(const Scene& scene, const Model& model) {
-    const int unknowns = unknowns_per_block(model.kinematics) * model.system.n_blocks();
-    return scene.solver.repeatable || unknowns < unknowns_worth_threads;
-}
 
 RunWriterOptions run_writer_options(const Scene& scene, const Model& model) {
     RunWriterOptions options;

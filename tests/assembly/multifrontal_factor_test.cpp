@@ -200,6 +200,22 @@ TEST(MultifrontalFactor, HasTheSameBitsForAnyNumberOfThreads) {
     set_blas_threads(before);
 }
 
+// A run keeps the BLAS to the calling thread, and a factorization in it still has the threads that were asked for.
+TEST(OwnThreads, LeaveTheNumberOfThreadsAskedFor) {
+    const int before = blas_threads();
+    set_blas_threads(3);
+    {
+        const OwnThreads of_run(1);
+        EXPECT_EQ(blas_threads(), 3);
+        set_blas_threads(2);
+        EXPECT_EQ(blas_threads(), 2);
+        const OwnThreads of_factorization(blas_threads());
+        EXPECT_EQ(of_factorization.number(), 2);
+    }
+    EXPECT_EQ(blas_threads(), 2);
+    set_blas_threads(before);
+}
+
 /// Of more than 20 000 unknowns.
 class LargeBody : public ::testing::Test {
 protected:

@@ -39,7 +39,7 @@ private:
     int number_ = 1;
 };
 
-/// Number of threads of the BLAS (OpenBLAS) for the whole process.
+/// Number of threads for the whole process: of a large factorization, and of the BLAS (OpenBLAS) where there are no OwnThreads.
 void set_blas_threads(int n_threads);
 [[nodiscard]] int blas_threads();
 

@@ -41,7 +41,7 @@ struct SolverOptions {
     int max_step_solves = 20000;   ///< linear solves of one load step; more end the run
     Tangent tangent = Tangent::unsymmetric;
     bool reuse = true;       ///< of the factor; false: a factorization in each linear solve
-    bool repeatable = false; ///< one BLAS thread and a new factor in each load step: runs are bit-identical for any
+    bool repeatable = false; ///< a new factor in each load step: runs are bit-identical for any
                              ///< thread count, and across a resume
 };
 

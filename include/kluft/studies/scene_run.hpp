@@ -15,9 +15,6 @@
 
 namespace kluft {
 
-/// Whether the BLAS is to have one thread: more make small bodies slower (measured), and one repeats to the bit.
-[[nodiscard]] bool needs_one_blas_thread(const Scene& scene, const Model& model);
-
 /// What the scene says of the files that its run writes.
 [[nodiscard]] RunWriterOptions run_writer_options(const Scene& scene, const Model& model);
 
