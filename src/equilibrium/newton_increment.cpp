@@ -33,12 +33,13 @@ void add_damping(const EquilibriumProblem& problem, double damping, BlockMatrix&
 }
 
 /// The second bound of (31): far from equilibrium a linear solve need not be exact, near it it leaves less than what
-/// the iteration tolerates. `right_side`: its norm (N/m).
-double linear_residual(double right_side, double tolerance, double force_scale) {
-    const bool is_far = right_side > far_from_equilibrium * force_scale;
-    const double share = is_far ? far_linear_residual : usual_linear_residual;
-    return std::min(largest_linear_residual * right_side,
-                    std::max(share * right_side, linear_share * tolerance * force_scale));
+/// the iteration tolerates, and where no contact can change its state it does so at once. `right_side`: its norm (N/m).
+double linear_residual(const NewtonPoint& at, double right_side) {
+    const double tolerated = linear_share * at.tolerance * at.residual.force_scale;
+    const bool is_far = right_side > far_from_equilibrium * at.residual.force_scale;
+    const bool is_bonded = at.evaluator.problem().body.placement->contacts.empty();
+    const double share = is_bonded ? 0.0 : (is_far ? far_linear_residual : usual_linear_residual);
+    return std::min(largest_linear_residual * right_side, std::max(share * right_side, tolerated));
 }
 
 } // namespace
@@ -93,8 +94,7 @@ bool NewtonIncrement::solve_with_reuse(const NewtonPoint& at, TangentKind kind) 
 }
 
 bool NewtonIncrement::solve_refined(const NewtonPoint& at) {
-    const double residual =
-        std::min(at.largest_residual, linear_residual(right_side_.norm(), at.tolerance, at.residual.force_scale));
+    const double residual = std::min(at.largest_residual, linear_residual(at, right_side_.norm()));
     const SolveReport report = factor_.solve(matrix_, right_side_, residual, increment_);
     factor_.count(report.refinements);
     if (!report.accepted || !at.border.exists()) return report.accepted;

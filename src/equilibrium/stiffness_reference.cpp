@@ -13,6 +13,7 @@ namespace {
 
 constexpr double least_change = 0.02;     ///< of the largest stiffness of the patch
 constexpr double least_mass_change = 0.2; ///< of the block's stiffness
+constexpr double same_projector = 0.1;    ///< a platen turns with the body that it is laid on
 
 /// A row over the unknowns of a block, in the free motions; that of a rigid block in the first three places.
 void make_free(const EquilibriumProblem& problem, const Eigen::VectorXd& q, int block, Vec6& row) {
@@ -53,6 +54,14 @@ Mat6 mass_on_unknowns(const EquilibriumProblem& problem, const Eigen::VectorXd& 
         mass.topLeftCorner<n_rigid_unknowns, n_rigid_unknowns>() = (motion.transpose() * mass * motion).eval();
     }
     return mass;
+}
+
+std::vector<std::pair<int, Mat6>> held_blocks(const EquilibriumProblem& problem) {
+    std::vector<std::pair<int, Mat6>> held;
+    for (const ConstrainedBlock& each : problem.body.loads->constraints.blocks())
+        held.emplace_back(each.block, each.projector);
+    std::ranges::sort(held, {}, [](const auto& each) { return each.first; });
+    return held;
 }
 
 } // namespace
@@ -107,6 +116,22 @@ void StiffnessReference::take(const EquilibriumProblem& problem, const Eigen::Ve
     bonded_.clear();
     for (const Bond& bond : problem.body.placement->bonds) bonded_.push_back(bond.interface);
     numbers_.clear();
+    held_ = held_blocks(problem);
+}
+
+int StiffnessReference::n_held_otherwise(const EquilibriumProblem& problem) const {
+    const auto held = held_blocks(problem);
+    int n = 0;
+    auto before = held_.begin();
+    auto now = held.begin();
+    while (before != held_.end() || now != held.end()) {
+        const bool is_new = before == held_.end() || (now != held.end() && now->first < before->first);
+        const bool is_gone = now == held.end() || (before != held_.end() && before->first < now->first);
+        if (is_new || is_gone || (before->second - now->second).norm() > same_projector) ++n;
+        if (!is_new) ++before;
+        if (!is_gone) ++now;
+    }
+    return n;
 }
 
 /// A broken bond was a patch of the reference, along its whole edge.

@@ -191,5 +191,28 @@ stages: [{{strain: {{boundary: top, value: 0.4 %}}, steps: 1}}]
     }
 }
 
+// The second stage holds other blocks than the first. With the factor of the first each of them takes a vector or two of every solution:
+// some forty here. Nothing can change its state, so that a solve is as exact as the iteration asks for, and two do in each step.
+TEST(TriangleNetRun, ElasticStepsTakeFewVectorsAfterAChangeOfStage) {
+    const auto run = run_scene(R"(
+kluft: 1
+materials: {rock: {density: 2500, youngs_modulus: 10 GPa, poissons_ratio: 0.2, cohesion: 800 MPa, friction_angle: 40,
+           tensile_strength: 250 MPa}}
+interfaces:
+  bond: {kind: potential_crack, fails_to: crack}
+  crack: {kind: fracture, friction_angle: 30}
+geometry:
+  domain: {rectangle: {width: 1, height: 2}}
+  tessellation: {triangles: {spacing: 0.05}, interface: bond}
+boundaries: {bottom: {support: smooth}}
+stages:
+  - {pressure: {left: 1 MPa, right: 1 MPa, top: 1 MPa}, steps: 1}
+  - {strain: {boundary: top, value: 0.03 %}, steps: 3}
+)");
+    ASSERT_TRUE(stands(run)) << run.report.diagnosis;
+    EXPECT_LE(run.report.costs.open_close_iterations, 8);
+    EXPECT_LE(run.report.costs.refinements, 15);
+}
+
 } // namespace
 } // namespace kluft

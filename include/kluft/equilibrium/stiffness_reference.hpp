@@ -4,6 +4,7 @@
 
 #include <array>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -28,6 +29,9 @@ public:
     /// elastic tangent and of sliding along a contact are for the refinement.
     const std::vector<StiffnessChange>& changes(const EquilibriumProblem& problem, const Eigen::VectorXd& q);
 
+    /// How many blocks prescribed displacements hold in another way than in the factor: no change of low rank that is put on top of it.
+    [[nodiscard]] int n_held_otherwise(const EquilibriumProblem& problem) const;
+
 private:
     using Key = std::array<int, 5>; ///< block_a, edge_a, block_b, edge_b, 1 for a vertex on an edge
     struct Patch {
@@ -49,8 +53,10 @@ private:
     std::vector<Patch> reference_; ///< sorted by key
     std::vector<int> bonded_;      ///< interfaces that were bonds, ascending
     std::vector<double> eta_;      ///< per block, or empty
-    Eigen::VectorXd diagonal_;     ///< of the tangent
-    std::map<Key, long> numbers_;  ///< of patches that have changed
+    std::vector<std::pair<int, Mat6>>
+        held_;                    ///< blocks with prescribed displacements, ascending, and what these leave free
+    Eigen::VectorXd diagonal_;    ///< of the tangent
+    std::map<Key, long> numbers_; ///< of patches that have changed
     std::vector<Patch> now_;
     std::vector<StiffnessChange> changes_;
 };
