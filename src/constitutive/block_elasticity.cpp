@@ -1,7 +1,6 @@
 #include "kluft/constitutive/block_elasticity.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include <Eigen/LU>
 
@@ -17,7 +16,7 @@ struct Polar {
 Polar polar(const Mat2& f) {
     const double x = f(0, 0) + f(1, 1);
     const double y = f(1, 0) - f(0, 1);
-    const double trace = std::hypot(x, y);
+    const double trace = Vec2(x, y).norm();
     Polar result{Mat2::Identity(), trace};
     if (trace > 0.0) result.rotation << x / trace, -y / trace, y / trace, x / trace;
     return result;
@@ -33,7 +32,7 @@ Mat2 first_piola_stress(const Mat2& f, const ElasticModuli& moduli) {
 Mat2 stress_of_gradient(const Mat2& h, const ElasticModuli& moduli) {
     const double a = h.trace();
     const double y = h(1, 0) - h(0, 1);
-    const double trace = std::hypot(2.0 + a, y);
+    const double trace = Vec2(2.0 + a, y).norm();
     const double excess = (a * (4.0 + a) + y * y) / (trace + 2.0); // tr S - 2
     Mat2 rotation;
     rotation << (2.0 + a) / trace, -y / trace, y / trace, (2.0 + a) / trace;

@@ -22,8 +22,18 @@ EquilibriumEvaluator::EquilibriumEvaluator(const EquilibriumProblem& problem, co
     area_ = area_of(*problem.body.system);
 }
 
-Mat6 mass_matrix(const Block& block, double least_area) {
-    return area_matrix(block, std::clamp(least_area / block.area, 1.0, largest_mass_growth));
+namespace {
+
+double mass_growth(const Block& block, double least_area) {
+    return std::clamp(least_area / block.area, 1.0, largest_mass_growth);
+}
+
+} // namespace
+
+Mat6 mass_matrix(const Block& block, double least_area) { return area_matrix(block, mass_growth(block, least_area)); }
+
+Vec6 mass_product(const Block& block, double least_area, const Vec6& of) {
+    return area_product(block, mass_growth(block, least_area), of);
 }
 
 Mat2 symmetric_tangent(const PointTraction& traction) {
@@ -66,7 +76,7 @@ void EquilibriumEvaluator::add_mass_forces(const Eigen::VectorXd& q, Eigen::Vect
         const Vec6 moved = q.segment<n_block_unknowns>(n_block_unknowns * b) -
                            problem_.start.segment<n_block_unknowns>(n_block_unknowns * b);
         forces.segment<n_block_unknowns>(n_block_unknowns * b) +=
-            problem_.eta[b] * (mass_matrix(system.blocks[b], problem_.least_mass_area) * moved);
+            problem_.eta[b] * mass_product(system.blocks[b], problem_.least_mass_area, moved);
     }
 }
 
@@ -78,7 +88,7 @@ ViscousForce viscous_force(const EquilibriumProblem& problem, const Eigen::Vecto
         const Vec6 moved = q.segment<n_block_unknowns>(n_block_unknowns * b) -
                            problem.start.segment<n_block_unknowns>(n_block_unknowns * b);
         const Block& block = problem.body.system->blocks[b];
-        const Vec6 force = problem.eta[b] * (mass_matrix(block, problem.least_mass_area) * moved);
+        const Vec6 force = problem.eta[b] * mass_product(block, problem.least_mass_area, moved);
         const double squared = problem.body.kinematics == Kinematics::rigid
                                    ? (rigid_motion(q, b, block.size).transpose() * force).squaredNorm()
                                    : force.squaredNorm();

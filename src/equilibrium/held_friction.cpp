@@ -7,7 +7,7 @@ namespace kluft {
 namespace {
 
 constexpr int max_rounds = 20;
-constexpr double settled = 1e-5;       ///< change of the limits over their sum: the next solve finds little to do
+constexpr double settled = 1e-7;       ///< change of the limits over their sum: the next solve finds little to do
 constexpr double far = 1e-2;           ///< the same: the limits will change by more than what a solve leaves
 constexpr double far_tolerance = 10.0; ///< of the tolerance, as long as they do
 constexpr double no_slip = 1e200;      ///< Pa

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <span>
 #include <utility>
 
@@ -38,7 +37,7 @@ std::vector<Meeting> meetings_of(const LoadedBody& body, const Eigen::VectorXd& 
     std::vector<Meeting> meetings;
     meetings.reserve(n_bond_points * placement.bonds.size() + placement.contacts.size());
     const auto add = [&](int a, int b, double weight, int law, const PointTraction& traction, bool holds) {
-        meetings.push_back({a, b, weight * std::hypot(traction.normal, traction.shear),
+        meetings.push_back({a, b, weight * Vec2(traction.normal, traction.shear).norm(),
                             weight * (*body.laws)[law].normal_stiffness, holds});
     };
     for (int i = 0; i < static_cast<int>(placement.bonds.size()); ++i) {
@@ -124,20 +123,43 @@ Share share_of(const Part& now, const Part* before, const BlockGoal& goal) {
     return result;
 }
 
+/// Two blocks that meet, and the sum of the magnitudes of what acts between them (N/m).
+struct Neighbours {
+    int block_a = 0;
+    int block_b = 0;
+    double force = 0.0;
+};
+
+/// Each pair once, in ascending order.
+std::vector<Neighbours> neighbours_of(const std::vector<Meeting>& meetings) {
+    std::vector<Neighbours> all;
+    const auto same_blocks = [](const Neighbours& p, const Neighbours& q) {
+        return p.block_a == q.block_a && p.block_b == q.block_b;
+    };
+    const auto append = [&](const Neighbours& next) {
+        if (all.empty() || !same_blocks(all.back(), next)) all.push_back({next.block_a, next.block_b, 0.0});
+        all.back().force += next.force;
+    };
+    for (const Meeting& at : meetings)
+        append({std::min(at.block_a, at.block_b), std::max(at.block_a, at.block_b), at.force});
+    std::ranges::stable_sort(all, {}, [](const Neighbours& p) { return std::pair(p.block_a, p.block_b); });
+    const std::vector<Neighbours> sorted = std::exchange(all, {});
+    for (const Neighbours& next : sorted) append(next);
+    return all;
+}
+
 /// What is left over on a loaded block disturbs the blocks that it presses on: where its load is much more than what acts
 /// between them, and than what acts on the other one, that is what counts. The weight of a large block, which its support
 /// carries, hides nothing so (27a).
-void keep_below_neighbours(const std::vector<Meeting>& meetings, OwnForces& forces) {
-    std::map<std::pair<int, int>, double> between;
-    for (const Meeting& at : meetings) between[{at.block_a, at.block_b}] += at.force;
+void keep_below_neighbours(const std::vector<Neighbours>& neighbours, OwnForces& forces) {
     const std::vector<double> own = forces.own;
     const auto lower = [&](int block, int other, double force) {
         if (forces.loaded[block] && force > 0.0)
             forces.own[block] = std::min(forces.own[block], much_more * std::max(own[other], force));
     };
-    for (const auto& [pair, force] : between) {
-        lower(pair.first, pair.second, force);
-        lower(pair.second, pair.first, force);
+    for (const auto& [a, b, force] : neighbours) {
+        lower(a, b, force);
+        lower(b, a, force);
     }
 }
 
@@ -154,7 +176,6 @@ OwnForces own_forces(const LoadedBody& body, const Eigen::VectorXd& q, const std
     OwnForces result{driving_loads(body, q), {}, std::vector<double>(n, 0.0), std::vector<char>(n, 0)};
     const std::vector<double> magnitudes = load_magnitudes(body, q);
     std::vector<double> of_contacts(n, 0.0);
-    std::vector<std::pair<int, int>> pairs;
     const auto roundoff_of = [](double stiffness, double moved) {
         return 64.0 * std::numeric_limits<double>::epsilon() * stiffness * moved;
     };
@@ -167,8 +188,6 @@ OwnForces own_forces(const LoadedBody& body, const Eigen::VectorXd& q, const std
             of_contacts[b] += at.force;
             result.roundoff[b] = std::max(result.roundoff[b], roundoff);
         }
-        if (pairs.empty() || pairs.back() != std::pair(at.block_a, at.block_b))
-            pairs.emplace_back(at.block_a, at.block_b);
     }
     for (std::size_t b = 0; b < n; ++b) {
         const ElasticModuli& moduli = (*body.moduli)[body.system->blocks[b].material];
@@ -179,7 +198,8 @@ OwnForces own_forces(const LoadedBody& body, const Eigen::VectorXd& q, const std
         result.own[b] = of_contacts[b];
         if (of_contacts[b] == 0.0) result.own[b] = magnitudes[b];
     }
-    keep_below_neighbours(meetings, result);
+    const std::vector<Neighbours> neighbours = neighbours_of(meetings);
+    keep_below_neighbours(neighbours, result);
     const double largest = n > 0 ? *std::max_element(of_contacts.begin(), of_contacts.end()) : 0.0;
     if (largest <= negligible_force(body.carried_stress, area_of(*body.system))) raise_to_negligible(body, result);
     result.around = result.own;
@@ -188,7 +208,7 @@ OwnForces own_forces(const LoadedBody& body, const Eigen::VectorXd& q, const std
         if (!result.loaded[block] && !body.system->blocks[other].fixed)
             result.around[block] = std::max(result.around[block], result.own[other]);
     };
-    for (const auto& [a, b] : pairs) {
+    for (const auto& [a, b, force] : neighbours) {
         take(a, b);
         take(b, a);
     }

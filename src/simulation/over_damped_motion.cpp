@@ -170,7 +170,7 @@ Eigen::VectorXd driving_forces(const BlockSystem& system, const Eigen::VectorXd&
     Eigen::VectorXd forces(velocity.size());
     for (int b = 0; b < system.n_blocks(); ++b) {
         const auto rows = Eigen::seqN(n_block_unknowns * b, n_block_unknowns);
-        forces(rows) = mass_matrix(system.blocks[b], 0.0) * velocity(rows);
+        forces(rows) = mass_product(system.blocks[b], 0.0, velocity(rows));
     }
     return forces;
 }

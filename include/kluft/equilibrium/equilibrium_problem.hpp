@@ -68,6 +68,9 @@ private:
 /// more than 20 times its own.
 [[nodiscard]] Mat6 mass_matrix(const Block& block, double least_area);
 
+/// M times six numbers of the block.
+[[nodiscard]] Vec6 mass_product(const Block& block, double least_area, const Vec6& of);
+
 /// The size of eta M (q - q_start) (N/m).
 struct ViscousForce {
     double norm = 0.0; ///< of all unknowns

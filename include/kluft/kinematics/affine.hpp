@@ -67,6 +67,16 @@ inline void add_force(Eigen::VectorXd& forces, int b, const Vec2& xi, const Vec2
     return m;
 }
 
+/// The product of area_matrix with six numbers of the block.
+[[nodiscard]] inline Vec6 area_product(const Block& block, double factor, const Vec6& of) {
+    const Mat2 second = factor * block.second_moment / (block.size * block.size);
+    Vec6 product;
+    product.head<2>() = factor * block.area * of.head<2>();
+    product.segment<2>(2) = second(0, 0) * of.segment<2>(2) + second(0, 1) * of.segment<2>(4);
+    product.segment<2>(4) = second(1, 0) * of.segment<2>(2) + second(1, 1) * of.segment<2>(4);
+    return product;
+}
+
 /// The largest change of a block's unknowns over its motion_scale. `motion`: of all of them, six or three per block (m).
 [[nodiscard]] double relative_motion(const BlockSystem& system, const Eigen::VectorXd& motion);
 
