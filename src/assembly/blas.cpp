@@ -59,7 +59,7 @@ bool has_room_for_work_spaces(int n) {
 
 constexpr int max_own_threads = 32;
 std::mutex own_threads_mutex;
-int n_own_threads = 0; ///< how many exist
+int n_own_threads = 0;  ///< how many exist
 int threads_before = 1; ///< of the BLAS, before the first of them
 
 /// The place of an entry of an n x n matrix that is stored by columns.

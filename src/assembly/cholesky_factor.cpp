@@ -18,7 +18,7 @@ namespace {
 constexpr double large_factor = 8e6;
 
 /// Unknowns from which on a body has a multifrontal factor, where single precision is enough.
-constexpr std::int64_t multifrontal_unknowns = 20'000;
+constexpr std::int64_t multifrontal_unknowns = 6'000;
 
 /// Least share of a diagonal entry that elimination may leave for the factor to be rounded: rounding to 6e-8 of the
 /// diagonal then stays far below it.
@@ -286,7 +286,8 @@ const double* CholeskyFactor::values(const Supernode& supernode, std::vector<dou
 }
 
 bool CholeskyFactor::is_large() const {
-    return multifrontal_ || sizeof(double) * static_cast<double>(cholmod_->factor->xsize) >= large_factor;
+    if (multifrontal_) return multifrontal_->bytes() >= large_factor;
+    return sizeof(double) * static_cast<double>(cholmod_->factor->xsize) >= large_factor;
 }
 
 FactorCost CholeskyFactor::cost(Precision precision) {

@@ -29,7 +29,8 @@ constexpr double pivot_noise = 64.0 * 6e-8;
 constexpr double least_pivot_share = 1e-5; ///< the same where little has been eliminated
 constexpr int max_raised = 6;              ///< two bodies that are free to move
 
-constexpr int assembled_columns = 384; ///< of a front, that are added to its parent together
+constexpr std::size_t unknowns_worth_threads = 20'000; ///< for less starting them takes longer
+constexpr int assembled_columns = 384;                 ///< of a front, that are added to its parent together
 
 using Room = std::unique_ptr<float[]>; // NOLINT(modernize-avoid-c-arrays)
 
@@ -332,7 +333,8 @@ bool MultifrontalFactor::factorize(const BlockMatrix& matrix) {
         const auto n = static_cast<std::size_t>(supernodes_.value_starts.back());
         if (!values_) values_ = room_for(n + rounded_padding);
         std::fill_n(values_.get() + n, rounded_padding, 0.0F);
-        const OwnThreads threads(blas_threads());
+        const bool is_small = supernodes_.nu * position_.size() < unknowns_worth_threads;
+        const OwnThreads threads(is_small ? 1 : blas_threads());
         std::vector<Stacks> stacks(threads.number());
         for (Stacks& each : stacks) {
             for (int i = 0; i < 2; ++i) each[i] = room_for(plan_.stack_sizes[i]);

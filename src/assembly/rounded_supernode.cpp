@@ -8,7 +8,7 @@
 
 // Wide registers where the processor has them, as the BLAS takes them too.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-#define KLUFT_WIDE_REGISTERS __attribute__((target_clones("avx2", "default")))
+#define KLUFT_WIDE_REGISTERS __attribute__((target_clones("avx512f", "avx2", "default")))
 #else
 #define KLUFT_WIDE_REGISTERS
 #endif
@@ -31,7 +31,7 @@ inline void load(const double* from, Wide& to) { std::memcpy(&to, from, sizeof t
 
 inline void store(const Wide& from, double* to) { std::memcpy(to, &from, sizeof from); }
 
-inline double sum(const Wide& v) { return (v[0] + v[1]) + (v[2] + v[3]); }
+inline double sum(const Wide& v) { return ((v[0] + v[1]) + (v[2] + v[3])) + ((v[4] + v[5]) + (v[6] + v[7])); }
 
 } // namespace
 

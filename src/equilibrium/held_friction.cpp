@@ -29,18 +29,22 @@ double renew_limits(const std::vector<InterfaceLaw>& laws, const Eigen::VectorXd
 } // namespace
 
 HeldFrictionApproach approach_with_held_friction(OpenCloseSolver& solver, const EquilibriumProblem& problem,
-                                                 const BlockPattern& pattern, Eigen::VectorXd& q) {
+                                                 const BlockPattern& pattern, const HeldFrictionGoal& goal,
+                                                 Eigen::VectorXd& q) {
     Placement placement = *problem.body.placement;
     EquilibriumProblem held = problem;
     held.body.placement = &placement;
-    for (ContactPoint& point : placement.contacts) point.held_limit = no_slip;
+    for (ContactPoint& point : placement.contacts)
+        point.held_limit = goal.unloaded ? no_slip : coulomb_limit(*problem.body.laws, point, q);
     HeldFrictionApproach approach;
-    double change = 1.0;
+    double change = goal.unloaded ? 1.0 : far;
     Eigen::VectorXd next = q;
     for (int round = 0; round < max_rounds && change > settled; ++round) {
-        const OpenCloseSummary found = solver.solve(
-            held, pattern, next,
-            {.unloaded = round == 0, .given_loads = true, .tolerance_share = change > far ? far_tolerance : 1.0});
+        const OpenCloseSummary found =
+            solver.solve(held, pattern, next,
+                         {.unloaded = goal.unloaded && round == 0,
+                          .given_loads = true,
+                          .tolerance_share = change > far ? far_tolerance : goal.tolerance_share});
         approach.n_solves += found.iterations;
         if (!found.converged()) break;
         q = next;

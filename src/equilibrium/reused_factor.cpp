@@ -9,13 +9,12 @@ namespace {
 
 constexpr int max_refinements = 60;                   ///< Krylov vectors of one linear solve
 constexpr int most_held_otherwise = 6;                ///< blocks: each takes a vector or two of every solution
-constexpr int refinements_worth_a_factorization = 15; ///< measured at 600, 5 000 and 50 000 blocks: 15, 18, 19
 
 } // namespace
 
 bool ReusedFactor::update(const EquilibriumProblem& problem, const Eigen::VectorXd& q) {
     if (!reference_.taken() || analysis_ != linear_solver_.statistics().analyses ||
-        excess_refinements_ > refinements_worth_a_factorization ||
+        excess_refinements_ > linear_solver_.refinements_worth_a_factorization() ||
         reference_.n_held_otherwise(problem) > most_held_otherwise) {
         return false;
     }

@@ -141,14 +141,25 @@ Equilibrium EquilibriumSearch::find_held(EquilibriumProblem problem, Eigen::Vect
     found.displacement = std::move(guess);
     const bool from_rest = circumstances.unloaded && circumstances.given_loads && has_friction(problem.body) &&
                            problem.body.kinematics == Kinematics::affine;
-    HeldFrictionApproach approach;
-    if (from_rest) approach = approach_with_held_friction(open_close_, problem, pattern_, found.displacement);
-    if (approach.is_moved) problem.start = found.displacement;
-    found.summary = open_close_.solve(problem, pattern_, found.displacement,
-                                      {.unloaded = circumstances.unloaded && !approach.is_moved,
-                                       .given_loads = circumstances.given_loads,
-                                       .block_tolerance = share_of_solve * balance.share});
-    found.iterations = approach.n_solves + found.summary.iterations;
+    const auto approach = [&](const HeldFrictionGoal& goal) {
+        const auto approached = approach_with_held_friction(open_close_, problem, pattern_, goal, found.displacement);
+        found.iterations += approached.n_solves;
+        if (approached.is_moved) problem.start = found.displacement;
+        return approached.is_moved;
+    };
+    const auto search = [&](bool unloaded) {
+        found.summary = open_close_.solve(problem, pattern_, found.displacement,
+                                          {.unloaded = unloaded,
+                                           .given_loads = circumstances.given_loads,
+                                           .block_tolerance = share_of_solve * balance.share});
+        found.iterations += found.summary.iterations;
+    };
+    const bool is_approached = from_rest && approach({.unloaded = true});
+    search(circumstances.unloaded && !is_approached);
+    if (is_approached && !found.converged()) { // by what the approach has left on a few bricks
+        found.displacement = problem.start;
+        if (approach({.unloaded = false, .tolerance_share = sharpening})) search(false);
+    }
     found.worst_block = found.summary.worst_block;
     if (found.converged()) settle(problem, balance, found);
     return found;

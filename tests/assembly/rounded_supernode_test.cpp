@@ -31,7 +31,7 @@ struct Columns {
         for (double& x : numbers) x = value(generator);
         for (int j = 0; j < shape.n_columns; ++j) numbers[j * (shape.n_rows + 1)] += 3.0;
         std::vector<double> memory = numbers;
-        memory.resize(std::max<std::size_t>(memory.size(), rounded_padding), std::numeric_limits<double>::quiet_NaN());
+        memory.resize(std::max<std::size_t>(memory.size(), rounded_padding), 0.0); // a factor has as many at least
         const float* const kept = round_in_place(memory.data(), memory.size());
         rounded.assign(kept, kept + numbers.size() + rounded_padding);
         for (std::size_t i = 0; i < numbers.size(); ++i) exact.data()[i] = rounded[i];

@@ -65,6 +65,7 @@ public:
     [[nodiscard]] FactorCost cost(Precision precision);
     /// Whether the factor is so large that memory is given up for it, rather than taken anew afterwards.
     [[nodiscard]] bool is_large() const;
+    [[nodiscard]] bool is_multifrontal() const { return is_multifrontal_; }
 
     /// Of the factor that there is.
     [[nodiscard]] int n_supernodes() const { return static_cast<int>(parent_.size()); }

@@ -76,6 +76,9 @@ public:
     SolveReport solve(const BlockMatrix& matrix, const Eigen::VectorXd& b, const SolveGoal& goal, int max_refinements,
                       Eigen::VectorXd& x);
 
+    /// How many vectors of the refinement a factorization costs.
+    [[nodiscard]] int refinements_worth_a_factorization() const;
+
     [[nodiscard]] const LinearSolverStatistics& statistics() const;
 
 private:

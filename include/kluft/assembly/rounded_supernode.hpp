@@ -7,10 +7,10 @@
 
 namespace kluft {
 
-inline constexpr int rounded_padding = 3; ///< numbers that may be read beyond the end of a supernode or a vector
+inline constexpr int rounded_padding = 7; ///< numbers that may be read beyond the end of a supernode or a vector
 
 /// Rounds n numbers in their own memory, the first half of which then holds the result, followed by `rounded_padding`
-/// zeros; what is behind goes back to the system. n >= 3.
+/// zeros; what is behind goes back to the system. n >= rounded_padding.
 float* round_in_place(double* values, std::size_t n);
 
 /// Forward elimination with one supernode, stored by columns (n_rows x n_columns, the upper triangle of the top not
