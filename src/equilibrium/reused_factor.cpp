@@ -7,8 +7,8 @@ namespace kluft {
 
 namespace {
 
-constexpr int max_refinements = 60;                   ///< Krylov vectors of one linear solve
-constexpr int most_held_otherwise = 6;                ///< blocks: each takes a vector or two of every solution
+constexpr int max_refinements = 60;    ///< Krylov vectors of one linear solve
+constexpr int most_held_otherwise = 6; ///< blocks: each takes a vector or two of every solution
 
 } // namespace
 
