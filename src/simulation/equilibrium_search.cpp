@@ -137,30 +137,51 @@ Equilibrium EquilibriumSearch::find(const EquilibriumProblem& problem, const Eig
 
 Equilibrium EquilibriumSearch::find_held(EquilibriumProblem problem, Eigen::VectorXd guess, const BlockGoal& balance,
                                          const Circumstances& circumstances) {
-    Equilibrium found;
-    found.displacement = std::move(guess);
     const bool from_rest = circumstances.unloaded && circumstances.given_loads && has_friction(problem.body) &&
                            problem.body.kinematics == Kinematics::affine;
+    int n_spent = 0;
+    if (from_rest) {
+        Equilibrium found = find_by_held_friction(problem, guess, balance);
+        if (found.balanced) return found;
+        n_spent = found.iterations; // a wedge near its limit may have slid too far under held limits
+    }
+    Equilibrium found;
+    found.iterations = n_spent;
+    found.displacement = std::move(guess);
+    iterate(problem, balance, circumstances, found);
+    if (found.converged()) settle(problem, balance, found);
+    return found;
+}
+
+/// From the displacement that is found so far.
+void EquilibriumSearch::iterate(const EquilibriumProblem& problem, const BlockGoal& balance,
+                                const Circumstances& circumstances, Equilibrium& found) {
+    found.summary = open_close_.solve(problem, pattern_, found.displacement,
+                                      {.unloaded = circumstances.unloaded,
+                                       .given_loads = circumstances.given_loads,
+                                       .block_tolerance = share_of_solve * balance.share});
+    found.iterations += found.summary.iterations;
+    found.worst_block = found.summary.worst_block;
+}
+
+/// Of a body at rest under given loads (29d). Not balanced where this way comes to nothing.
+Equilibrium EquilibriumSearch::find_by_held_friction(EquilibriumProblem problem, Eigen::VectorXd guess,
+                                                     const BlockGoal& balance) {
+    Equilibrium found;
+    found.displacement = std::move(guess);
     const auto approach = [&](const HeldFrictionGoal& goal) {
         const auto approached = approach_with_held_friction(open_close_, problem, pattern_, goal, found.displacement);
         found.iterations += approached.n_solves;
         if (approached.is_moved) problem.start = found.displacement;
         return approached.is_moved;
     };
-    const auto search = [&](bool unloaded) {
-        found.summary = open_close_.solve(problem, pattern_, found.displacement,
-                                          {.unloaded = unloaded,
-                                           .given_loads = circumstances.given_loads,
-                                           .block_tolerance = share_of_solve * balance.share});
-        found.iterations += found.summary.iterations;
-    };
-    const bool is_approached = from_rest && approach({.unloaded = true});
-    search(circumstances.unloaded && !is_approached);
-    if (is_approached && !found.converged()) { // by what the approach has left on a few bricks
+    constexpr Circumstances loaded{.unloaded = false, .given_loads = true};
+    if (!approach({.unloaded = true})) return found;
+    iterate(problem, balance, loaded, found);
+    if (!found.converged()) { // by what the approach has left on a few bricks
         found.displacement = problem.start;
-        if (approach({.unloaded = false, .tolerance_share = sharpening})) search(false);
+        if (approach({.unloaded = false, .tolerance_share = sharpening})) iterate(problem, balance, loaded, found);
     }
-    found.worst_block = found.summary.worst_block;
     if (found.converged()) settle(problem, balance, found);
     return found;
 }

@@ -79,6 +79,9 @@ private:
     Equilibrium find_touching(const EquilibriumProblem& problem, Aim aim, const BlockGoal& balance, Solve solve);
     Equilibrium find_held(EquilibriumProblem problem, Eigen::VectorXd guess, const BlockGoal& balance,
                           const Circumstances& circumstances);
+    Equilibrium find_by_held_friction(EquilibriumProblem problem, Eigen::VectorXd guess, const BlockGoal& balance);
+    void iterate(const EquilibriumProblem& problem, const BlockGoal& balance, const Circumstances& circumstances,
+                 Equilibrium& found);
     Equilibrium move_held(const EquilibriumProblem& problem, Eigen::VectorXd guess, const BlockGoal& balance,
                           bool unloaded);
     void settle(EquilibriumProblem& problem, const BlockGoal& balance, Equilibrium& found);
