@@ -1,6 +1,7 @@
 #include "kluft/assembly/front.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
@@ -94,16 +95,21 @@ void solve_rows(int width, int n, const float* l, int ldl, float* x, int ldx) {
     solve_rows(rest, n, l + at(half, half, ldl), ldl, x + at(0, half, ldx), ldx);
 }
 
-/// L L' of the diagonal block of a panel. Adds to `n_raised`; false if a pivot is too small to be raised.
+/// A pivot that is smaller than the least one is raised to it, which adds to `n_raised`; nothing where it is no number.
+std::optional<float> raised(float pivot, float least, int& n_raised) {
+    if (!(least > 0.0F && std::abs(pivot) <= std::numeric_limits<float>::max())) return std::nullopt;
+    if (std::abs(pivot) >= least) return pivot;
+    ++n_raised;
+    return std::copysign(least, pivot);
+}
+
+/// L L' of the diagonal block of a panel. False if a pivot is too small to be raised.
 bool factorize_narrow(int n, float* a, int lda, const float* least, int& n_raised) {
     for (int j = 0; j < n; ++j) {
-        float pivot = a[at(j, j, lda)];
-        if (!(least[j] > 0.0F && pivot >= -least[j] && pivot <= std::numeric_limits<float>::max())) return false;
-        if (pivot < least[j]) {
-            pivot = least[j];
-            ++n_raised;
-        }
-        const float root = std::sqrt(pivot);
+        if (a[at(j, j, lda)] < -least[j]) return false;
+        const auto pivot = raised(a[at(j, j, lda)], least[j], n_raised);
+        if (!pivot) return false;
+        const float root = std::sqrt(std::abs(*pivot));
         a[at(j, j, lda)] = root;
         const float inverse = 1.0F / root;
         for (int i = j + 1; i < n; ++i) a[at(i, j, lda)] *= inverse;
@@ -115,14 +121,68 @@ bool factorize_narrow(int n, float* a, int lda, const float* least, int& n_raise
     return true;
 }
 
-bool factorize_diagonal(int n, float* a, int lda, const float* least, int& n_raised) {
-    if (n <= narrow) return factorize_narrow(n, a, lda, least, n_raised);
+/// L U of the same; u: the transpose of the upper triangle.
+bool factorize_narrow(int n, float* l, float* u, int ld, const float* least, int& n_raised) {
+    for (int j = 0; j < n; ++j) {
+        const auto pivot = raised(l[at(j, j, ld)], least[j], n_raised);
+        if (!pivot) return false;
+        l[at(j, j, ld)] = *pivot;
+        u[at(j, j, ld)] = 1.0F;
+        const float inverse = 1.0F / *pivot;
+        for (int i = j + 1; i < n; ++i) u[at(i, j, ld)] *= inverse;
+        for (int k = j + 1; k < n; ++k) {
+            const float of_l = l[at(k, j, ld)];
+            const float of_u = u[at(k, j, ld)];
+            for (int i = k; i < n; ++i) l[at(i, k, ld)] -= l[at(i, j, ld)] * of_u;
+            for (int i = k + 1; i < n; ++i) u[at(i, k, ld)] -= u[at(i, j, ld)] * of_l;
+        }
+    }
+    return true;
+}
+
+/// One of the two triangles of a panel or of the rest with the other one, which of a symmetric matrix is the same.
+struct Side {
+    FrontTriangle own;
+    FrontTriangle other;
+};
+
+/// Both triangles of an unsymmetric front, each beside the other; the only one of a symmetric front.
+struct Sides {
+    std::array<Side, 2> all;
+    int n = 0;
+    [[nodiscard]] const Side* begin() const { return all.data(); }
+    [[nodiscard]] const Side* end() const { return all.data() + n; }
+};
+
+Sides sides_of(const Front& front) {
+    if (front.is_symmetric()) return {{{{front.lower, front.lower}, {}}}, 1};
+    return {{{{front.lower, front.upper}, {front.upper, front.lower}}}, 2};
+}
+
+/// C := C - A B', of n x n numbers; where A is B only the lower triangle.
+void subtract_square_product(int n, int k, const float* a, const float* b, int ld, float* c, int ldc) {
+    if (a == b) return subtract_square(n, k, a, ld, c, ldc);
+    subtract_product(n, n, k, a, ld, b, ld, c, ldc);
+}
+
+/// The diagonal block of a panel; `upper` is nullptr for L L'. False if a pivot is no number or too small.
+bool factorize_diagonal(int n, float* lower, float* upper, int ld, const float* least, int& n_raised) {
+    const bool is_symmetric = upper == nullptr;
+    if (n <= narrow) {
+        return is_symmetric ? factorize_narrow(n, lower, ld, least, n_raised)
+                            : factorize_narrow(n, lower, upper, ld, least, n_raised);
+    }
     const int half = first_half(n);
     const int rest = n - half;
-    if (!factorize_diagonal(half, a, lda, least, n_raised)) return false;
-    solve_rows(half, rest, a, lda, a + half, lda);
-    subtract_square(rest, half, a + half, lda, a + at(half, half, lda), lda);
-    return factorize_diagonal(rest, a + at(half, half, lda), lda, least + half, n_raised);
+    if (!factorize_diagonal(half, lower, upper, ld, least, n_raised)) return false;
+    float* const rest_of_upper = is_symmetric ? nullptr : upper + at(half, half, ld);
+    if (is_symmetric) upper = lower;
+    solve_rows(half, rest, upper, ld, lower + half, ld);
+    if (!is_symmetric) solve_rows(half, rest, lower, ld, upper + half, ld);
+    float* const rest_of_lower = lower + at(half, half, ld);
+    subtract_square_product(rest, half, lower + half, upper + half, ld, rest_of_lower, ld);
+    if (!is_symmetric) subtract_square_product(rest, half, upper + half, lower + half, ld, rest_of_upper, ld);
+    return factorize_diagonal(rest, rest_of_lower, rest_of_upper, ld, least + half, n_raised);
 }
 
 int n_parts(int n, int size) { return (n + size - 1) / size; }
@@ -154,43 +214,58 @@ int n_tiles(int n) {
     return count;
 }
 
-void subtract_tile(const Front& front, const Tile& tile) {
-    const int ld = front.n_columns + front.n_below;
-    const float* const below = front.columns + front.n_columns;
+void subtract_tile(const Front& front, const Side& side, const Tile& tile) {
+    const int ld = front.n_rows();
+    const float* const below = side.own.columns + front.n_columns;
+    const float* const other_below = side.other.columns + front.n_columns;
     int row = tile.row;
     int n_rows = tile.n_rows;
     if (row == tile.column) {
-        subtract_square(tile.width, front.n_columns, below + row, ld, front.rest + at(row, row, front.n_below),
-                        front.n_below);
+        subtract_square_product(tile.width, front.n_columns, below + row, other_below + row, ld,
+                                side.own.rest + at(row, row, front.n_below), front.n_below);
         row += tile.width;
         n_rows -= tile.width;
     }
     if (n_rows <= 0) return;
-    subtract_product(n_rows, tile.width, front.n_columns, below + row, ld, below + tile.column, ld,
-                     front.rest + at(row, tile.column, front.n_below), front.n_below);
+    subtract_product(n_rows, tile.width, front.n_columns, below + row, ld, other_below + tile.column, ld,
+                     side.own.rest + at(row, tile.column, front.n_below), front.n_below);
+}
+
+/// The rows of a panel below its diagonal block, which is factorized.
+void solve_panel(const Front& front, const Side& side, int first, int width, int row, int n) {
+    const int ld = front.n_rows();
+    float* const rows = side.own.columns + at(row, first, ld);
+    if (first > 0)
+        subtract_product(n, width, first, side.own.columns + row, ld, side.other.columns + first, ld, rows, ld);
+    solve_rows(width, n, side.other.columns + at(first, first, ld), ld, rows, ld);
 }
 
 } // namespace
 
 std::optional<int> factorize(const Front& front, const Sharing& share) {
     int n_raised = 0;
-    const int n_rows = front.n_columns + front.n_below;
+    const int ld = front.n_rows();
+    const Sides sides = sides_of(front);
     for (int first = 0; first < front.n_columns; first += panel_width) {
         const int width = std::min(panel_width, front.n_columns - first);
-        float* const diagonal = front.columns + at(first, first, n_rows);
-        const float* const before = front.columns + first; // rows of L in the columns before
-        if (first > 0) subtract_square(width, first, before, n_rows, diagonal, n_rows);
-        if (!factorize_diagonal(width, diagonal, n_rows, front.least_pivots + first, n_raised)) return std::nullopt;
+        for (const Side& side : sides) {
+            if (first == 0) break;
+            subtract_square_product(width, first, side.own.columns + first, side.other.columns + first, ld,
+                                    side.own.columns + at(first, first, ld), ld);
+        }
+        float* const upper = front.is_symmetric() ? nullptr : front.upper.columns + at(first, first, ld);
+        if (!factorize_diagonal(width, front.lower.columns + at(first, first, ld), upper, ld,
+                                front.least_pivots + first, n_raised))
+            return std::nullopt;
         const int below = first + width;
-        share(n_parts(n_rows - below, chunk_rows), [&](int i) {
+        share(n_parts(ld - below, chunk_rows), [&](int i) {
             const int row = below + i * chunk_rows;
-            const int n = std::min(chunk_rows, n_rows - row);
-            float* const rows = front.columns + at(row, first, n_rows);
-            if (first > 0) subtract_product(n, width, first, front.columns + row, n_rows, before, n_rows, rows, n_rows);
-            solve_rows(width, n, diagonal, n_rows, rows, n_rows);
+            for (const Side& side : sides) solve_panel(front, side, first, width, row, std::min(chunk_rows, ld - row));
         });
     }
-    share(n_tiles(front.n_below), [&](int i) { subtract_tile(front, tile(front.n_below, i)); });
+    share(n_tiles(front.n_below), [&](int i) {
+        for (const Side& side : sides) subtract_tile(front, side, tile(front.n_below, i));
+    });
     return n_raised;
 }
 

@@ -27,7 +27,7 @@ double frobenius_norm(const BlockMatrix& matrix) { return std::sqrt(matrix.squar
 struct LinearSolver::Backend {
     std::vector<int> position; ///< of each block in the elimination order
     int nu = n_block_unknowns; ///< unknowns per block
-    CholeskyFactor cholesky;
+    SupernodalFactor supernodal;
     LuFactor lu;
     LowRankUpdate changes;
     Gmres gmres;
@@ -40,30 +40,32 @@ struct LinearSolver::Backend {
     void gather(const BlockMatrix& matrix, Factorization new_kind) {
         kind = new_kind;
         if (kind == Factorization::lu) {
-            cholesky.forget();
+            supernodal.forget();
             lu.gather(matrix);
         } else {
             lu.forget();
-            if (cholesky.is_large()) gmres.release();
-            cholesky.gather(matrix);
+            if (supernodal.is_large()) gmres.release();
+            supernodal.gather(matrix);
         }
     }
 
     bool factorize() {
         if (kind == Factorization::lu) return lu.factorize();
-        changes.start(cholesky, position, nu);
-        return cholesky.factorize(kind == Factorization::cholesky ? Precision::full : Precision::single);
+        changes.start(supernodal, position, nu);
+        return supernodal.factorize(kind == Factorization::cholesky ? Precision::full : Precision::single);
     }
 
-    /// Where the body is large and single precision is enough; the matrix is read where it stands.
+    /// Where single precision is enough; the matrix is read where it stands.
     bool factorize_in_single(const BlockMatrix& matrix, Factorization new_kind) {
         ++statistics.factorizations;
-        if (new_kind != Factorization::rounded_cholesky) return false;
+        if (new_kind != Factorization::rounded_cholesky && new_kind != Factorization::rounded_lu) return false;
         kind = new_kind;
         lu.forget();
-        if (cholesky.is_large()) gmres.release();
-        if (!cholesky.factorize_in_single(matrix)) return false;
-        changes.start(cholesky, position, nu);
+        if (supernodal.is_large()) gmres.release();
+        const bool is_symmetric = kind == Factorization::rounded_cholesky;
+        if (!supernodal.factorize_in_single(matrix, is_symmetric ? Symmetry::symmetric : Symmetry::unsymmetric))
+            return false;
+        changes.start(supernodal, position, nu);
         return true;
     }
 
@@ -75,9 +77,9 @@ struct LinearSolver::Backend {
             unpermute(position, nu, solution.data(), x);
             return;
         }
-        cholesky.solve_lower(right_side);
+        supernodal.solve_lower(right_side);
         changes.apply(right_side);
-        cholesky.solve_upper(right_side);
+        supernodal.solve_upper(right_side);
         unpermute(position, nu, right_side.data(), x);
     }
 };
@@ -91,7 +93,7 @@ void LinearSolver::analyze(const BlockPattern& pattern) {
     const Stopwatch watch(k.statistics.analyze_seconds);
     k.position = elimination_order(pattern);
     k.nu = pattern.block_unknowns();
-    k.cholesky.analyze(pattern, k.position);
+    k.supernodal.analyze(pattern, k.position);
     k.lu.analyze(pattern, k.position);
     ++k.statistics.analyses;
 }
@@ -99,6 +101,7 @@ void LinearSolver::analyze(const BlockPattern& pattern) {
 bool LinearSolver::factorize(const BlockMatrix& matrix, Factorization kind) {
     const Stopwatch watch(backend_->statistics.factorize_seconds);
     if (backend_->factorize_in_single(matrix, kind)) return true;
+    if (kind == Factorization::rounded_lu) return false;
     backend_->gather(matrix, kind);
     return backend_->factorize();
 }
@@ -109,6 +112,7 @@ bool LinearSolver::factorize(BlockMatrix&& matrix, Factorization kind) {
         matrix.release();
         return true;
     }
+    if (kind == Factorization::rounded_lu) return false;
     backend_->gather(matrix, kind);
     matrix.release();
     return backend_->factorize();
@@ -166,13 +170,13 @@ SolveReport LinearSolver::solve(const BlockMatrix& matrix, const Eigen::VectorXd
 }
 
 int LinearSolver::refinements_worth_a_factorization() const {
-    return backend_->cholesky.is_multifrontal() ? multifrontal_refinements : usual_refinements;
+    return backend_->supernodal.is_multifrontal() ? multifrontal_refinements : usual_refinements;
 }
 
 const LinearSolverStatistics& LinearSolver::statistics() const { return backend_->statistics; }
 
 FactorCost factor_cost(const BlockPattern& pattern, Factorization kind) {
-    CholeskyFactor factor;
+    SupernodalFactor factor;
     factor.analyze(pattern, elimination_order(pattern));
     return factor.cost(kind == Factorization::rounded_cholesky ? Precision::single : Precision::full);
 }

@@ -21,14 +21,14 @@ bool counts(const StiffnessChange& change, int row) {
 
 } // namespace
 
-void LowRankUpdate::start(const CholeskyFactor& factor, const std::vector<int>& position, int nu) {
+void LowRankUpdate::start(const SupernodalFactor& factor, const std::vector<int>& position, int nu) {
     factor_ = &factor;
     position_ = &position;
     nu_ = nu;
     patches_.clear();
     batches_.clear();
     rank_ = 0;
-    changed_ = false;
+    active_.clear();
     packed_of_.assign(factor.n_supernodes(), -1);
 }
 
@@ -64,22 +64,40 @@ bool LowRankUpdate::set(const std::vector<StiffnessChange>& changes) {
         append(changes, rows, first, last);
     }
 
-    change_size(d_, rank_, rank_);
+    return set_small(changes);
+}
+
+/// D and I + D G on the rows that D changes: those that have come back to what is in the factor count for nothing.
+bool LowRankUpdate::set_small(const std::vector<StiffnessChange>& changes) {
+    active_.clear();
+    for (const StiffnessChange& change : changes) {
+        const PatchRows& at = patches_.at(change.patch);
+        for (int i = 0; i < change.n_rows; ++i)
+            if (counts(change, i)) active_.push_back(at[i]);
+    }
+    std::ranges::sort(active_);
+    const auto n = static_cast<Eigen::Index>(active_.size());
+    for (Batch& batch : batches_) {
+        const auto next = std::ranges::lower_bound(active_, batch.first);
+        batch.is_active = next != active_.end() && *next < batch.first + batch.w.cols();
+    }
+    if (n == 0) return true;
+    std::vector<int> place(rank_, -1);
+    for (Eigen::Index i = 0; i < n; ++i) place[active_[i]] = static_cast<int>(i);
+    change_size(d_, n, n);
     d_.setZero();
-    changed_ = false;
-    Eigen::MatrixXd small = Eigen::MatrixXd::Identity(rank_, rank_); // I + D G
+    Eigen::MatrixXd small = Eigen::MatrixXd::Identity(n, n);
     for (const StiffnessChange& change : changes) {
         const PatchRows& at = patches_.at(change.patch);
         for (int i = 0; i < change.n_rows; ++i) {
             for (int j = 0; j < change.n_rows; ++j) {
-                if (change.stiffness(i, j) == 0.0) continue;
-                d_(at[i], at[j]) = change.stiffness(i, j);
-                small.row(at[i]).noalias() += change.stiffness(i, j) * gram_.row(at[j]).head(rank_);
-                changed_ = true;
+                const double stiffness = change.stiffness(i, j);
+                if (stiffness == 0.0) continue;
+                d_(place[at[i]], place[at[j]]) = stiffness;
+                for (Eigen::Index k = 0; k < n; ++k) small(place[at[i]], k) += stiffness * gram_(at[j], active_[k]);
             }
         }
     }
-    if (!changed_) return true;
     small_ = Eigen::PartialPivLU<Eigen::MatrixXd>(small);
     const auto pivots = small_.matrixLU().diagonal().cwiseAbs();
     return pivots.allFinite() && pivots.minCoeff() > least_pivot_ratio * pivots.maxCoeff();
@@ -119,21 +137,25 @@ void LowRankUpdate::append(const std::vector<StiffnessChange>& changes, const st
         place(change.block_a, change.rows_a.row(rows[i].row), column);
         place(change.block_b, change.rows_b.row(rows[i].row), column);
     }
-    solve_along_path(batch);
+    if (!factor_->is_symmetric()) {
+        batch.v = batch.w;
+        solve_along_path(batch, true, batch.v);
+    }
+    solve_along_path(batch, false, batch.w);
     for (const int k : batch.supernodes) packed_of_[k] = -1;
     rank_ += width;
     batches_.push_back(std::move(batch));
     extend_gram(batches_.back());
 }
 
-/// w := L^-1 w, of which only the supernodes of the path are not zero.
-void LowRankUpdate::solve_along_path(Batch& batch) {
-    const int width = static_cast<int>(batch.w.cols());
-    const int length = static_cast<int>(batch.w.rows());
+/// w := L^-1 w, or U'^-1 w, of which only the supernodes of the path are not zero.
+void LowRankUpdate::solve_along_path(const Batch& batch, bool upper, Eigen::MatrixXd& w) {
+    const int width = static_cast<int>(w.cols());
+    const int length = static_cast<int>(w.rows());
     for (std::size_t s = 0; s < batch.supernodes.size(); ++s) {
         const Supernode node = factor_->supernode(batch.supernodes[s]);
-        double* top = batch.w.data() + batch.offsets[s];
-        const double* const values = factor_->values(node, values_);
+        double* top = w.data() + batch.offsets[s];
+        const double* const values = upper ? factor_->upper_values(node, values_) : factor_->values(node, values_);
         solve_lower_triangle(node.n_columns, width, values, node.n_rows, top, length);
         const int n_below = node.n_rows - node.n_columns;
         if (n_below == 0) continue;
@@ -147,7 +169,7 @@ void LowRankUpdate::solve_along_path(Batch& batch) {
             const std::int64_t end = above.first_column + above.n_columns;
             for (; i < n_below && node.rows[node.n_columns + i] < end; ++i) {
                 const int at = packed_of_[k] + static_cast<int>(node.rows[node.n_columns + i] - above.first_column);
-                batch.w.row(at) -= below_.row(i);
+                w.row(at) -= below_.row(i);
             }
         }
     }
@@ -157,9 +179,13 @@ void LowRankUpdate::solve_along_path(Batch& batch) {
 void LowRankUpdate::extend_gram(const Batch& batch) {
     if (gram_.rows() < rank_) gram_.conservativeResize(2 * rank_, 2 * rank_);
     const int width = static_cast<int>(batch.w.cols());
+    const bool is_symmetric = factor_->is_symmetric();
     for (const Batch& other : batches_) {
         auto product = gram_.block(other.first, batch.first, other.w.cols(), width);
+        auto transposed = gram_.block(batch.first, other.first, width, other.w.cols());
+        const bool is_other = &other != &batch;
         product.setZero();
+        if (is_other) transposed.setZero();
         for (std::size_t i = 0, j = 0; i < other.supernodes.size() && j < batch.supernodes.size();) {
             if (other.supernodes[i] != batch.supernodes[j]) {
                 ++(other.supernodes[i] < batch.supernodes[j] ? i : j);
@@ -171,35 +197,47 @@ void LowRankUpdate::extend_gram(const Batch& batch) {
                 ++n;
             }
             const int length = other.offsets[i + n] - other.offsets[i];
-            product.noalias() +=
-                other.w.middleRows(other.offsets[i], length).transpose() * batch.w.middleRows(batch.offsets[j], length);
+            const auto rows_of_other = [&](const Eigen::MatrixXd& of) {
+                return of.middleRows(other.offsets[i], length);
+            };
+            const auto rows = [&](const Eigen::MatrixXd& of) { return of.middleRows(batch.offsets[j], length); };
+            product.noalias() += rows_of_other(other.of_upper()).transpose() * rows(batch.w);
+            if (is_other && !is_symmetric)
+                transposed.noalias() += rows(batch.of_upper()).transpose() * rows_of_other(other.w);
             i += n;
             j += n;
         }
-        if (&other != &batch) gram_.block(batch.first, other.first, width, other.w.cols()) = product.transpose();
+        if (is_other && is_symmetric) transposed = product.transpose();
     }
 }
 
 void LowRankUpdate::apply(std::vector<double>& z) {
-    if (!changed_) return;
+    if (active_.empty()) return;
+    const auto n = static_cast<Eigen::Index>(active_.size());
     change_size(t_, rank_);
-    change_size(y_, rank_);
+    change_size(t_active_, n);
+    change_size(y_, n);
     for (const Batch& batch : batches_) {
+        if (!batch.is_active) continue;
         const int length = static_cast<int>(batch.w.rows());
         packed_.resize(length);
         for (std::size_t s = 0; s < batch.supernodes.size(); ++s) {
             std::copy_n(z.data() + factor_->supernode(batch.supernodes[s]).first_column,
                         batch.offsets[s + 1] - batch.offsets[s], packed_.begin() + batch.offsets[s]);
         }
-        multiply_transposed(length, static_cast<int>(batch.w.cols()), batch.w.data(), length, packed_.data(),
+        multiply_transposed(length, static_cast<int>(batch.w.cols()), batch.of_upper().data(), length, packed_.data(),
                             t_.data() + batch.first);
     }
-    y_.noalias() = d_ * t_;
+    for (Eigen::Index i = 0; i < n; ++i) t_active_[i] = t_[active_[i]];
+    y_.noalias() = d_ * t_active_;
     y_ = small_.solve(y_);
+    t_.setZero();
+    for (Eigen::Index i = 0; i < n; ++i) t_[active_[i]] = y_[i];
     for (const Batch& batch : batches_) {
+        if (!batch.is_active) continue;
         const int length = static_cast<int>(batch.w.rows());
         packed_.resize(length);
-        multiply(length, static_cast<int>(batch.w.cols()), batch.w.data(), length, y_.data() + batch.first,
+        multiply(length, static_cast<int>(batch.w.cols()), batch.w.data(), length, t_.data() + batch.first,
                  packed_.data());
         for (std::size_t s = 0; s < batch.supernodes.size(); ++s) {
             double* const at = z.data() + factor_->supernode(batch.supernodes[s]).first_column;

@@ -109,16 +109,18 @@ std::vector<Run> runs_in_parent(const BlockSupernodes& s, int child, int parent)
     return runs;
 }
 
-/// Adds columns first to last - 1 of what a child has left, n x n, to the front of its parent.
-void add_columns(const std::vector<Run>& runs, const float* left, int n, int first, int last, const Front& front) {
-    const int n_rows = front.n_columns + front.n_below;
+/// Adds columns first to last - 1 of what a child has left, n x n, to a triangle of the front of its parent.
+void add_columns(const std::vector<Run>& runs, const float* left, int n, int first, int last, const Front& front,
+                 const FrontTriangle& triangle) {
+    const int n_rows = front.n_rows();
     for (std::size_t r = 0; r < runs.size(); ++r) {
         for (int c = std::max(first, runs[r].from); c < std::min(last, runs[r].from + runs[r].length); ++c) {
             const float* const from = left + static_cast<std::size_t>(n) * c;
             const int column = runs[r].to + (c - runs[r].from);
             float* const to = column < front.n_columns
-                                  ? front.columns + static_cast<std::size_t>(n_rows) * column
-                                  : front.rest + static_cast<std::size_t>(front.n_below) * (column - front.n_columns) -
+                                  ? triangle.columns + static_cast<std::size_t>(n_rows) * column
+                                  : triangle.rest +
+                                        static_cast<std::size_t>(front.n_below) * (column - front.n_columns) -
                                         front.n_columns;
             for (std::size_t q = r; q < runs.size(); ++q) {
                 const int skipped = q == r ? c - runs[r].from : 0;
@@ -134,30 +136,30 @@ void add_columns(const std::vector<Run>& runs, const float* left, int n, int fir
 
 /// The numbers of one factorization.
 struct MultifrontalFactor::Numbers {
-    Numbers(const MultifrontalFactor& factor, const BlockMatrix& matrix_to_read, float* values_of_l)
-        : f(factor), s(factor.supernodes_), matrix(matrix_to_read), values(values_of_l),
+    Numbers(const MultifrontalFactor& factor, const BlockMatrix& matrix_to_read, float* values_of_l, float* values_of_u)
+        : f(factor), s(factor.supernodes_), matrix(matrix_to_read), values(values_of_l), upper_values(values_of_u),
           passed_on(factor.supernodes_.size()), tree(factor.plan_.task_parent) {}
 
     const MultifrontalFactor& f;
     const BlockSupernodes& s;
     const BlockMatrix& matrix;
     float* values;
+    float* upper_values;                 ///< nullptr for L L'
     std::vector<Rooms::Piece> passed_on; ///< what the last supernode of a task has left to its parent
     Rooms rooms;
     TaskTree tree;
     std::atomic<bool> regular = true;
     std::atomic<int> n_raised = 0;
 
-    [[nodiscard]] Front front(int k) const {
-        return {s.n_columns(k), s.n_below(k), values + s.value_starts[k], nullptr, nullptr};
-    }
+    [[nodiscard]] bool is_symmetric() const { return upper_values == nullptr; }
+    [[nodiscard]] std::size_t n_triangles() const { return is_symmetric() ? 1 : 2; }
 
-    template <int nu, class Entries> void add_entries(int k, const Entries& entries, std::vector<float>& least_pivots) {
+    /// Adds the entries of the columns of a supernode to a triangle: value(row, column) of the lower one, those of the
+    /// transposed matrix of the upper one.
+    template <int nu, class Value> void add_entries(int k, float* columns, const Value& value) {
         const BlockPattern& pattern = *matrix.pattern;
         const int n_rows = s.n_columns(k) + s.n_below(k);
         const auto below = s.rows_below(k);
-        float* const columns = values + s.value_starts[k];
-        least_pivots.clear();
         for (int j = 0; j < s.n_blocks(k); ++j) {
             const int p = s.first_block[k] + j;
             const int b = f.block_at_[p];
@@ -171,21 +173,56 @@ struct MultifrontalFactor::Numbers {
                     to = s.n_blocks(k) + static_cast<int>(std::ranges::lower_bound(below, row) - below.begin());
                 std::array<double, nu> row_scales{};
                 for (int i = 0; i < nu; ++i) row_scales[i] = scale_of(static_cast<std::int64_t>(nu) * row + i);
-                for (int c = 0; c < nu; ++c) { // the transposed entry, by symmetry
+                const auto block = value(b, entry);
+                for (int c = 0; c < nu; ++c) {
                     float* const column = columns + static_cast<std::size_t>(n_rows) * (nu * j + c) + nu * to;
                     for (int i = 0; i < nu; ++i)
-                        column[i] = static_cast<float>(own_scales[c] * row_scales[i] * entries[entry](c, i));
+                        column[i] = static_cast<float>(own_scales[c] * row_scales[i] * block(i, c));
                 }
-            }
-            const auto& own = entries[pattern.diagonal(b)];
-            for (int c = 0; c < nu; ++c) {
-                const double square_of_scale = own_scales[c] * own_scales[c];
-                least_pivots.push_back(static_cast<float>(f.plan_.least_ratio[k] * square_of_scale * own(c, c)));
             }
         }
     }
 
-    /// Rows of L without the scale; `inverses` is room.
+    /// The entries of the matrix in both triangles of a front, or in the lower one of a symmetric matrix.
+    template <int nu, class Entries> void add_entries(int k, const Entries& entries, const Front& own) {
+        const BlockPattern& pattern = *matrix.pattern;
+        const auto transposed = [&](int, int entry) { return entries[entry].transpose(); };
+        if (is_symmetric()) return add_entries<nu>(k, own.lower.columns, transposed);
+        add_entries<nu>(k, own.upper.columns, transposed);
+        add_entries<nu>(
+            k, own.lower.columns, [&](int b, int entry) -> const auto& {
+                return entries[pattern.find(pattern.column(entry), b)];
+            });
+    }
+
+    template <int nu, class Entries>
+    void set_least_pivots(int k, const Entries& entries, std::vector<float>& least_pivots) const {
+        least_pivots.clear();
+        for (int p = s.first_block[k]; p < s.first_block[k + 1]; ++p) {
+            const auto& own = entries[matrix.pattern->diagonal(f.block_at_[p])];
+            for (int c = 0; c < nu; ++c) {
+                const double scale = scale_of(static_cast<std::int64_t>(nu) * p + c);
+                const double diagonal = is_symmetric() ? own(c, c) : std::abs(own(c, c));
+                least_pivots.push_back(static_cast<float>(f.plan_.least_ratio[k] * (scale * scale) * diagonal));
+            }
+        }
+    }
+
+    /// Its triangles with zeros; `rest` has room for what it leaves in each of them.
+    [[nodiscard]] Front empty_front(int k, float* rest) const {
+        Front own{.n_columns = s.n_columns(k), .n_below = s.n_below(k)};
+        const auto cleared = [&](float* of_l_or_u, float* room) {
+            float* const columns = of_l_or_u + s.value_starts[k];
+            std::fill_n(columns, static_cast<std::size_t>(own.n_rows()) * own.n_columns, 0.0F);
+            std::fill_n(room, square(own.n_below), 0.0F);
+            return FrontTriangle{columns, room};
+        };
+        own.lower = cleared(values, rest);
+        if (!is_symmetric()) own.upper = cleared(upper_values, rest + square(own.n_below));
+        return own;
+    }
+
+    /// Rows of L and of the transposed U without the scale; `inverses` is room.
     void take_scale_off(int k, const Front& front, std::vector<float>& inverses) const {
         inverses.clear();
         const auto add = [&](int block) {
@@ -195,31 +232,35 @@ struct MultifrontalFactor::Numbers {
         for (int block = s.first_block[k]; block < s.first_block[k + 1]; ++block) add(block);
         for (const int block : s.rows_below(k)) add(block);
         const std::size_t n_rows = inverses.size();
-        for (int j = 0; j < front.n_columns; ++j) {
-            float* const column = front.columns + n_rows * j;
-            for (std::size_t i = j; i < n_rows; ++i) column[i] *= inverses[i];
+        for (float* const columns : {front.lower.columns, front.upper.columns}) {
+            if (columns == nullptr) continue;
+            for (int j = 0; j < front.n_columns; ++j) {
+                float* const column = columns + n_rows * j;
+                for (std::size_t i = j; i < n_rows; ++i) column[i] *= inverses[i];
+            }
         }
     }
 
-    /// False if the matrix is not positive definite, or too ill-conditioned. `rest` has room for what the front leaves;
-    /// left(child) is what a child has left.
+    /// False if there are pivots that are none. `rest` has room for what the front leaves; left(child) is what a child has
+    /// left.
     template <class Left>
     bool eliminate(int k, float* rest, const Left& left, const Sharing& share, std::vector<float>& least_pivots) {
-        Front own = front(k);
-        own.rest = rest;
-        std::fill_n(own.columns, static_cast<std::size_t>(own.n_columns + own.n_below) * own.n_columns, 0.0F);
-        std::fill_n(own.rest, square(own.n_below), 0.0F);
+        Front own = empty_front(k, rest);
         if (matrix.is_rigid()) {
-            add_entries<n_rigid_unknowns>(k, matrix.rigid_values, least_pivots);
+            add_entries<n_rigid_unknowns>(k, matrix.rigid_values, own);
+            set_least_pivots<n_rigid_unknowns>(k, matrix.rigid_values, least_pivots);
         } else {
-            add_entries<n_block_unknowns>(k, matrix.values, least_pivots);
+            add_entries<n_block_unknowns>(k, matrix.values, own);
+            set_least_pivots<n_block_unknowns>(k, matrix.values, least_pivots);
         }
         for (int child = f.plan_.first_child[k]; child >= 0; child = f.plan_.next_child[child]) {
             const std::vector<Run> runs = runs_in_parent(s, child, k);
             const int n = s.n_below(child);
             share((n + assembled_columns - 1) / assembled_columns, [&](int i) {
                 const int first = i * assembled_columns;
-                add_columns(runs, left(child), n, first, std::min(n, first + assembled_columns), own);
+                const int last = std::min(n, first + assembled_columns);
+                add_columns(runs, left(child), n, first, last, own, own.lower);
+                if (!is_symmetric()) add_columns(runs, left(child) + square(n), n, first, last, own, own.upper);
             });
         }
         own.least_pivots = least_pivots.data();
@@ -238,11 +279,11 @@ struct MultifrontalFactor::Numbers {
         for (int k = first; k <= last; ++k) {
             const auto left = [&](int child) -> const float* {
                 if (child < first) return passed_on[child].room.get();
-                return stacks[f.plan_.stack[child]].get() + f.plan_.place[child];
+                return stacks[f.plan_.stack[child]].get() + n_triangles() * f.plan_.place[child];
             };
-            float* rest = stacks[f.plan_.stack[k]].get() + f.plan_.place[k];
+            float* rest = stacks[f.plan_.stack[k]].get() + n_triangles() * f.plan_.place[k];
             if (k == last) {
-                passed_on[k] = rooms.take(square(s.n_below(k)));
+                passed_on[k] = rooms.take(n_triangles() * square(s.n_below(k)));
                 rest = passed_on[k].room.get();
             }
             if (!eliminate(k, rest, left, first == last ? together : alone, least_pivots)) {
@@ -328,19 +369,28 @@ MultifrontalFactor::Plan MultifrontalFactor::plan_for(const BlockSupernodes& s) 
     return plan;
 }
 
-bool MultifrontalFactor::factorize(const BlockMatrix& matrix) {
+bool MultifrontalFactor::factorize(const BlockMatrix& matrix, Symmetry symmetry) {
     try {
         const auto n = static_cast<std::size_t>(supernodes_.value_starts.back());
-        if (!values_) values_ = room_for(n + rounded_padding);
-        std::fill_n(values_.get() + n, rounded_padding, 0.0F);
+        const auto make_room = [&](auto& values) {
+            if (!values) values = room_for(n + rounded_padding);
+            std::fill_n(values.get() + n, rounded_padding, 0.0F);
+        };
+        const bool is_symmetric = symmetry == Symmetry::symmetric;
+        make_room(values_);
+        if (is_symmetric) {
+            upper_values_.reset();
+        } else {
+            make_room(upper_values_);
+        }
         const bool is_small = supernodes_.nu * position_.size() < unknowns_worth_threads;
         const OwnThreads threads(is_small ? 1 : blas_threads());
+        Numbers numbers(*this, matrix, values_.get(), upper_values_.get());
         std::vector<Stacks> stacks(threads.number());
         for (Stacks& each : stacks) {
-            for (int i = 0; i < 2; ++i) each[i] = room_for(plan_.stack_sizes[i]);
+            for (int i = 0; i < 2; ++i) each[i] = room_for(numbers.n_triangles() * plan_.stack_sizes[i]);
         }
         std::vector<std::vector<float>> least_pivots(threads.number());
-        Numbers numbers(*this, matrix, values_.get());
         numbers.tree.run(threads.number(),
                          [&](int task, int thread) { numbers.do_task(task, stacks[thread], least_pivots[thread]); });
         if (!numbers.regular) forget();

@@ -32,6 +32,12 @@ void add_damping(const EquilibriumProblem& problem, double damping, BlockMatrix&
         matrix.values[matrix.pattern->diagonal(b)] += damping * mass_matrix(blocks[b], problem.least_mass_area);
 }
 
+bool slides(const EquilibriumProblem& problem, const Eigen::VectorXd& q) {
+    for (int i = 0; i < static_cast<int>(problem.body.placement->contacts.size()); ++i)
+        if (contact_traction(problem.body, i, q).state == ContactState::sliding) return true;
+    return false;
+}
+
 /// The second bound of (31): far from equilibrium a linear solve need not be exact, near it it leaves less than what
 /// the iteration tolerates, and where no contact can change its state it does so at once. `right_side`: its norm (N/m).
 double linear_residual(const NewtonPoint& at, double right_side) {
@@ -78,16 +84,20 @@ bool NewtonIncrement::solve_anew(const NewtonPoint& at, TangentKind kind) {
     return true;
 }
 
-/// Solves by the factor in use with its changes, by a new one of the symmetric tangent, or by one of the tangent
-/// itself, whichever is the first that works.
+/// Solves by the factor in use with its changes, by a new one, of the tangent itself where points slide and else of the
+/// symmetric one, or by one with pivoting, whichever is the first that works.
 bool NewtonIncrement::solve_with_reuse(const NewtonPoint& at, TangentKind kind) {
     const EquilibriumProblem& problem = at.evaluator.problem();
     if (factor_.update(problem, at.q)) {
         assemble(at, kind);
         if (solve_refined(at)) return true;
     }
+    if (kind == TangentKind::exact && slides(problem, at.q)) {
+        assemble(at, kind);
+        if (factor_.renew_exact(problem, at.q, matrix_) && solve_refined(at)) return true;
+    }
     assemble_symmetric(at);
-    const bool renewed = factor_.renew(problem, at.q, matrix_);
+    const bool renewed = factor_.renew(problem, at.q, std::move(matrix_));
     assemble(at, kind);
     if (renewed && solve_refined(at)) return true;
     return solve_anew(at, kind);

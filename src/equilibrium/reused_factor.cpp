@@ -21,9 +21,18 @@ bool ReusedFactor::update(const EquilibriumProblem& problem, const Eigen::Vector
     return linear_solver_.update(reference_.changes(problem, q));
 }
 
-bool ReusedFactor::renew(const EquilibriumProblem& problem, const Eigen::VectorXd& q, BlockMatrix& tangent) {
-    reference_.take(problem, q, tangent);
-    if (!linear_solver_.factorize(std::move(tangent), Factorization::rounded_cholesky)) {
+bool ReusedFactor::renew(const EquilibriumProblem& problem, const Eigen::VectorXd& q, BlockMatrix&& symmetric) {
+    reference_.take(problem, q, TangentKind::symmetric, symmetric);
+    return begin(linear_solver_.factorize(std::move(symmetric), Factorization::rounded_cholesky));
+}
+
+bool ReusedFactor::renew_exact(const EquilibriumProblem& problem, const Eigen::VectorXd& q, const BlockMatrix& exact) {
+    reference_.take(problem, q, TangentKind::exact, exact);
+    return begin(linear_solver_.factorize(exact, Factorization::rounded_lu));
+}
+
+bool ReusedFactor::begin(bool is_factorized) {
+    if (!is_factorized) {
         reference_.forget();
         return false;
     }

@@ -37,6 +37,12 @@ void set_rows(const EquilibriumProblem& problem, const Eigen::VectorXd& q, const
     }
 }
 
+/// Without what a tilt of the faces changes, which is left to the refinement.
+Mat2 stiffness_of(const PointTraction& traction, TangentKind kind) {
+    if (kind == TangentKind::symmetric) return symmetric_tangent(traction);
+    return traction.state == ContactState::open ? Mat2::Zero() : traction.tangent;
+}
+
 /// Adds a stiffness at the place s of an overlap to that of its ends.
 void add_at(double s, const Mat2& stiffness, Eigen::Matrix4d& ends) {
     const std::array<double, 2> share{1.0 - s, s};
@@ -70,8 +76,8 @@ StiffnessReference::Key StiffnessReference::key_of(const ContactKey& k) {
     return {k.block_a, k.edge_a, k.block_b, k.edge_b, k.point < 0 ? 1 : 0};
 }
 
-/// The patches of the contacts, which are sorted, with their symmetric stiffness at q.
-void StiffnessReference::collect(const EquilibriumProblem& problem, const Eigen::VectorXd& q,
+/// The patches of the contacts, which are sorted, with their stiffness at q.
+void StiffnessReference::collect(const EquilibriumProblem& problem, const Eigen::VectorXd& q, TangentKind kind,
                                  std::vector<Patch>& patches) {
     patches.clear();
     for (int i = 0; i < static_cast<int>(problem.body.placement->contacts.size()); ++i) {
@@ -87,7 +93,7 @@ void StiffnessReference::collect(const EquilibriumProblem& problem, const Eigen:
         }
         Patch& patch = patches.back();
         patch.scale += point.weight * (*problem.body.laws)[point.law].normal_stiffness;
-        const Mat2 stiffness = point.weight * symmetric_tangent(contact_traction(problem.body, i, q));
+        const Mat2 stiffness = point.weight * stiffness_of(contact_traction(problem.body, i, q), kind);
         if (point.key.point < 0) {
             set_rows(problem, q, point, 0, patch.change);
             patch.change.stiffness.topLeftCorner<2, 2>() += stiffness;
@@ -99,8 +105,10 @@ void StiffnessReference::collect(const EquilibriumProblem& problem, const Eigen:
     }
 }
 
-void StiffnessReference::take(const EquilibriumProblem& problem, const Eigen::VectorXd& q, const BlockMatrix& tangent) {
+void StiffnessReference::take(const EquilibriumProblem& problem, const Eigen::VectorXd& q, TangentKind kind,
+                              const BlockMatrix& tangent) {
     taken_ = true;
+    kind_ = kind;
     eta_ = problem.eta;
     const int nu = tangent.pattern->block_unknowns();
     diagonal_.resize(nu * tangent.pattern->n_blocks());
@@ -112,7 +120,7 @@ void StiffnessReference::take(const EquilibriumProblem& problem, const Eigen::Ve
             diagonal_.segment(nu * b, nu) = tangent.values[entry].diagonal();
         }
     }
-    collect(problem, q, reference_);
+    collect(problem, q, kind, reference_);
     bonded_.clear();
     for (const Bond& bond : problem.body.placement->bonds) bonded_.push_back(bond.interface);
     numbers_.clear();
@@ -160,7 +168,7 @@ void StiffnessReference::add_broken_bonds(const EquilibriumProblem& problem) {
 const std::vector<StiffnessChange>& StiffnessReference::changes(const EquilibriumProblem& problem,
                                                                 const Eigen::VectorXd& q) {
     add_broken_bonds(problem);
-    collect(problem, q, now_);
+    collect(problem, q, kind_, now_);
     changes_.clear();
     const auto keep = [&](const Patch& patch, const Eigen::Matrix4d& change, double scale) {
         if (patch.change.rows_a.isZero(0.0)) return; // a broken bond that is not near any more

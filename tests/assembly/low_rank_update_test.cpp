@@ -85,6 +85,36 @@ TEST_P(LowRankUpdateOf, ChangesOnTopOfAFactorSolveTheChangedMatrix) {
 }
 INSTANTIATE_TEST_SUITE_P(Sides, LowRankUpdateOf, ::testing::Values(2, 3, 8));
 
+// The factor is in single precision, so are its solutions.
+TEST(LowRankUpdate, ChangesOnTopOfAnUnsymmetricFactorSolveTheChangedMatrix) {
+    const auto pairs = hexagon_pairs(9);
+    const BlockPattern pattern(81, pairs);
+    std::mt19937 generator(6);
+    const BlockMatrix reference = unsymmetric_hexagon_matrix(pattern, generator);
+    LinearSolver solver;
+    solver.analyze(pattern);
+    ASSERT_TRUE(solver.factorize(reference, Factorization::rounded_lu));
+    std::vector<StiffnessChange> changes;
+    for (std::size_t i = 0; i < 12; ++i) {
+        const auto pair = pairs[(i * 17) % pairs.size()];
+        changes.push_back(random_change(static_cast<long>(100 + i), pair, i % 2 == 0, generator));
+        std::vector<StiffnessChange> some = changes;
+        if (i > 6) some.erase(some.begin() + 1, some.begin() + 5); // what is taken back leaves its rows idle
+        BlockMatrix changed = reference;
+        for (const auto& change : some) add(change, changed);
+        ASSERT_TRUE(solver.update(some));
+        const Eigen::VectorXd b = Eigen::VectorXd::Random(6 * pattern.n_blocks());
+        Eigen::VectorXd x;
+        solver.solve(b, x);
+        const Eigen::VectorXd expected = dense(changed).partialPivLu().solve(b);
+        EXPECT_LT((x - expected).norm(), 1e-3 * expected.norm()) << i + 1 << " changes";
+        const SolveReport report = solver.solve(changed, b, {.residual = 1e-10 * b.norm()}, 8, x);
+        EXPECT_TRUE(report.accepted);
+        EXPECT_LE(report.refinements, 4);
+    }
+    EXPECT_EQ(solver.statistics().factorizations, 1);
+}
+
 TEST(LowRankUpdate, AChangeTakenBackLeavesTheReference) {
     const auto pairs = hexagon_pairs(5);
     const BlockPattern pattern(25, pairs);

@@ -7,6 +7,7 @@
 #include "support/dense_matrix.hpp"
 #include "support/hexagon_matrix.hpp"
 
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <limits>
@@ -23,8 +24,8 @@ namespace {
 
 constexpr double single_rounding = std::numeric_limits<float>::epsilon();
 
-/// L as a full matrix, in elimination order.
-Eigen::MatrixXd full_factor(const MultifrontalFactor& factor) {
+/// L, or the transposed U, as a full matrix, in elimination order.
+Eigen::MatrixXd full_triangle(const MultifrontalFactor& factor, const float* values) {
     const BlockSupernodes& s = factor.supernodes();
     const int n = s.nu * s.first_block.back();
     Eigen::MatrixXd l = Eigen::MatrixXd::Zero(n, n);
@@ -36,12 +37,14 @@ Eigen::MatrixXd full_factor(const MultifrontalFactor& factor) {
         for (int j = 0; j < s.n_columns(k); ++j) {
             for (int i = j; i < n_rows; ++i) {
                 l(s.nu * rows[i / s.nu] + i % s.nu, s.nu * s.first_block[k] + j) =
-                    factor.values()[s.value_starts[k] + static_cast<std::int64_t>(j) * n_rows + i];
+                    values[s.value_starts[k] + static_cast<std::int64_t>(j) * n_rows + i];
             }
         }
     }
     return l;
 }
+
+Eigen::MatrixXd full_factor(const MultifrontalFactor& factor) { return full_triangle(factor, factor.values()); }
 
 Eigen::MatrixXd in_elimination_order(const Eigen::MatrixXd& matrix, const std::vector<int>& position, int nu) {
     Eigen::MatrixXd ordered(matrix.rows(), matrix.cols());
@@ -54,15 +57,17 @@ Eigen::MatrixXd in_elimination_order(const Eigen::MatrixXd& matrix, const std::v
     return ordered;
 }
 
-/// |K - L L'| / |K|.
-double error_of_factor(const BlockPattern& pattern, const BlockMatrix& matrix) {
+/// |K - L L'| / |K| or |K - L U| / |K|.
+double error_of_factor(const BlockPattern& pattern, const BlockMatrix& matrix,
+                       Symmetry symmetry = Symmetry::symmetric) {
     const std::vector<int> position = elimination_order(pattern);
     MultifrontalFactor factor;
     factor.analyze(pattern, position);
-    EXPECT_TRUE(factor.factorize(matrix));
+    EXPECT_TRUE(factor.factorize(matrix, symmetry));
     const Eigen::MatrixXd l = full_factor(factor);
+    const Eigen::MatrixXd transposed_u = full_triangle(factor, factor.upper_values());
     const Eigen::MatrixXd expected = in_elimination_order(dense(matrix), position, pattern.block_unknowns());
-    return (l * l.transpose() - expected).norm() / expected.norm();
+    return (l * transposed_u.transpose() - expected).norm() / expected.norm();
 }
 
 class MultifrontalFactorOf : public ::testing::TestWithParam<int> {};
@@ -104,6 +109,28 @@ TEST_P(MultifrontalFactorOf, RigidBlocksGivesTheMatrixToSinglePrecision) {
     EXPECT_LT(error_of_factor(pattern, matrix), 10.0 * single_rounding);
 }
 
+TEST_P(MultifrontalFactorOf, UnsymmetricCouplingsGivesTheMatrixToSinglePrecision) {
+    const BlockPattern pattern(GetParam() * GetParam(), hexagon_pairs(GetParam()));
+    std::mt19937 generator(7);
+    const BlockMatrix matrix = unsymmetric_hexagon_matrix(pattern, generator);
+    EXPECT_LT(error_of_factor(pattern, matrix, Symmetry::unsymmetric), 30.0 * single_rounding);
+    // A symmetric matrix has both factors, which differ by the diagonal alone.
+    EXPECT_LT(error_of_factor(pattern, hexagon_matrix(pattern, generator), Symmetry::unsymmetric),
+              10.0 * single_rounding);
+}
+
+TEST_P(MultifrontalFactorOf, UnsymmetricRigidBlocksGivesTheMatrixToSinglePrecision) {
+    const BlockPattern pattern(GetParam() * GetParam(), hexagon_pairs(GetParam()), Kinematics::rigid);
+    BlockMatrix matrix;
+    matrix.reset(pattern);
+    std::mt19937 generator(6);
+    std::normal_distribution<double> value;
+    for (Mat3& entry : matrix.rigid_values)
+        for (int i = 0; i < 9; ++i) entry(i / 3, i % 3) = value(generator);
+    for (int b = 0; b < pattern.n_blocks(); ++b) matrix.rigid_values[pattern.diagonal(b)] += 40.0 * Mat3::Identity();
+    EXPECT_LT(error_of_factor(pattern, matrix, Symmetry::unsymmetric), 10.0 * single_rounding);
+}
+
 INSTANTIATE_TEST_SUITE_P(Sides, MultifrontalFactorOf, ::testing::Values(1, 2, 3, 7, 16));
 
 TEST(MultifrontalFactor, HasTheOperationsAndNonzerosOfAFullMatrixWhereAllBlocksTouch) {
@@ -133,11 +160,13 @@ TEST(MultifrontalFactor, RefusesAMatrixThatIsNotPositiveDefiniteOrHasANumberThat
              {-1.0, 0.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
             BlockMatrix matrix = whole;
             matrix.values[pattern.diagonal(b)](3, 3) = value;
-            EXPECT_FALSE(factor.factorize(matrix)) << b << ": " << value;
+            EXPECT_FALSE(factor.factorize(matrix, Symmetry::symmetric)) << b << ": " << value;
             EXPECT_EQ(factor.values(), nullptr);
+            if (std::isfinite(value)) continue;
+            EXPECT_FALSE(factor.factorize(matrix, Symmetry::unsymmetric)) << b << ": " << value;
         }
     }
-    EXPECT_TRUE(factor.factorize(whole)); // nothing of it stays
+    EXPECT_TRUE(factor.factorize(whole, Symmetry::symmetric)); // nothing of it stays
 }
 
 /// Rows of blocks, each joined to the next one by a spring per unknown. The first of a row is held in `n_weak` unknowns by a weak
@@ -168,14 +197,14 @@ TEST(MultifrontalFactor, RaisesFewPivotsThatRoundingLeavesNothingOf) {
     MultifrontalFactor factor;
     factor.analyze(row, elimination_order(row));
     for (const int n_weak : {0, 1, 6}) {
-        EXPECT_TRUE(factor.factorize(weakly_held_rows(row, n_weak)));
+        EXPECT_TRUE(factor.factorize(weakly_held_rows(row, n_weak), Symmetry::symmetric));
         EXPECT_GT(full_factor(factor).diagonal().minCoeff(), 1e-3);
     }
     for (int b = 0; b + 1 < n; ++b) pairs.emplace_back(n + b, n + b + 1);
     const BlockPattern two_rows(2 * n, pairs);
     factor.analyze(two_rows, elimination_order(two_rows));
-    EXPECT_TRUE(factor.factorize(weakly_held_rows(two_rows, 3)));
-    EXPECT_FALSE(factor.factorize(weakly_held_rows(two_rows, 6)));
+    EXPECT_TRUE(factor.factorize(weakly_held_rows(two_rows, 3), Symmetry::symmetric));
+    EXPECT_FALSE(factor.factorize(weakly_held_rows(two_rows, 6), Symmetry::symmetric));
 }
 
 // The fronts at the top are wide enough to be divided in all the ways that there are.
@@ -183,19 +212,24 @@ TEST(MultifrontalFactor, HasTheSameBitsForAnyNumberOfThreads) {
     constexpr int side = 90;
     const BlockPattern pattern(side * side, hexagon_pairs(side));
     std::mt19937 generator(8);
-    const BlockMatrix matrix = hexagon_matrix(pattern, generator);
     const std::vector<int> position = elimination_order(pattern);
     const int before = blas_threads();
-    std::vector<float> expected;
-    for (const int threads : {1, 2, 3, 2, 8}) {
-        set_blas_threads(threads);
-        MultifrontalFactor factor;
-        factor.analyze(pattern, position);
-        ASSERT_TRUE(factor.factorize(matrix));
-        EXPECT_EQ(blas_threads(), threads);
-        const std::vector<float> values(factor.values(), factor.values() + factor.supernodes().value_starts.back());
-        if (expected.empty()) expected = values;
-        EXPECT_EQ(values, expected) << threads << " threads";
+    for (const Symmetry symmetry : {Symmetry::symmetric, Symmetry::unsymmetric}) {
+        const BlockMatrix matrix = symmetry == Symmetry::symmetric ? hexagon_matrix(pattern, generator)
+                                                                   : unsymmetric_hexagon_matrix(pattern, generator);
+        std::vector<float> expected;
+        for (const int threads : {1, 2, 3, 2, 8}) {
+            set_blas_threads(threads);
+            MultifrontalFactor factor;
+            factor.analyze(pattern, position);
+            ASSERT_TRUE(factor.factorize(matrix, symmetry));
+            EXPECT_EQ(blas_threads(), threads);
+            const auto n = factor.supernodes().value_starts.back();
+            std::vector<float> values(factor.values(), factor.values() + n);
+            values.insert(values.end(), factor.upper_values(), factor.upper_values() + n);
+            if (expected.empty()) expected = values;
+            EXPECT_EQ(values, expected) << threads << " threads";
+        }
     }
     set_blas_threads(before);
 }
@@ -333,7 +367,7 @@ TEST_F(LargeBodyDeathTest, LackOfMemoryThrowsAndLeavesNoFactor) {
         set_blas_threads(2);
         setrlimit(RLIMIT_AS, &limit);
         try {
-            if (!factor.factorize(matrix)) std::_Exit(1);
+            if (!factor.factorize(matrix, Symmetry::symmetric)) std::_Exit(1);
         } catch (const ResourceError&) {
             std::_Exit(factor.values() == nullptr ? lacking : 2);
         }

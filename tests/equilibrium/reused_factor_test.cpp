@@ -1,5 +1,7 @@
 #include "kluft/equilibrium/reused_factor.hpp"
 
+#include <utility>
+
 #include <gtest/gtest.h>
 
 #include "kluft/equilibrium/boundary_terms.hpp"
@@ -13,7 +15,7 @@ struct Factored {
     Factored() { linear.analyze(pattern); }
     [[nodiscard]] bool renew() {
         BlockMatrix tangent = symmetric_tangent_at_rest();
-        return factor.renew(body.problem, q, tangent);
+        return factor.renew(body.problem, q, std::move(tangent));
     }
     [[nodiscard]] BlockMatrix symmetric_tangent_at_rest() {
         BlockMatrix tangent;
@@ -78,7 +80,7 @@ TEST(ReusedFactor, IsNotMadeOfAnIndefiniteStiffness) {
     Factored factored;
     BlockMatrix tangent = factored.symmetric_tangent_at_rest();
     for (Mat6& value : tangent.values) value *= -1.0;
-    EXPECT_FALSE(factored.factor.renew(factored.body.problem, factored.q, tangent));
+    EXPECT_FALSE(factored.factor.renew(factored.body.problem, factored.q, std::move(tangent)));
     EXPECT_FALSE(factored.factor.update(factored.body.problem, factored.q));
 }
 

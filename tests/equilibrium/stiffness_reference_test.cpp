@@ -88,7 +88,7 @@ TEST(StiffnessReference, HasNoChangesWhereNothingHasChanged) {
     const Eigen::VectorXd q = body.moved_above({0.0, -1e-4});
     StiffnessReference reference;
     EXPECT_FALSE(reference.taken());
-    reference.take(body.problem, q, body.tangent(q));
+    reference.take(body.problem, q, TangentKind::symmetric, body.tangent(q));
     EXPECT_TRUE(reference.taken());
     EXPECT_TRUE(reference.changes(body.problem, q).empty());
     EXPECT_TRUE(reference.changes(body.problem, body.moved_above({0.0, -1.1e-4})).empty());
@@ -100,7 +100,7 @@ TEST(StiffnessReference, ChangesOfContactsAreTheDifferenceOfTheTangents) {
     const Eigen::VectorXd closed = body.moved_above({0.0, -1e-4});
     const auto expect_difference = [&](const Eigen::VectorXd& from, const Eigen::VectorXd& to, const char* what) {
         StiffnessReference reference;
-        reference.take(body.problem, from, body.tangent(from));
+        reference.take(body.problem, from, TangentKind::symmetric, body.tangent(from));
         const auto& changes = reference.changes(body.problem, to);
         EXPECT_GT(changes.size(), 5U) << what;
         const Eigen::MatrixXd expected = body.stiffness_of_interfaces(to) - body.stiffness_of_interfaces(from);
@@ -121,7 +121,7 @@ TEST(StiffnessReference, BrokenBondsAreChangesUnlessTheyStayLocked) {
         body.set_bonds({1, 1});
         const Eigen::MatrixXd bonded = body.stiffness_of_interfaces(q);
         StiffnessReference reference;
-        reference.take(body.problem, q, body.tangent(q));
+        reference.take(body.problem, q, TangentKind::symmetric, body.tangent(q));
         EXPECT_TRUE(reference.changes(body.problem, q).empty());
         body.set_bonds({1, 0});
         const auto& changes = reference.changes(body.problem, q);
@@ -139,7 +139,7 @@ TEST(StiffnessReference, MassesThatCountAreChangesAndOthersAreNot) {
     body.problem.eta.assign(body.system.blocks.size(), 1e6);
     const Eigen::MatrixXd before = dense(body.tangent(q));
     StiffnessReference reference;
-    reference.take(body.problem, q, body.tangent(q));
+    reference.take(body.problem, q, TangentKind::symmetric, body.tangent(q));
     body.problem.eta[0] = 4e6; // against springs of 5e10 Pa/m
     EXPECT_TRUE(reference.changes(body.problem, q).empty());
     body.problem.eta[0] = 1e6;
@@ -154,7 +154,7 @@ TEST(StiffnessReference, PatchKeepsItsNumberAsLongAsTheFactorLives) {
     const CutBody body;
     const Eigen::VectorXd closed = body.moved_above({0.0, -1e-4});
     StiffnessReference reference;
-    reference.take(body.problem, closed, body.tangent(closed));
+    reference.take(body.problem, closed, TangentKind::symmetric, body.tangent(closed));
     const auto first = reference.changes(body.problem, body.moved_above({0.0, 1e-4}));
     const auto second = reference.changes(body.problem, body.moved_above({0.0, 2e-4}));
     ASSERT_EQ(first.size(), second.size());

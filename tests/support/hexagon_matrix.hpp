@@ -47,4 +47,16 @@ inline BlockMatrix hexagon_matrix(const BlockPattern& pattern, std::mt19937& gen
     return matrix;
 }
 
+/// The same, with unsymmetric couplings of a third of the springs' size between neighbours, as friction makes them.
+inline BlockMatrix unsymmetric_hexagon_matrix(const BlockPattern& pattern, std::mt19937& generator) {
+    BlockMatrix matrix = hexagon_matrix(pattern, generator);
+    std::normal_distribution<double> value(0.0, 0.3);
+    for (int a = 0; a < pattern.n_blocks(); ++a) {
+        for (int entry = pattern.row_start(a); entry < pattern.row_start(a + 1); ++entry) {
+            for (int i = 0; i < 36; ++i) matrix.values[entry](i / 6, i % 6) += value(generator);
+        }
+    }
+    return matrix;
+}
+
 } // namespace kluft

@@ -1,5 +1,5 @@
-// Partial Cholesky factorization of a dense symmetric matrix, a front, in single precision. It is divided into parts of
-// fixed sizes, so that the result does not depend on who computes which.
+// Partial factorization L L' or L U of a dense matrix, a front, in single precision and without pivoting. It is divided
+// into parts of fixed sizes, so that the result does not depend on who computes which.
 #pragma once
 
 #include <functional>
@@ -10,17 +10,28 @@ namespace kluft {
 /// Does body(i) for all i < n, in any order.
 using Sharing = std::function<void(int n, const std::function<void(int)>& body)>;
 
-/// A front of n_columns + n_below rows. Its first columns become those of L; the rest, what they leave of it.
+/// A lower triangle of a front of n_columns + n_below rows, by columns.
+struct FrontTriangle {
+    float* columns = nullptr; ///< (n_columns + n_below) x n_columns: those that are eliminated
+    float* rest = nullptr;    ///< n_below x n_below: becomes what they leave of it
+};
+
+/// The columns of `lower` become those of L. Of an unsymmetric matrix `upper` is the transpose of its upper triangle, and
+/// becomes that of a U with ones on its diagonal; of a symmetric one it is empty, and the matrix becomes L L'. What stands
+/// above the diagonal of a triangle is not used, but finite.
 struct Front {
     int n_columns = 0;
     int n_below = 0;
-    float* columns = nullptr;            ///< (n_columns + n_below) x n_columns, by columns; lower triangle
-    float* rest = nullptr;               ///< n_below x n_below, by columns; lower triangle
+    FrontTriangle lower;
+    FrontTriangle upper;
     const float* least_pivots = nullptr; ///< positive, per column
+
+    [[nodiscard]] int n_rows() const { return n_columns + n_below; }
+    [[nodiscard]] bool is_symmetric() const { return upper.columns == nullptr; }
 };
 
-/// The number of pivots that were raised to the least one of their column. Nothing if one was below the negative of that, or
-/// is no number.
+/// The number of pivots that were smaller than the least one of their column, and were raised to it. Nothing if a pivot is
+/// no number, or that of a symmetric matrix below the negative of the least one.
 [[nodiscard]] std::optional<int> factorize(const Front& front, const Sharing& share);
 
 } // namespace kluft

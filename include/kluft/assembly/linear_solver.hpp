@@ -1,6 +1,7 @@
 // Sparse direct solution of K x = b on a block pattern, with the factor reused as long as K changes little: the
-// L L' of a symmetric positive definite reference by CHOLMOD or the multifrontal method, low-rank changes on top of it, and Krylov refinement
-// against the K of the moment; or UMFPACK's L U of K itself. The only entrance to the units of either.
+// L L' of a symmetric positive definite reference by CHOLMOD or the multifrontal method, or the latter's L U of an
+// unsymmetric one, low-rank changes on top of it, and Krylov refinement against the K of the moment; or UMFPACK's L U of K
+// itself. The only entrance to the units of either.
 #pragma once
 
 #include <memory>
@@ -9,15 +10,16 @@
 #include <Eigen/Core>
 
 #include "kluft/assembly/block_matrix.hpp"
-#include "kluft/assembly/cholesky_factor.hpp"
 #include "kluft/assembly/low_rank_update.hpp"
+#include "kluft/assembly/supernodal_factor.hpp"
 
 namespace kluft {
 
 enum class Factorization {
     cholesky,         ///< supernodal LL' of the lower triangle; fails on an indefinite matrix
     rounded_cholesky, ///< the same in single precision, unless the matrix is too ill-conditioned for it: to be refined
-    lu                ///< with pivoting inside fronts
+    rounded_lu, ///< in single precision without pivoting, of an unsymmetric matrix near a positive definite one: to be refined
+    lu          ///< with pivoting inside fronts
 };
 
 struct LinearSolverStatistics {
@@ -61,7 +63,7 @@ public:
     /// The same, and the values of the matrix are gone afterwards; before a factor in double precision takes its memory.
     [[nodiscard]] bool factorize(BlockMatrix&& matrix, Factorization kind);
 
-    /// Puts low-rank changes on top of a Cholesky factor: the complete list of what has changed since `factorize`.
+    /// Puts low-rank changes on top of a factor that is not `lu`: the complete list of what has changed since `factorize`.
     /// False, and the factor should be renewed, if their rank exceeds max_rank() or the changed matrix is singular.
     [[nodiscard]] bool update(const std::vector<StiffnessChange>& changes);
 

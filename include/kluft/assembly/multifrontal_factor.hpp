@@ -1,5 +1,5 @@
-// The factor L L' = K of a large symmetric positive definite stiffness in single precision, by the multifrontal method
-// (Duff and Reid 1983, Liu 1992) on the graph of blocks.
+// The factor L L' or L U of a large stiffness in single precision, by the multifrontal method (Duff and Reid 1983, Liu 1992)
+// on the graph of blocks.
 #pragma once
 
 #include <array>
@@ -12,6 +12,11 @@
 
 namespace kluft {
 
+enum class Symmetry {
+    symmetric,  ///< and positive definite: L L'
+    unsymmetric ///< L U without pivoting: what friction and following loads make of a stiffness
+};
+
 /// Positions are those of the elimination order, a postorder. The bits of the factor do not depend on the number of threads.
 class MultifrontalFactor {
 public:
@@ -20,17 +25,23 @@ public:
 
     /// With as many threads as the BLAS has. A pivot that rounding may have made of zero is raised to what rounding can
     /// make: so the motion of a whole body that nearly nothing holds, of which single precision leaves nothing, costs the
-    /// refinement a vector. False if the matrix is not positive definite or has more than six such pivots; there is no
-    /// factor then. Throws ResourceError out of memory.
-    [[nodiscard]] bool factorize(const BlockMatrix& matrix);
+    /// refinement a vector. False if a matrix that should be is not positive definite, or there are more than six such
+    /// pivots; there is no factor then. Throws ResourceError out of memory.
+    [[nodiscard]] bool factorize(const BlockMatrix& matrix, Symmetry symmetry);
 
     /// Gives the memory of the factor back; the analysis stays.
-    void forget() { values_.reset(); }
+    void forget() {
+        values_.reset();
+        upper_values_.reset();
+    }
 
     [[nodiscard]] const BlockSupernodes& supernodes() const { return supernodes_; }
     /// Numbers of L where `supernodes().value_starts` says; nullptr if there is no factor. A few more may be read behind.
     [[nodiscard]] const float* values() const { return values_.get(); }
-    /// Bytes of the numbers, and the most that fronts take besides while they are made, by one thread.
+    /// The same of the transposed U; those of L for L L'.
+    [[nodiscard]] const float* upper_values() const { return upper_values_ ? upper_values_.get() : values_.get(); }
+    /// Bytes of the numbers of L L', and the most that fronts take besides while they are made, by one thread. Of L U
+    /// both are twice as many.
     [[nodiscard]] double bytes() const;
     [[nodiscard]] double front_bytes() const;
 
@@ -61,7 +72,10 @@ private:
     std::vector<int> block_at_; ///< at each position
     BlockSupernodes supernodes_;
     Plan plan_;
-    std::unique_ptr<float[]> values_; // NOLINT(modernize-avoid-c-arrays): its numbers are left unset
+    // NOLINTBEGIN(modernize-avoid-c-arrays): their numbers are left unset
+    std::unique_ptr<float[]> values_;
+    std::unique_ptr<float[]> upper_values_; ///< of the transposed U; empty for L L'
+    // NOLINTEND(modernize-avoid-c-arrays)
 };
 
 } // namespace kluft

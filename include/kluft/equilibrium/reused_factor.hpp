@@ -9,20 +9,23 @@
 
 namespace kluft {
 
-/// Keeps the factor of a symmetric tangent for as long as it is worth it.
+/// Keeps the factor of a tangent for as long as it is worth it.
 class ReusedFactor {
 public:
     explicit ReusedFactor(LinearSolver& linear_solver) : linear_solver_(linear_solver) {}
 
-    /// The linear solver's factor is not, or should not be, that of a symmetric tangent any more.
+    /// The linear solver's factor is not, or should not be, that of a tangent any more.
     void forget() { reference_.forget(); }
 
-    /// Puts all changes of the symmetric tangent at q on top of the factor (30). False if there is no factor worth
+    /// Puts all changes of the tangent at q on top of the factor (30). False if there is no factor worth
     /// keeping.
     [[nodiscard]] bool update(const EquilibriumProblem& problem, const Eigen::VectorXd& q);
     /// Makes the factor anew of the symmetric tangent at q with the prescribed motions taken out; its values are gone
     /// then. False if it is not positive definite.
-    [[nodiscard]] bool renew(const EquilibriumProblem& problem, const Eigen::VectorXd& q, BlockMatrix& tangent);
+    [[nodiscard]] bool renew(const EquilibriumProblem& problem, const Eigen::VectorXd& q, BlockMatrix&& symmetric);
+    /// The same of the exact tangent, which stays. False if its pivots are too small.
+    [[nodiscard]] bool renew_exact(const EquilibriumProblem& problem, const Eigen::VectorXd& q,
+                                   const BlockMatrix& exact);
 
     /// Solves matrix x = b, refined until no more than `residual` is left of b.
     SolveReport solve(const BlockMatrix& matrix, const Eigen::VectorXd& b, double residual, Eigen::VectorXd& x);
@@ -31,6 +34,8 @@ public:
     void count(int refinements);
 
 private:
+    [[nodiscard]] bool begin(bool is_factorized);
+
     LinearSolver& linear_solver_;
     StiffnessReference reference_;
     int analysis_ = 0;           ///< of the linear solver, when the factor was made

@@ -15,17 +15,18 @@
 
 namespace kluft {
 
-/// Keeps, for every contact, the symmetric stiffness that went into the factor. The points of an overlap are one patch:
+/// Keeps, for every contact, the stiffness that went into the factor. The points of an overlap are one patch:
 /// gap and slip at its two ends, between which both are linear, so that three points have rank four.
 class StiffnessReference {
 public:
-    /// The factor is that of the symmetric tangent of the problem at q, with the prescribed motions taken out.
-    void take(const EquilibriumProblem& problem, const Eigen::VectorXd& q, const BlockMatrix& tangent);
+    /// The factor is that of the tangent of this kind of the problem at q, with the prescribed motions taken out.
+    void take(const EquilibriumProblem& problem, const Eigen::VectorXd& q, TangentKind kind,
+              const BlockMatrix& tangent);
     /// There is no factor.
     void forget() { taken_ = false; }
     [[nodiscard]] bool taken() const { return taken_; }
 
-    /// Changes of the symmetric tangent at q against the factor. Small ones are left out: those of rotations, of the
+    /// Changes of the tangent at q, of the kind of the factor's, against that. Small ones are left out: those of rotations, of the
     /// elastic tangent and of sliding along a contact are for the refinement.
     const std::vector<StiffnessChange>& changes(const EquilibriumProblem& problem, const Eigen::VectorXd& q);
 
@@ -41,7 +42,8 @@ private:
     };
 
     static Key key_of(const ContactKey& k);
-    static void collect(const EquilibriumProblem& problem, const Eigen::VectorXd& q, std::vector<Patch>& patches);
+    static void collect(const EquilibriumProblem& problem, const Eigen::VectorXd& q, TangentKind kind,
+                        std::vector<Patch>& patches);
     void add_broken_bonds(const EquilibriumProblem& problem);
     void add_masses(const EquilibriumProblem& problem, const Eigen::VectorXd& q);
     void add_mass(const EquilibriumProblem& problem, int b, const Mat6& mass);
@@ -50,6 +52,7 @@ private:
     }
 
     bool taken_ = false;
+    TangentKind kind_ = TangentKind::symmetric;
     std::vector<Patch> reference_; ///< sorted by key
     std::vector<int> bonded_;      ///< interfaces that were bonds, ascending
     std::vector<double> eta_;      ///< per block, or empty

@@ -1,4 +1,4 @@
-#include "kluft/assembly/cholesky_factor.hpp"
+#include "kluft/assembly/supernodal_factor.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -26,7 +26,7 @@ constexpr double roundable_pivot_ratio = 1e-5;
 
 } // namespace
 
-struct CholeskyFactor::Cholmod {
+struct SupernodalFactor::Cholmod {
     Cholmod() {
         cholmod_l_start(&common);
         common.itype = CHOLMOD_LONG;
@@ -124,26 +124,32 @@ std::vector<std::int64_t> unknowns_of(const BlockSupernodes& s) {
 
 } // namespace
 
-CholeskyFactor::CholeskyFactor() : cholmod_(std::make_unique<Cholmod>()) {}
-CholeskyFactor::~CholeskyFactor() = default;
+SupernodalFactor::SupernodalFactor() : cholmod_(std::make_unique<Cholmod>()) {}
+SupernodalFactor::~SupernodalFactor() = default;
 
-void CholeskyFactor::analyze(const BlockPattern& pattern, const std::vector<int>& position) {
+void SupernodalFactor::analyze(const BlockPattern& pattern, const std::vector<int>& position) {
     cholmod_l_free_factor(&cholmod_->factor, &cholmod_->common);
     columns_ = BlockColumns(pattern, position, BlockColumns::Part::lower);
+    position_ = position;
     multifrontal_.reset();
-    rounded_ = nullptr;
+    rounded_ = rounded_upper_ = nullptr;
     is_multifrontal_ = columns_.size() >= multifrontal_unknowns;
     if (is_multifrontal_) {
-        multifrontal_ = std::make_unique<MultifrontalFactor>();
-        multifrontal_->analyze(pattern, position);
-        rows_ = unknowns_of(multifrontal_->supernodes());
+        analyze_for_multifrontal(pattern);
     } else {
         analyze_for_cholmod();
     }
     find_path_tree();
 }
 
-void CholeskyFactor::analyze_for_cholmod() {
+void SupernodalFactor::analyze_for_multifrontal(const BlockPattern& pattern) {
+    if (multifrontal_) return;
+    multifrontal_ = std::make_unique<MultifrontalFactor>();
+    multifrontal_->analyze(pattern, position_);
+    rows_ = unknowns_of(multifrontal_->supernodes());
+}
+
+void SupernodalFactor::analyze_for_cholmod() {
     if (cholmod_->factor != nullptr) return;
     columns_.gather_structure();
     cholmod_sparse matrix = lower_triangle(columns_);
@@ -156,7 +162,7 @@ void CholeskyFactor::analyze_for_cholmod() {
     }
 }
 
-void CholeskyFactor::find_path_tree() {
+void SupernodalFactor::find_path_tree() {
     const int n = is_multifrontal_ ? multifrontal_->supernodes().size() : static_cast<int>(cholmod_->factor->nsuper);
     parent_.assign(n, -1);
     of_column_.assign(columns_.size(), 0);
@@ -170,11 +176,14 @@ void CholeskyFactor::find_path_tree() {
     }
 }
 
-bool CholeskyFactor::factorize_in_single(const BlockMatrix& matrix) {
-    if (!multifrontal_) return false;
+bool SupernodalFactor::factorize_in_single(const BlockMatrix& matrix, Symmetry symmetry) {
+    const bool is_symmetric = symmetry == Symmetry::symmetric;
+    if (is_symmetric && columns_.size() < multifrontal_unknowns) return false;
+    analyze_for_multifrontal(*matrix.pattern);
     if (!is_multifrontal_) forget();
-    if (!multifrontal_->factorize(matrix)) return false;
+    if (!multifrontal_->factorize(matrix, symmetry)) return false;
     rounded_ = multifrontal_->values();
+    rounded_upper_ = is_symmetric ? nullptr : multifrontal_->upper_values();
     if (!is_multifrontal_) {
         is_multifrontal_ = true;
         find_path_tree();
@@ -182,7 +191,7 @@ bool CholeskyFactor::factorize_in_single(const BlockMatrix& matrix) {
     return true;
 }
 
-void CholeskyFactor::gather(const BlockMatrix& matrix) {
+void SupernodalFactor::gather(const BlockMatrix& matrix) {
     if (is_large()) forget();
     analyze_for_cholmod();
     if (is_multifrontal_) {
@@ -192,8 +201,8 @@ void CholeskyFactor::gather(const BlockMatrix& matrix) {
     columns_.gather(matrix);
 }
 
-bool CholeskyFactor::factorize(Precision precision) {
-    rounded_ = nullptr;
+bool SupernodalFactor::factorize(Precision precision) {
+    rounded_ = rounded_upper_ = nullptr;
     cholmod_->allocate_factor();
     cholmod_sparse view = lower_triangle(columns_);
     cholmod_l_factorize(&view, cholmod_->factor, &cholmod_->common);
@@ -217,7 +226,7 @@ bool CholeskyFactor::factorize(Precision precision) {
 }
 
 /// A number that is none in a row of L makes the pivot of that row one too; the BLAS takes it for positive.
-bool CholeskyFactor::has_finite_pivots() const {
+bool SupernodalFactor::has_finite_pivots() const {
     const auto* values = static_cast<const double*>(cholmod_->factor->x);
     double sum = 0.0;
     for (int k = 0; k < n_supernodes(); ++k) {
@@ -229,7 +238,7 @@ bool CholeskyFactor::has_finite_pivots() const {
 }
 
 /// Of the diagonal entries of K, what elimination has left of them.
-double CholeskyFactor::least_pivot_ratio() {
+double SupernodalFactor::least_pivot_ratio() {
     const auto* values = static_cast<const double*>(cholmod_->factor->x);
     double least = 1.0;
     for (int k = 0; k < n_supernodes(); ++k) {
@@ -243,13 +252,13 @@ double CholeskyFactor::least_pivot_ratio() {
     return least;
 }
 
-void CholeskyFactor::forget() {
-    rounded_ = nullptr;
+void SupernodalFactor::forget() {
+    rounded_ = rounded_upper_ = nullptr;
     if (multifrontal_) multifrontal_->forget();
     cholmod_->free_numbers();
 }
 
-void CholeskyFactor::solve_lower(std::vector<double>& x) {
+void SupernodalFactor::solve_lower(std::vector<double>& x) {
     if (rounded_ == nullptr) return cholmod_->solve(CHOLMOD_L, x);
     for (int k = 0; k < n_supernodes(); ++k) {
         const Supernode s = supernode(k);
@@ -262,36 +271,49 @@ void CholeskyFactor::solve_lower(std::vector<double>& x) {
     }
 }
 
-void CholeskyFactor::solve_upper(std::vector<double>& x) {
+void SupernodalFactor::solve_upper(std::vector<double>& x) {
     if (rounded_ == nullptr) return cholmod_->solve(CHOLMOD_Lt, x);
+    const float* const values = is_symmetric() ? rounded_ : rounded_upper_;
     for (int k = n_supernodes() - 1; k >= 0; --k) {
         const Supernode s = supernode(k);
         double* const top = x.data() + s.first_column;
         work_.resize(s.n_rows + rounded_padding);
         std::copy_n(top, s.n_columns, work_.begin());
         for (int i = s.n_columns; i < s.n_rows; ++i) work_[i] = x[s.rows[i]];
-        substitute_back(s.n_columns, s.n_rows, rounded_ + s.first_value, work_.data());
+        substitute_back(s.n_columns, s.n_rows, values + s.first_value, work_.data());
         std::copy_n(work_.begin(), s.n_columns, top);
     }
 }
 
-const double* CholeskyFactor::values(const Supernode& supernode, std::vector<double>& room) const {
-    if (rounded_ == nullptr || rounded_ == copy_.data())
-        return static_cast<const double*>(cholmod_->factor->x) + supernode.first_value;
-    const float* const first = rounded_ + supernode.first_value;
+namespace {
+
+const double* widened(const Supernode& supernode, const float* values, std::vector<double>& room) {
+    const float* const first = values + supernode.first_value;
     const std::size_t n = static_cast<std::size_t>(supernode.n_rows) * supernode.n_columns;
     if (room.size() < n) room.resize(n);
     for (std::size_t i = 0; i < n; ++i) room[i] = first[i];
     return room.data();
 }
 
-bool CholeskyFactor::is_large() const {
-    if (multifrontal_) return multifrontal_->bytes() >= large_factor;
+} // namespace
+
+const double* SupernodalFactor::values(const Supernode& supernode, std::vector<double>& room) const {
+    if (rounded_ == nullptr || rounded_ == copy_.data())
+        return static_cast<const double*>(cholmod_->factor->x) + supernode.first_value;
+    return widened(supernode, rounded_, room);
+}
+
+const double* SupernodalFactor::upper_values(const Supernode& supernode, std::vector<double>& room) const {
+    return is_symmetric() ? values(supernode, room) : widened(supernode, rounded_upper_, room);
+}
+
+bool SupernodalFactor::is_large() const {
+    if (is_multifrontal_) return multifrontal_->bytes() >= large_factor;
     return sizeof(double) * static_cast<double>(cholmod_->factor->xsize) >= large_factor;
 }
 
-FactorCost CholeskyFactor::cost(Precision precision) {
-    if (multifrontal_ && precision == Precision::single) {
+FactorCost SupernodalFactor::cost(Precision precision) {
+    if (is_multifrontal_ && precision == Precision::single) {
         const BlockSupernodes& supernodes = multifrontal_->supernodes();
         return {supernodes.nonzeros, supernodes.flops, multifrontal_->bytes(), multifrontal_->front_bytes()};
     }
@@ -301,7 +323,7 @@ FactorCost CholeskyFactor::cost(Precision precision) {
     return {common.lnz, common.fl, bytes, 0.0};
 }
 
-Supernode CholeskyFactor::supernode(int k) const {
+Supernode SupernodalFactor::supernode(int k) const {
     Supernode s;
     if (is_multifrontal_) {
         const BlockSupernodes& all = multifrontal_->supernodes();
