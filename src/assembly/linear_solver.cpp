@@ -178,7 +178,9 @@ const LinearSolverStatistics& LinearSolver::statistics() const { return backend_
 FactorCost factor_cost(const BlockPattern& pattern, Factorization kind) {
     SupernodalFactor factor;
     factor.analyze(pattern, elimination_order(pattern));
-    return factor.cost(kind == Factorization::rounded_cholesky ? Precision::single : Precision::full);
+    const bool in_single = kind == Factorization::rounded_cholesky || kind == Factorization::rounded_lu;
+    return factor.cost(in_single ? Precision::single : Precision::full,
+                       kind == Factorization::rounded_lu ? Symmetry::unsymmetric : Symmetry::symmetric);
 }
 
 } // namespace kluft

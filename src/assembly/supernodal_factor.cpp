@@ -20,6 +20,9 @@ constexpr double large_factor = 8e6;
 /// Unknowns from which on a body has a multifrontal factor, where single precision is enough.
 constexpr std::int64_t multifrontal_unknowns = 6'000;
 
+/// Bytes of L beyond which memory matters more than the vectors that U saves.
+constexpr double largest_with_u = 1e9;
+
 /// Least share of a diagonal entry that elimination may leave for the factor to be rounded: rounding to 6e-8 of the
 /// diagonal then stays far below it.
 constexpr double roundable_pivot_ratio = 1e-5;
@@ -180,6 +183,7 @@ bool SupernodalFactor::factorize_in_single(const BlockMatrix& matrix, Symmetry s
     const bool is_symmetric = symmetry == Symmetry::symmetric;
     if (is_symmetric && columns_.size() < multifrontal_unknowns) return false;
     analyze_for_multifrontal(*matrix.pattern);
+    if (!is_symmetric && multifrontal_->bytes() > largest_with_u) return false;
     if (!is_multifrontal_) forget();
     if (!multifrontal_->factorize(matrix, symmetry)) return false;
     rounded_ = multifrontal_->values();
@@ -312,10 +316,13 @@ bool SupernodalFactor::is_large() const {
     return sizeof(double) * static_cast<double>(cholmod_->factor->xsize) >= large_factor;
 }
 
-FactorCost SupernodalFactor::cost(Precision precision) {
+FactorCost SupernodalFactor::cost(Precision precision, Symmetry symmetry) {
     if (is_multifrontal_ && precision == Precision::single) {
         const BlockSupernodes& supernodes = multifrontal_->supernodes();
-        return {supernodes.nonzeros, supernodes.flops, multifrontal_->bytes(), multifrontal_->front_bytes()};
+        const double bytes = multifrontal_->bytes();
+        const bool has_u = symmetry == Symmetry::unsymmetric && bytes <= largest_with_u;
+        const double n_triangles = has_u ? 2.0 : 1.0;
+        return {supernodes.nonzeros, supernodes.flops, n_triangles * bytes, n_triangles * multifrontal_->front_bytes()};
     }
     analyze_for_cholmod();
     const cholmod_common& common = cholmod_->common;

@@ -123,11 +123,20 @@ double estimated_memory(const Scene& scene, const Model& model, double factor) {
     return scene.output.pictures ? std::max(run, pictures + blocks.pictures) : run;
 }
 
+/// The one that takes most memory.
+Factorization largest_factorization(const Scene& scene, const Model& model) {
+    if (!scene.solver.reuse) return Factorization::cholesky;
+    const bool slides = std::ranges::any_of(
+        model.system.interfaces, [&](const Interface& interface) { return model.bonds[law_of(interface)] == 0; });
+    return slides && scene.solver.tangent == Tangent::unsymmetric ? Factorization::rounded_lu
+                                                                  : Factorization::rounded_cholesky;
+}
+
 double say_memory(const Scene& scene, const Model& model, Lines& lines) {
     std::vector<std::pair<int, int>> pairs;
     for (const Interface& interface : model.system.interfaces) pairs.emplace_back(interface.block_a, interface.block_b);
     const FactorCost cost = factor_cost(BlockPattern(model.system.n_blocks(), pairs, model.kinematics),
-                                        scene.solver.reuse ? Factorization::rounded_cholesky : Factorization::cholesky);
+                                        largest_factorization(scene, model));
     const bool unsymmetric_factors = scene.solver.tangent == Tangent::unsymmetric && !scene.solver.reuse;
     const double factor = (unsymmetric_factors ? 3.0 : 1.0) * cost.bytes;
     const double memory = estimated_memory(scene, model, factor + cost.working_bytes);

@@ -49,7 +49,7 @@ public:
     /// Symbolic analysis; forgets the earlier factor. Throws ResourceError out of memory.
     void analyze(const BlockPattern& pattern, const std::vector<int>& position);
     /// By the multifrontal method. False if the matrix is too ill-conditioned for single precision, or symmetric and the body
-    /// too small for this to be faster; there is no factor then, and the other way remains. Throws ResourceError out of
+    /// too small for this to be faster, or L U would take too much memory; there is no factor then, and the other way remains. Throws ResourceError out of
     /// memory.
     [[nodiscard]] bool factorize_in_single(const BlockMatrix& matrix, Symmetry symmetry);
     /// Copies what the next `factorize` reads; there is no factor until then.
@@ -62,8 +62,9 @@ public:
     void solve_lower(std::vector<double>& x);
     void solve_upper(std::vector<double>& x);
 
-    /// Of a factor of that precision, or of the one in double precision where the body is small.
-    [[nodiscard]] FactorCost cost(Precision precision);
+    /// Of a factor of that precision, or of the one in double precision where the body is small; the operations are those
+    /// of L L'.
+    [[nodiscard]] FactorCost cost(Precision precision, Symmetry symmetry);
     /// Whether the factor is so large that memory is given up for it, rather than taken anew afterwards.
     [[nodiscard]] bool is_large() const;
     [[nodiscard]] bool is_multifrontal() const { return is_multifrontal_; }
