@@ -18,7 +18,7 @@ namespace {
 constexpr double large_factor = 8e6;
 
 /// Unknowns from which on a body has a multifrontal factor, where single precision is enough.
-constexpr std::int64_t multifrontal_unknowns = 6'000;
+constexpr std::int64_t multifrontal_unknowns = 1'500;
 
 /// Bytes of L beyond which memory matters more than the vectors that U saves.
 constexpr double largest_with_u = 1e9;

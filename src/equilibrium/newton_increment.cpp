@@ -32,9 +32,12 @@ void add_damping(const EquilibriumProblem& problem, double damping, BlockMatrix&
         matrix.values[matrix.pattern->diagonal(b)] += damping * mass_matrix(blocks[b], problem.least_mass_area);
 }
 
-bool slides(const EquilibriumProblem& problem, const Eigen::VectorXd& q) {
-    for (int i = 0; i < static_cast<int>(problem.body.placement->contacts.size()); ++i)
-        if (contact_traction(problem.body, i, q).state == ContactState::sliding) return true;
+/// Whether a point slides under a limit that follows its pressure.
+bool has_friction_in_tangent(const EquilibriumProblem& problem, const Eigen::VectorXd& q) {
+    for (int i = 0; i < static_cast<int>(problem.body.placement->contacts.size()); ++i) {
+        const PointTraction traction = contact_traction(problem.body, i, q);
+        if (traction.state == ContactState::sliding && traction.tangent(0, 1) != traction.tangent(1, 0)) return true;
+    }
     return false;
 }
 
@@ -92,7 +95,7 @@ bool NewtonIncrement::solve_with_reuse(const NewtonPoint& at, TangentKind kind) 
         assemble(at, kind);
         if (solve_refined(at)) return true;
     }
-    if (kind == TangentKind::exact && slides(problem, at.q)) {
+    if (kind == TangentKind::exact && has_friction_in_tangent(problem, at.q)) {
         assemble(at, kind);
         if (factor_.renew_exact(problem, at.q, matrix_) && solve_refined(at)) return true;
     }
