@@ -69,7 +69,12 @@ Equilibrium advance(StepInProgress& p, PlacedState& placed) {
         if (!found.balanced && p.bench.loads.constraints().rows().empty())
             fail(p, found, found.viscous_share, FailureKind::no_equilibrium);
     }
-    if (by_events && found.balanced) found = cut_at_failure(p, placed, std::move(found));
+    if (by_events && found.balanced) {
+        const Eigen::VectorXd beyond = found.displacement;
+        found = cut_at_failure(p, placed, std::move(found));
+        if (found.load_factor < target) // the rest of the way is predicted from what it was without the event
+            p.step.end.memory.rate = (beyond - found.displacement) / (target - found.load_factor);
+    }
     p.step.smooth = p.step.smooth && found.load_factor == target;
     return found;
 }
