@@ -95,7 +95,7 @@ bool NewtonIncrement::solve_with_reuse(const NewtonPoint& at, TangentKind kind) 
         assemble(at, kind);
         if (solve_refined(at)) return true;
     }
-    if (kind == TangentKind::exact && has_friction_in_tangent(problem, at.q)) {
+    if (kind == TangentKind::exact && factor_.friction_is_costly() && has_friction_in_tangent(problem, at.q)) {
         assemble(at, kind);
         if (factor_.renew_exact(problem, at.q, matrix_) && solve_refined(at)) return true;
     }

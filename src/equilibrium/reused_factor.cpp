@@ -7,8 +7,9 @@ namespace kluft {
 
 namespace {
 
-constexpr int max_refinements = 60;    ///< Krylov vectors of one linear solve
-constexpr int most_held_otherwise = 6; ///< blocks: each takes a vector or two of every solution
+constexpr int max_refinements = 60;     ///< Krylov vectors of one linear solve
+constexpr int most_beside_friction = 3; ///< of a first solution that leaves friction to the refinement
+constexpr int most_held_otherwise = 6;  ///< blocks: each takes a vector or two of every solution
 
 } // namespace
 
@@ -23,19 +24,20 @@ bool ReusedFactor::update(const EquilibriumProblem& problem, const Eigen::Vector
 
 bool ReusedFactor::renew(const EquilibriumProblem& problem, const Eigen::VectorXd& q, BlockMatrix&& symmetric) {
     reference_.take(problem, q, TangentKind::symmetric, symmetric);
-    return begin(linear_solver_.factorize(std::move(symmetric), Factorization::rounded_cholesky));
+    return begin(linear_solver_.factorize(std::move(symmetric), Factorization::rounded_cholesky), false);
 }
 
 bool ReusedFactor::renew_exact(const EquilibriumProblem& problem, const Eigen::VectorXd& q, const BlockMatrix& exact) {
     reference_.take(problem, q, TangentKind::exact, exact);
-    return begin(linear_solver_.factorize(exact, Factorization::rounded_lu));
+    return begin(linear_solver_.factorize(exact, Factorization::rounded_lu), true);
 }
 
-bool ReusedFactor::begin(bool is_factorized) {
+bool ReusedFactor::begin(bool is_factorized, bool is_exact) {
     if (!is_factorized) {
         reference_.forget();
         return false;
     }
+    is_exact_ = is_exact;
     analysis_ = linear_solver_.statistics().analyses;
     fresh_refinements_ = -1;
     excess_refinements_ = 0;
@@ -50,7 +52,10 @@ SolveReport ReusedFactor::solve(const BlockMatrix& matrix, const Eigen::VectorXd
 }
 
 void ReusedFactor::count(int refinements) {
-    if (fresh_refinements_ < 0) fresh_refinements_ = refinements;
+    if (fresh_refinements_ < 0) {
+        fresh_refinements_ = refinements;
+        if (!is_exact_ && refinements > most_beside_friction) friction_is_costly_ = true;
+    }
     excess_refinements_ += std::max(0, refinements - fresh_refinements_);
 }
 

@@ -129,7 +129,7 @@ StepGoal goal_at(const StepBench& bench, double load_factor, bool checks_cracks)
 }
 
 void begin_load_step(const StepBench& bench) {
-    if (bench.solver.repeatable) bench.search.forget_factor();
+    if (bench.solver.repeatable) bench.search.start_anew();
 }
 
 StageEnd commit_regular_step(const StepBench& bench, Step step, bool last_of_stage, State& state) {

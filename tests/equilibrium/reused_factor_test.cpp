@@ -1,5 +1,6 @@
 #include "kluft/equilibrium/reused_factor.hpp"
 
+#include <random>
 #include <utility>
 
 #include <gtest/gtest.h>
@@ -62,6 +63,39 @@ TEST(ReusedFactor, IsGivenUpWhereRefinementCostsMoreThanAFactorization) {
     EXPECT_FALSE(factored.factor.update(factored.body.problem, factored.q));
     ASSERT_TRUE(factored.renew());
     EXPECT_TRUE(factored.factor.update(factored.body.problem, factored.q));
+}
+
+// docs/theory.md: more than three vectors of a first solution with the symmetric part.
+TEST(ReusedFactor, FindsFrictionCostlyByTheFirstSolutionWithASymmetricFactor) {
+    Factored factored;
+    ASSERT_TRUE(factored.renew());
+    factored.factor.count(3);
+    factored.factor.count(9); // of later changes
+    EXPECT_FALSE(factored.factor.friction_is_costly());
+    ASSERT_TRUE(factored.renew());
+    factored.factor.count(4);
+    EXPECT_TRUE(factored.factor.friction_is_costly());
+    factored.factor.forget();
+    EXPECT_TRUE(factored.factor.friction_is_costly());
+    factored.factor.forget_all();
+    EXPECT_FALSE(factored.factor.friction_is_costly());
+}
+
+TEST(ReusedFactor, SolutionWithTheExactFactorLeavesNoMoreThanIsAskedFor) {
+    Factored factored;
+    BlockMatrix tangent = factored.symmetric_tangent_at_rest();
+    std::mt19937 generator(9);
+    std::normal_distribution<double> value(0.0, 1e-3 * tangent.trace() / static_cast<double>(factored.q.size()));
+    for (Mat6& entry : tangent.values)
+        for (int i = 0; i < 36; ++i) entry(i / 6, i % 6) += value(generator);
+    ASSERT_TRUE(factored.factor.renew_exact(factored.body.problem, factored.q, tangent));
+    const Eigen::VectorXd b = Eigen::VectorXd::Ones(factored.q.size());
+    Eigen::VectorXd x, product;
+    const SolveReport report = factored.factor.solve(tangent, b, 1e-9 * b.norm(), x);
+    EXPECT_TRUE(report.accepted);
+    EXPECT_LE(report.refinements, 4); // single precision
+    tangent.multiply(x, product);
+    EXPECT_LT((product - b).norm(), 1e-9 * b.norm());
 }
 
 TEST(ReusedFactor, SolutionLeavesNoMoreThanIsAskedFor) {

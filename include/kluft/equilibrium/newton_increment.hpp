@@ -45,8 +45,10 @@ public:
     /// Blocks whose motion would have been beyond the limit, in ascending order.
     [[nodiscard]] const std::vector<int>& limited() const { return limited_; }
 
-    /// The next increment makes a new factor: what follows does not depend on what was found before.
+    /// The next increment makes a new factor.
     void forget_factor() { factor_.forget(); }
+    /// The same, and what follows does not depend on what was found before.
+    void start_anew() { factor_.forget_all(); }
     /// Time spent so far in tangents (s).
     [[nodiscard]] double assembly_seconds() const { return assembly_seconds_; }
 

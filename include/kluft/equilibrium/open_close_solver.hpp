@@ -77,7 +77,7 @@ public:
     void set_tolerance(double tolerance) { options_.tolerance = tolerance; }
 
     /// The next linear solve makes a new factor: what follows does not depend on what was solved before.
-    void forget_factor() { newton_.forget_factor(); }
+    void start_anew() { newton_.start_anew(); }
 
     /// Time spent so far in residuals and tangents (s).
     [[nodiscard]] double assembly_seconds() const { return seconds_.residual + newton_.assembly_seconds(); }

@@ -16,6 +16,15 @@ public:
 
     /// The linear solver's factor is not, or should not be, that of a tangent any more.
     void forget() { reference_.forget(); }
+    /// The same, and nothing of what earlier factors were worth is remembered.
+    void forget_all() {
+        forget();
+        friction_is_costly_ = false;
+    }
+
+    /// Whether a solution with a new factor of a symmetric tangent has taken so many vectors that one of the exact tangent
+    /// is worth twice the operations.
+    [[nodiscard]] bool friction_is_costly() const { return friction_is_costly_; }
 
     /// Puts all changes of the tangent at q on top of the factor (30). False if there is no factor worth
     /// keeping.
@@ -34,10 +43,12 @@ public:
     void count(int refinements);
 
 private:
-    [[nodiscard]] bool begin(bool is_factorized);
+    [[nodiscard]] bool begin(bool is_factorized, bool is_exact);
 
     LinearSolver& linear_solver_;
     StiffnessReference reference_;
+    bool is_exact_ = false;
+    bool friction_is_costly_ = false;
     int analysis_ = 0;           ///< of the linear solver, when the factor was made
     int fresh_refinements_ = -1; ///< of the first solution with the factor, -1 before
     int excess_refinements_ = 0; ///< of later solutions beyond it

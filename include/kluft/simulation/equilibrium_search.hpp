@@ -51,7 +51,7 @@ public:
     /// Of |R|/F_ref, in the solves to come.
     void set_tolerance(double tolerance) { open_close_.set_tolerance(tolerance); }
     /// The next linear solve makes a new factor.
-    void forget_factor() { open_close_.forget_factor(); }
+    void start_anew() { open_close_.start_anew(); }
 
     /// Makes sure that the pattern holds the pairs of all points. Where it does not, the matrix is ordered anew, for
     /// `near_pairs` besides the pairs at interfaces.
