@@ -137,12 +137,8 @@ void SupernodalFactor::analyze(const BlockPattern& pattern, const std::vector<in
     multifrontal_.reset();
     rounded_ = rounded_upper_ = nullptr;
     is_multifrontal_ = columns_.size() >= multifrontal_unknowns;
-    if (is_multifrontal_) {
-        analyze_for_multifrontal(pattern);
-    } else {
-        analyze_for_cholmod();
-    }
-    find_path_tree();
+    parent_.clear();
+    if (is_multifrontal_) analyze_for_multifrontal(pattern);
 }
 
 void SupernodalFactor::analyze_for_multifrontal(const BlockPattern& pattern) {
@@ -165,7 +161,10 @@ void SupernodalFactor::analyze_for_cholmod() {
     }
 }
 
-void SupernodalFactor::find_path_tree() {
+/// The factor that there will be: its paths are those of one method.
+void SupernodalFactor::set_method(bool multifrontal) {
+    if (is_multifrontal_ == multifrontal && !parent_.empty()) return;
+    is_multifrontal_ = multifrontal;
     const int n = is_multifrontal_ ? multifrontal_->supernodes().size() : static_cast<int>(cholmod_->factor->nsuper);
     parent_.assign(n, -1);
     of_column_.assign(columns_.size(), 0);
@@ -188,20 +187,14 @@ bool SupernodalFactor::factorize_in_single(const BlockMatrix& matrix, Symmetry s
     if (!multifrontal_->factorize(matrix, symmetry)) return false;
     rounded_ = multifrontal_->values();
     rounded_upper_ = is_symmetric ? nullptr : multifrontal_->upper_values();
-    if (!is_multifrontal_) {
-        is_multifrontal_ = true;
-        find_path_tree();
-    }
+    set_method(true);
     return true;
 }
 
 void SupernodalFactor::gather(const BlockMatrix& matrix) {
     if (is_large()) forget();
     analyze_for_cholmod();
-    if (is_multifrontal_) {
-        is_multifrontal_ = false;
-        find_path_tree();
-    }
+    set_method(false);
     columns_.gather(matrix);
 }
 
@@ -313,7 +306,7 @@ const double* SupernodalFactor::upper_values(const Supernode& supernode, std::ve
 
 bool SupernodalFactor::is_large() const {
     if (is_multifrontal_) return multifrontal_->bytes() >= large_factor;
-    return sizeof(double) * static_cast<double>(cholmod_->factor->xsize) >= large_factor;
+    return cholmod_->factor != nullptr && sizeof(double) * static_cast<double>(cholmod_->factor->xsize) >= large_factor;
 }
 
 FactorCost SupernodalFactor::cost(Precision precision, Symmetry symmetry) {

@@ -46,7 +46,8 @@ public:
     SupernodalFactor(const SupernodalFactor&) = delete;
     SupernodalFactor& operator=(const SupernodalFactor&) = delete;
 
-    /// Symbolic analysis; forgets the earlier factor. Throws ResourceError out of memory.
+    /// Forgets the earlier factor. A method's symbolic analysis is made when it is first used, but of a large body's now.
+    /// Throws ResourceError out of memory.
     void analyze(const BlockPattern& pattern, const std::vector<int>& position);
     /// By the multifrontal method. False if the matrix is too ill-conditioned for single precision, or symmetric and the body
     /// too small for this to be faster, or L U would take too much memory; there is no factor then, and the other way remains. Throws ResourceError out of
@@ -87,14 +88,14 @@ private:
     std::unique_ptr<Cholmod> cholmod_;
     void analyze_for_cholmod();
     void analyze_for_multifrontal(const BlockPattern& pattern);
-    void find_path_tree();
+    void set_method(bool multifrontal);
     [[nodiscard]] bool has_finite_pivots() const;
     [[nodiscard]] double least_pivot_ratio();
 
     BlockColumns columns_;
     std::vector<int> position_;                        ///< of each block
     std::unique_ptr<MultifrontalFactor> multifrontal_; ///< of a large body, or once L U was asked for
-    bool is_multifrontal_ = false;                     ///< the factor that there is
+    bool is_multifrontal_ = false;                     ///< the factor that there is, or will be
     std::vector<std::int64_t> rows_;                   ///< unknowns of the supernodes of the multifrontal factor
     const float* rounded_ = nullptr;                   ///< the numbers of the factor, if it is kept in single precision
     const float* rounded_upper_ = nullptr;             ///< of the transposed U
