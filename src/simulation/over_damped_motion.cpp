@@ -25,6 +25,7 @@ constexpr double largest_cut = 0.2;       ///< of it
 constexpr double least_cut = 0.7;         ///< of one that is taken again
 constexpr double caution = 0.9;           ///< in the error expected of the next one
 constexpr double tries_apart = 4.0;       ///< growth of the pseudo-time step between two ordinary solves
+constexpr double tries_beside = 64.0;     ///< the same, while the motion is far from the end that one has found
 constexpr double far_from_expected = 2.0; ///< times the error: not the way of the motion
 constexpr double detection_motion = 5e-3; ///< of a block between two detections of contacts
 constexpr double unlimited = std::numeric_limits<double>::infinity();
@@ -107,15 +108,29 @@ bool carries_nothing(const StepInProgress& p, const Equilibrium& moved) {
     return moved.summary.force_scale <= negligible_force(carried_stress, area_of(p.bench.model.system));
 }
 
+/// Whether the motion has come to where the last ordinary solve has found its end.
+bool is_at_end(const StepInProgress& p, const Motion& motion) {
+    return motion.end.size() > 0 && relative_motion(p.bench.model.system, motion.end - p.displacement()) <=
+                                        far_from_expected * motion.allowed(0.0);
+}
+
+/// Whether an ordinary solve may find the end of the motion near by.
+bool may_end(const StepInProgress& p, const Motion& motion) {
+    if (motion.step * mass_coefficient(p.bench.model, 1.0) < shortest_last) return false;
+    if (is_at_end(p, motion)) return true;
+    const double apart = motion.end.size() > 0 ? tries_beside : tries_apart;
+    return motion.way_left <= motion.allowed(0.0) && motion.step > apart * motion.tried;
+}
+
 /// The equilibrium that the motion is about to come to, where an ordinary solve finds it.
 std::optional<Equilibrium> find_end(StepInProgress& p, PlacedState& placed, Motion& motion) {
-    const bool is_near = motion.way_left <= motion.allowed(0.0) && motion.step > tries_apart * motion.tried &&
-                         motion.step * mass_coefficient(p.bench.model, 1.0) >= shortest_last;
-    if (!is_near) return std::nullopt;
+    if (!may_end(p, motion)) return std::nullopt;
     motion.tried = motion.step;
     if (motion.detected != p.displacement()) detect_anew(p, placed, motion);
     Equilibrium found = find_at(p, placed, motion.at.load_factor, p.displacement());
-    if (!found.balanced || moved_by(p, found) > far_from_expected * motion.allowed(0.0)) return std::nullopt;
+    if (!found.balanced) return std::nullopt;
+    motion.end = found.displacement;
+    if (!is_at_end(p, motion)) return std::nullopt;
     return found;
 }
 
@@ -139,6 +154,7 @@ void restart(Motion& motion) {
     motion.step = std::min(motion.step, motion.first);
     motion.velocity.setZero();
     motion.driving.resize(0);
+    motion.end.resize(0);
     motion.step_before = motion.tried = 0.0;
     motion.way_left = unlimited;
 }

@@ -27,6 +27,7 @@ struct Motion {
     double step = 0.0;                                         ///< the next pseudo-time step
     double step_before = 0.0;                                  ///< 0 where the forces have just changed
     double tried = 0.0;                                        ///< step with which an ordinary solve was tried last
+    Eigen::VectorXd end;                                       ///< displacement that it found (m); empty where none
     double largest = 0.0;                                      ///< relative motion so far
     double way_left = std::numeric_limits<double>::infinity(); ///< relative, as the motion slows down
     Eigen::VectorXd start;                                     ///< displacement (m)
