@@ -184,6 +184,7 @@ bool SupernodalFactor::factorize_in_single(const BlockMatrix& matrix, Symmetry s
     analyze_for_multifrontal(*matrix.pattern);
     if (!is_symmetric && multifrontal_->bytes() > largest_with_u) return false;
     if (!is_multifrontal_) forget();
+    rounded_ = rounded_upper_ = nullptr; // where memory runs out, too
     if (!multifrontal_->factorize(matrix, symmetry)) return false;
     rounded_ = multifrontal_->values();
     rounded_upper_ = is_symmetric ? nullptr : multifrontal_->upper_values();

@@ -51,10 +51,13 @@ public:
             if (moved) set_stiffness();
             if (i == 0) scale = stiffness_.trace() / mass_;
             if (i == 0) damping = first_local_damping * scale;
-            if (!find_increment(damping)) return;
-            Eigen::VectorXd trial = q_ + increment_;
-            Eigen::VectorXd forces = forces_at(trial);
-            const double ratio = forces.norm() / forces_.norm();
+            double ratio = 1.0;
+            Eigen::VectorXd trial, forces;
+            if (find_increment(damping)) {
+                trial = q_ + increment_;
+                forces = forces_at(trial);
+                ratio = forces.norm() / forces_.norm();
+            }
             moved = ratio < 1.0 - least_local_fall;
             if (!moved && damping > largest_local_damping * scale) return;
             damping = moved ? std::max(least_local_damping * scale, (ratio < large_local_fall ? 0.1 : 0.3) * damping)

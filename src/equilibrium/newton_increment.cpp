@@ -91,6 +91,10 @@ bool NewtonIncrement::solve_anew(const NewtonPoint& at, TangentKind kind) {
 /// symmetric one, or by one with pivoting, whichever is the first that works.
 bool NewtonIncrement::solve_with_reuse(const NewtonPoint& at, TangentKind kind) {
     const EquilibriumProblem& problem = at.evaluator.problem();
+    if (factor_.is_left_out()) {
+        assemble(at, kind);
+        return solve_anew(at, kind);
+    }
     if (factor_.update(problem, at.q)) {
         assemble(at, kind);
         if (solve_refined(at)) return true;
@@ -103,6 +107,7 @@ bool NewtonIncrement::solve_with_reuse(const NewtonPoint& at, TangentKind kind) 
     const bool renewed = factor_.renew(problem, at.q, std::move(matrix_));
     assemble(at, kind);
     if (renewed && solve_refined(at)) return true;
+    factor_.note_failure();
     return solve_anew(at, kind);
 }
 

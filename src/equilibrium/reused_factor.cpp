@@ -10,6 +10,8 @@ namespace {
 constexpr int max_refinements = 60;     ///< Krylov vectors of one linear solve
 constexpr int most_beside_friction = 3; ///< of a first solution that leaves friction to the refinement
 constexpr int most_held_otherwise = 6;  ///< blocks: each takes a vector or two of every solution
+constexpr int most_left_out = 16;       ///< solutions after a failure
+constexpr int no_analysis = -1;         ///< there is no factor
 
 } // namespace
 
@@ -23,11 +25,13 @@ bool ReusedFactor::update(const EquilibriumProblem& problem, const Eigen::Vector
 }
 
 bool ReusedFactor::renew(const EquilibriumProblem& problem, const Eigen::VectorXd& q, BlockMatrix&& symmetric) {
+    analysis_ = no_analysis; // should memory run out
     reference_.take(problem, q, TangentKind::symmetric, symmetric);
     return begin(linear_solver_.factorize(std::move(symmetric), Factorization::rounded_cholesky), false);
 }
 
 bool ReusedFactor::renew_exact(const EquilibriumProblem& problem, const Eigen::VectorXd& q, const BlockMatrix& exact) {
+    analysis_ = no_analysis;
     reference_.take(problem, q, TangentKind::exact, exact);
     return begin(linear_solver_.factorize(exact, Factorization::rounded_lu), true);
 }
@@ -52,11 +56,23 @@ SolveReport ReusedFactor::solve(const BlockMatrix& matrix, const Eigen::VectorXd
 }
 
 void ReusedFactor::count(int refinements) {
+    failed_in_succession_ = 0;
     if (fresh_refinements_ < 0) {
         fresh_refinements_ = refinements;
         if (!is_exact_ && refinements > most_beside_friction) friction_is_costly_ = true;
     }
     excess_refinements_ += std::max(0, refinements - fresh_refinements_);
+}
+
+void ReusedFactor::note_failure() {
+    n_left_out_ = std::min(most_left_out, 1 << std::min(failed_in_succession_, 10));
+    ++failed_in_succession_;
+}
+
+bool ReusedFactor::is_left_out() {
+    if (n_left_out_ == 0) return false;
+    --n_left_out_;
+    return true;
 }
 
 } // namespace kluft

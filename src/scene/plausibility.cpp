@@ -86,6 +86,17 @@ void warn_of_one_sided_pressure(const SceneSection& root, const Scene& scene, Re
     }
 }
 
+/// What is not found counts as not there when strengths are reduced.
+void warn_of_symmetric_reduction(const SceneSection& root, const Scene& scene, ReadingContext& context) {
+    const bool reduces = std::ranges::any_of(scene.loads.stages,
+                                             [](const Stage& stage) { return stage.strength_reduction.has_value(); });
+    if (reduces && scene.solver.tangent == Tangent::symmetric)
+        context.warn(
+            root.section("solver"), "tangent",
+            "with symmetric the search may miss equilibria near the limit, so that the factor of safety is too small; "
+            "unsymmetric finds them");
+}
+
 } // namespace
 
 void warn_of_implausible_values(const SceneSection& root, const Scene& scene, ReadingContext& context) {
@@ -96,6 +107,7 @@ void warn_of_implausible_values(const SceneSection& root, const Scene& scene, Re
     for (std::size_t i = 0; i < std::min(interfaces.size(), scene.interface_types.size()); ++i)
         warn_of_joint(interfaces[i], scene.interface_types[i], context);
     warn_of_one_sided_pressure(root, scene, context);
+    warn_of_symmetric_reduction(root, scene, context);
 }
 
 } // namespace kluft

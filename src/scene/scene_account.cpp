@@ -141,8 +141,9 @@ double say_memory(const Scene& scene, const Model& model, Lines& lines) {
     const double factor = (unsymmetric_factors ? 3.0 : 1.0) * cost.bytes;
     const double memory = estimated_memory(scene, model, factor + cost.working_bytes);
     lines.push_back(
-        {"memory", fmt::format("about {:.3g} MB, of which the factor {:.3g} MB ({:.3g} flops by Cholesky's method)",
-                               1e-6 * memory, 1e-6 * factor, cost.flops)});
+        {"memory", fmt::format("about {:.3g} MB, of which the factor {:.3g} MB ({:.3g} flops by Cholesky's method){}",
+                               1e-6 * memory, 1e-6 * factor, cost.flops,
+                               model.has_potential_cracks ? "; up to twice as much where many bonds fail" : "")});
     return memory;
 }
 

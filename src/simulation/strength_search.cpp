@@ -28,6 +28,7 @@ std::optional<Failure> find_initial_equilibrium(const StepBench& bench, State& s
                                                 std::vector<StepRecord>& equilibria) {
     StepGoal goal = goal_with_strengths_of(bench, state, 0.0);
     goal.checks_cracks = false;
+    begin_load_step(bench);
     Step step = take_step(bench, state, goal);
     if (step.failure) return step.failure;
     state = std::move(step.end);

@@ -81,6 +81,27 @@ TEST(ReusedFactor, FindsFrictionCostlyByTheFirstSolutionWithASymmetricFactor) {
     EXPECT_FALSE(factored.factor.friction_is_costly());
 }
 
+// Twice as many after each failure in succession, so that what fails always costs little and what has failed once is tried again.
+TEST(ReusedFactor, IsLeftOutAfterFailures) {
+    Factored factored;
+    const auto left_out = [&] {
+        int n = 0;
+        while (factored.factor.is_left_out()) ++n;
+        return n;
+    };
+    EXPECT_EQ(left_out(), 0);
+    for (const int expected : {1, 2, 4, 8, 16, 16}) {
+        factored.factor.note_failure();
+        EXPECT_EQ(left_out(), expected);
+    }
+    factored.factor.count(3);
+    factored.factor.note_failure();
+    EXPECT_EQ(left_out(), 1);
+    factored.factor.note_failure();
+    factored.factor.forget_all();
+    EXPECT_EQ(left_out(), 0);
+}
+
 TEST(ReusedFactor, SolutionWithTheExactFactorLeavesNoMoreThanIsAskedFor) {
     Factored factored;
     BlockMatrix tangent = factored.symmetric_tangent_at_rest();

@@ -47,7 +47,7 @@ State saved_and_read(const State& state) {
 struct RepeatableScene {
     const char* name;
     const char* geometry;
-    const char* stages;
+    const char* loads;
     const char* more;
 };
 void PrintTo(const RepeatableScene& scene, std::ostream* out) { *out << scene.name; }
@@ -55,7 +55,7 @@ void PrintTo(const RepeatableScene& scene, std::ostream* out) { *out << scene.na
 class ResumedBits : public ::testing::TestWithParam<RepeatableScene> {};
 
 TEST_P(ResumedBits, AreThoseOfTheRunThatWasNotStopped) {
-    const auto& [name, geometry, stages, more] = GetParam();
+    const auto& [name, geometry, loads, more] = GetParam();
     const Scene scene = read_scene_text(std::string(R"(
 kluft: 1
 materials: {rock: {density: 2300, youngs_modulus: 1500 MPa, poissons_ratio: 0.25, cohesion: 0.05 MPa, friction_angle: 40,
@@ -63,8 +63,7 @@ materials: {rock: {density: 2300, youngs_modulus: 1500 MPa, poissons_ratio: 0.25
 interfaces:
   joint: {kind: fracture, normal_stiffness: 2 GPa/m, shear_stiffness: 1 GPa/m, friction_angle: 20, cohesion: 0.02 MPa}
   bond: {kind: potential_crack, normal_stiffness: 2 GPa/m, shear_stiffness: 1 GPa/m, fails_to: joint}
-boundaries: {bottom: {support: smooth}}
-)") + geometry + "\n" + stages + "\n" + more +
+)") + geometry + "\n" + loads + "\n" + more +
                                         "\n");
     const Model model = build_scene_model(scene).model;
     std::vector<State> states;
@@ -93,9 +92,14 @@ constexpr const char* triangles =
 constexpr const char* with_fracture = "geometry: {domain: {rectangle: {width: 0.2, height: 0.4}}, tessellation: "
                                       "{hexagons: {spacing: 0.1}, interface: bond}, "
                                       "fractures: [{trace: [[-1, 0.1], [1, 0.3]], interface: joint}]}";
-constexpr const char* pressed = "stages: [{pressure: {left: 0.1 MPa, right: 0.1 MPa, top: 0.1 MPa}, steps: 2}, "
+constexpr const char* pressed = "boundaries: {bottom: {support: smooth}}\n"
+                                "stages: [{pressure: {left: 0.1 MPa, right: 0.1 MPa, top: 0.1 MPa}, steps: 2}, "
                                 "{strain: {boundary: top, value: 1 %}, "
                                 "steps: 8}]";
+
+constexpr const char* reduced = "boundaries: {bottom: {support: pinned}}\n"
+                                "stages: [{pressure: {left: 0.1 MPa, right: 0.1 MPa, top: 0.15 MPa}, steps: 3}, "
+                                "{strength_reduction: {from: 1, to: 1.2}, steps: 4}]";
 
 INSTANTIATE_TEST_SUITE_P(
     All, ResumedBits,
@@ -104,6 +108,7 @@ INSTANTIATE_TEST_SUITE_P(
         RepeatableScene{"Triangles", triangles, pressed, "solver: {repeatable: true}"},
         RepeatableScene{"Fracture", with_fracture, pressed, "solver: {repeatable: true}"},
         RepeatableScene{"ContactsKept", with_fracture, pressed, "solver: {repeatable: true, detection_every: 4}"},
+        RepeatableScene{"StrengthReduction", with_fracture, reduced, "solver: {repeatable: true}"},
         RepeatableScene{"AllThatFail", triangles, pressed, "cracks: {update: all}\nsolver: {repeatable: true}"}),
     [](const auto& scene) { return std::string(scene.param.name); });
 

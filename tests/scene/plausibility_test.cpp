@@ -65,5 +65,15 @@ TEST(ImplausibleValues, PressureOnOneSideIsToldWhereNothingStandsAgainstIt) {
     EXPECT_THAT(warnings_of_block_with({"stages.0.pressure.left=0", "stages.0.pressure.right=0"}), IsEmpty());
 }
 
+// A wall whose factor of safety is 4.579 by the friction of its top brick came to 4.25.
+TEST(ImplausibleValues, SymmetricTangentIsToldOfWhereStrengthsAreReduced) {
+    const std::string reduction = "stages=[{pressure: {left: 1 MPa, right: 1 MPa, top: 1 MPa}}, "
+                                  "{strength_reduction: {from: 1, to: 2}, steps: 4}]";
+    EXPECT_THAT(warnings_of_block_with({reduction, "solver.tangent=symmetric"}),
+                ElementsAre(HasSubstr("solver.tangent: with symmetric the search may miss equilibria")));
+    EXPECT_THAT(warnings_of_block_with({reduction}), IsEmpty());
+    EXPECT_THAT(warnings_of_block_with({"solver.tangent=symmetric"}), IsEmpty());
+}
+
 } // namespace
 } // namespace kluft

@@ -20,10 +20,11 @@ public:
     void forget_all() {
         forget();
         friction_is_costly_ = false;
+        failed_in_succession_ = n_left_out_ = 0;
     }
 
-    /// Whether a solution with a new factor of a symmetric tangent has taken so many vectors that one of the exact tangent
-    /// is worth twice the operations.
+    /// Whether a solution with a new factor of a symmetric tangent has taken so many vectors, because of friction or of pivots
+    /// that were raised, that one of the exact tangent is worth twice the operations.
     [[nodiscard]] bool friction_is_costly() const { return friction_is_costly_; }
 
     /// Puts all changes of the tangent at q on top of the factor (30). False if there is no factor worth
@@ -42,6 +43,12 @@ public:
     /// anew.
     void count(int refinements);
 
+    /// No factor of this kind, old or new, has led to a solution: the next ones are left out, twice as many after each
+    /// failure in succession.
+    void note_failure();
+    /// Whether this solution is one of those, which it then counts as.
+    [[nodiscard]] bool is_left_out();
+
 private:
     [[nodiscard]] bool begin(bool is_factorized, bool is_exact);
 
@@ -52,6 +59,8 @@ private:
     int analysis_ = 0;           ///< of the linear solver, when the factor was made
     int fresh_refinements_ = -1; ///< of the first solution with the factor, -1 before
     int excess_refinements_ = 0; ///< of later solutions beyond it
+    int failed_in_succession_ = 0;
+    int n_left_out_ = 0; ///< solutions, still
 };
 
 } // namespace kluft
