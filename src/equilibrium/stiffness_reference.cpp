@@ -62,7 +62,7 @@ Mat6 mass_on_unknowns(const EquilibriumProblem& problem, const Eigen::VectorXd& 
     return mass;
 }
 
-std::vector<std::pair<int, Mat6>> held_blocks(const EquilibriumProblem& problem) {
+std::vector<std::pair<int, Mat6>> held_projectors(const EquilibriumProblem& problem) {
     std::vector<std::pair<int, Mat6>> held;
     for (const ConstrainedBlock& each : problem.body.loads->constraints.blocks())
         held.emplace_back(each.block, each.projector);
@@ -124,11 +124,11 @@ void StiffnessReference::take(const EquilibriumProblem& problem, const Eigen::Ve
     bonded_.clear();
     for (const Bond& bond : problem.body.placement->bonds) bonded_.push_back(bond.interface);
     numbers_.clear();
-    held_ = held_blocks(problem);
+    held_ = held_projectors(problem);
 }
 
 int StiffnessReference::n_held_otherwise(const EquilibriumProblem& problem) const {
-    const auto held = held_blocks(problem);
+    const auto held = held_projectors(problem);
     int n = 0;
     auto before = held_.begin();
     auto now = held.begin();

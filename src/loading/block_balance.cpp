@@ -26,9 +26,9 @@ constexpr double harmless_share =
 struct Meeting {
     int block_a = 0;
     int block_b = 0;
-    double force = 0.0;     ///< N/m
-    double stiffness = 0.0; ///< Pa
-    bool holds = false;     ///< bonded or locked
+    Vec2 on_a = Vec2::Zero(); ///< force on a, and its opposite on b (N/m)
+    double stiffness = 0.0;   ///< Pa
+    bool holds = false;       ///< bonded or locked
 };
 
 /// All points where blocks meet at q.
@@ -36,18 +36,18 @@ std::vector<Meeting> meetings_of(const LoadedBody& body, const Eigen::VectorXd& 
     const Placement& placement = *body.placement;
     std::vector<Meeting> meetings;
     meetings.reserve(n_bond_points * placement.bonds.size() + placement.contacts.size());
-    const auto add = [&](int a, int b, double weight, int law, const PointTraction& traction, bool holds) {
-        meetings.push_back({a, b, weight * Vec2(traction.normal, traction.shear).norm(),
-                            weight * (*body.laws)[law].normal_stiffness, holds});
+    const auto add = [&](const auto& pair, const Vec2& normal, const PointTraction& traction, bool holds) {
+        meetings.push_back({pair.block_a, pair.block_b,
+                            pair.weight * (traction.normal * normal + traction.shear * pair.tangent),
+                            pair.weight * (*body.laws)[pair.law].normal_stiffness, holds});
     };
     for (int i = 0; i < static_cast<int>(placement.bonds.size()); ++i) {
         const Bond& bond = placement.bonds[i];
-        for (int k = 0; k < n_bond_points; ++k)
-            add(bond.block_a, bond.block_b, bond.weight, bond.law, bond_traction(body, i, k, q), true);
+        for (int k = 0; k < n_bond_points; ++k) add(bond, bond.normal(), bond_traction(body, i, k, q), true);
     }
     for (const ContactPoint& point : placement.contacts) {
         const PointTraction traction = contact_traction(*body.laws, point, q);
-        add(point.block_a, point.block_b, point.weight, point.law, traction, traction.state == ContactState::locked);
+        add(point, point.normal, traction, traction.state == ContactState::locked);
     }
     return meetings;
 }
@@ -141,7 +141,7 @@ std::vector<Neighbours> neighbours_of(const std::vector<Meeting>& meetings) {
         all.back().force += next.force;
     };
     for (const Meeting& at : meetings)
-        append({std::min(at.block_a, at.block_b), std::max(at.block_a, at.block_b), at.force});
+        append({std::min(at.block_a, at.block_b), std::max(at.block_a, at.block_b), at.on_a.norm()});
     std::ranges::stable_sort(all, {}, [](const Neighbours& p) { return std::pair(p.block_a, p.block_b); });
     const std::vector<Neighbours> sorted = std::exchange(all, {});
     for (const Neighbours& next : sorted) append(next);
@@ -163,7 +163,28 @@ void keep_below_neighbours(const std::vector<Neighbours>& neighbours, OwnForces&
     }
 }
 
-/// Of a body that has shed its load (27c).
+/// The sum of the forces that the body presses on its supports and platens with, by what the blocks there get from others.
+double carried_by_supports(const LoadedBody& body, const std::vector<Meeting>& meetings) {
+    std::vector<char> supported(body.system->blocks.size(), 0);
+    for (std::size_t b = 0; b < supported.size(); ++b) supported[b] = body.system->blocks[b].fixed ? 1 : 0;
+    for (const ConstrainedBlock& each : body.loads->constraints.blocks()) supported[each.block] = 1;
+    std::vector<Vec2> forces(supported.size(), Vec2::Zero());
+    for (const Meeting& at : meetings) {
+        forces[at.block_a] += at.on_a;
+        forces[at.block_b] -= at.on_a;
+    }
+    double sum = 0.0;
+    for (std::size_t b = 0; b < supported.size(); ++b)
+        if (supported[b] != 0) sum += forces[b].norm();
+    return sum;
+}
+
+bool has_shed_its_load(const LoadedBody& body, const std::vector<Meeting>& meetings) {
+    if (!(body.carried_stress > 0.0)) return false;
+    return carried_by_supports(body, meetings) <= negligible_force(body.carried_stress, area_of(*body.system)); // (27c)
+}
+
+/// Of such a body.
 void raise_to_negligible(const LoadedBody& body, OwnForces& forces) {
     for (int b = 0; b < body.system->n_blocks(); ++b) {
         const double negligible = negligible_force(body.carried_stress, body.system->blocks[b].area);
@@ -185,7 +206,7 @@ OwnForces own_forces(const LoadedBody& body, const Eigen::VectorXd& q, const std
     for (const Meeting& at : meetings) {
         const double roundoff = roundoff_of(at.stiffness, std::max(motion(at.block_a), motion(at.block_b)));
         for (const int b : {at.block_a, at.block_b}) {
-            of_contacts[b] += at.force;
+            of_contacts[b] += at.on_a.norm();
             result.roundoff[b] = std::max(result.roundoff[b], roundoff);
         }
     }
@@ -200,8 +221,7 @@ OwnForces own_forces(const LoadedBody& body, const Eigen::VectorXd& q, const std
     }
     const std::vector<Neighbours> neighbours = neighbours_of(meetings);
     keep_below_neighbours(neighbours, result);
-    const double largest = n > 0 ? *std::max_element(of_contacts.begin(), of_contacts.end()) : 0.0;
-    if (largest <= negligible_force(body.carried_stress, area_of(*body.system))) raise_to_negligible(body, result);
+    if (has_shed_its_load(body, meetings)) raise_to_negligible(body, result);
     result.around = result.own;
     const auto take = [&](int block,
                           int other) { // a fixed one carries whatever stands on it, and is disturbed by nothing
@@ -219,6 +239,10 @@ OwnForces own_forces(const LoadedBody& body, const Eigen::VectorXd& q, const std
 
 OwnForces own_forces(const LoadedBody& body, const Eigen::VectorXd& q) {
     return own_forces(body, q, meetings_of(body, q));
+}
+
+bool has_shed_its_load(const LoadedBody& body, const Eigen::VectorXd& q) {
+    return has_shed_its_load(body, meetings_of(body, q));
 }
 
 /// The moment is h times the force on w, h dtheta = dw.

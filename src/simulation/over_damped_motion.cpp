@@ -103,9 +103,9 @@ void place_again(StepInProgress& p, PlacedState& placed, Motion& motion) {
 }
 
 /// Whether the body has shed its load: then no force is left that a slow beginning of a motion could let grow.
-bool carries_nothing(const StepInProgress& p, const Equilibrium& moved) {
-    const double carried_stress = p.loads_at(moved).carried_stress;
-    return moved.summary.force_scale <= negligible_force(carried_stress, area_of(p.bench.model.system));
+bool carries_nothing(const StepInProgress& p, const PlacedState& placed, const Equilibrium& moved) {
+    const LoadsAt at = p.loads_at(moved);
+    return has_shed_its_load(loaded_body(p.bench.model, placed.placement, at), moved.displacement);
 }
 
 /// Whether the motion has come to where the last ordinary solve has found its end.
@@ -232,8 +232,8 @@ std::optional<Equilibrium> take_pseudo_step(StepInProgress& p, PlacedState& plac
     moved.verdict =
         judge_blocks(moved.blocks, motion.last.blocks.left.empty() ? nullptr : &motion.last.blocks, p.goal.balance);
     moved.balanced = moved.verdict.balanced() && moved.viscous_share <= p.goal.balance.share;
-    const bool at_rest = motion.step >= motion.ordinary || carries_nothing(p, moved);
-    if (moved.balanced && next.load_factor == 1.0 && at_rest) return std::move(moved);
+    const bool may_rest = moved.balanced && next.load_factor == 1.0;
+    if (may_rest && (motion.step >= motion.ordinary || carries_nothing(p, placed, moved))) return std::move(moved);
     if (!move_along(p, placed, motion, std::move(next))) return motion.last;
     if (is_falling(p)) {
         fail(p, motion.last, motion.last.viscous_share, FailureKind::falling);

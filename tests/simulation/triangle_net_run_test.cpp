@@ -192,7 +192,7 @@ stages: [{{strain: {{boundary: top, value: 0.4 %}}, steps: 1}}]
 }
 
 // The second stage holds other blocks than the first. With the factor of the first each of them takes a vector or two of every solution:
-// some forty here. Nothing can change its state, so that a solve is as exact as the iteration asks for, and two do in each step.
+// 62 in this run. Nothing can change its state, so that a solve is as exact as the iteration asks for, and two do in each step.
 TEST(TriangleNetRun, ElasticStepsTakeFewVectorsAfterAChangeOfStage) {
     const auto run = run_scene(R"(
 kluft: 1

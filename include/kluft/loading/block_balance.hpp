@@ -24,6 +24,10 @@ struct OwnForces {
 };
 [[nodiscard]] OwnForces own_forces(const LoadedBody& body, const Eigen::VectorXd& q);
 
+/// Whether the supports and platens of a body that nothing else loads carry no more at q than what counts as nothing beside what the
+/// body has carried (27c). Blocks may be jammed in one another then, but nothing presses on them.
+[[nodiscard]] bool has_shed_its_load(const LoadedBody& body, const Eigen::VectorXd& q);
+
 /// The rigid part of `forces` on the six unknowns of the affine block `b` at q: force, and moment about the centroid over
 /// sqrt(area) (N/m).
 [[nodiscard]] Vec3 affine_rigid_part(const BlockSystem& system, const Eigen::VectorXd& q, const Eigen::VectorXd& forces,
