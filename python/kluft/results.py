@@ -158,7 +158,7 @@ class Results:
         rows = rows[rows["stage"] >= (self.summary.get("platen_stage") or 0)]
         if len(rows) == 0 or not self.moves_platen:
             raise InputError(f"{self.directory}: expected a run with a peak of the axial stress, found none")
-        whole = rows[~(rows["net_broken"] >= 0.95)]  # a net that is all but broken may have locked
+        whole = rows[~(rows["net_broken"] >= 0.7)]  # a net 70 % of whose bonds have failed may have locked
         rows = whole if len(whole) > 0 else rows[:1]
         return int(rows["step"][np.argmax(self._sense * rows["axial_stress"])])
 

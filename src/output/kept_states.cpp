@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
+#include "kluft/output/summary.hpp"
+
 namespace kluft {
 
 namespace {
-
-constexpr double broken_net = 0.95; ///< share of failed bonds from which a net may lock
 
 int cracks_of(const StepRecord& row) { return row.cracks_tension + row.cracks_shear; }
 
@@ -14,7 +14,7 @@ bool is_higher(const StepRecord& row, const std::optional<StepRecord>& than, std
     if (!platen_stage || row.stage < *platen_stage || !row.balanced) return false;
     if (!than) return true;
     const double sense = row.axial_strain < 0.0 ? -1.0 : 1.0; // of the platen
-    return sense * row.axial_stress > sense * than->axial_stress && !(row.net_broken >= broken_net);
+    return sense * row.axial_stress > sense * than->axial_stress && !(row.net_broken >= locking_share);
 }
 
 } // namespace

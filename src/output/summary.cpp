@@ -29,7 +29,6 @@ constexpr double ratio_slack = 1e-3;     // of Poisson's ratio, for round-off
 constexpr double fall_after_peak = 0.01; // of the peak
 constexpr double residual_share = 0.1;   // of the strain
 constexpr double strain_rounding = 1e-9; // relative
-constexpr double locking_share = 0.95;   // of the net's bonds in the middle half of the body that have failed
 constexpr double locking_rise = 0.05;    // of the largest stress until then
 
 Rows balanced_rows(const Rows& rows) {
@@ -50,7 +49,7 @@ Rows loaded_rows(const Rows& rows, std::optional<int> platen_stage) {
     return loaded;
 }
 
-/// Balanced rows up to the first one in which the net hardly has a bond left.
+/// Balanced rows up to the first one in which the net may be locked.
 Rows rows_with_bonds(const Rows& balanced) {
     const auto loose =
         std::ranges::find_if(balanced, [](const StepRecord& row) { return row.net_broken >= locking_share; });

@@ -217,7 +217,7 @@ Rows rows_of_net(const std::vector<std::pair<double, double>>& stresses, double 
 }
 
 TEST(Summary, LockedNetHasThePeakFromBeforeAndNoneReached) {
-    const Rows rows = rows_of_net({{10, 0}, {39, 0.9}, {37, 0.95}, {38, 1}, {40.96, 1}, {30, 1}});
+    const Rows rows = rows_of_net({{10, 0}, {39, 0.6}, {37, 0.7}, {38, 1}, {40.96, 1}, {30, 1}});
     const auto locked = curve_numbers(rows, rows, 1, Plane::stress);
     EXPECT_TRUE(locked.net_locked);
     EXPECT_FALSE(locked.peak_reached);
@@ -225,7 +225,7 @@ TEST(Summary, LockedNetHasThePeakFromBeforeAndNoneReached) {
     EXPECT_DOUBLE_EQ(*locked.peak_stress, 39e6);
     EXPECT_DOUBLE_EQ(*locked.peak_strain, 0.002);
     EXPECT_FALSE(locked.residual_stress.has_value());
-    const Rows pulled = rows_of_net({{10, 0}, {39, 0.9}, {37, 0.95}, {38, 1}, {40.96, 1}, {30, 1}}, -1.0);
+    const Rows pulled = rows_of_net({{10, 0}, {39, 0.6}, {37, 0.7}, {38, 1}, {40.96, 1}, {30, 1}}, -1.0);
     EXPECT_TRUE(is_net_locked(pulled, 1));
     EXPECT_DOUBLE_EQ(peak_row(pulled, 1)->axial_stress, -39e6);
 }
@@ -235,10 +235,10 @@ TEST(Summary, NetIsNotLockedByLessThanItTakes) {
         const Rows rows = rows_of_net(stresses);
         return is_net_locked(rows, 1);
     };
-    EXPECT_TRUE(locked({{39, 0.9}, {37, 0.95}, {40.96, 1}}));
-    EXPECT_FALSE(locked({{39, 0.9}, {37, 0.95}, {40.94, 1}}));          // 4.97 % above
-    EXPECT_FALSE(locked({{39, 0.9}, {37, 0.94}, {80, 0.94}, {70, 1}})); // bonds carry
-    EXPECT_FALSE(locked({{39, 0.9}, {20, 0.95}, {36, 1}}));             // rises again, but not to what the rock had
+    EXPECT_TRUE(locked({{39, 0.6}, {37, 0.7}, {40.96, 1}}));
+    EXPECT_FALSE(locked({{39, 0.6}, {37, 0.7}, {40.94, 1}}));           // 4.97 % above
+    EXPECT_FALSE(locked({{39, 0.6}, {37, 0.69}, {80, 0.69}, {70, 1}})); // bonds carry
+    EXPECT_FALSE(locked({{39, 0.6}, {20, 0.7}, {36, 1}}));              // rises again, but not to what the rock had
     EXPECT_FALSE(locked({{39, 0}, {80, 0}}));                           // no net
     EXPECT_FALSE(locked({}));
 }

@@ -46,7 +46,7 @@ private:
 };
 
 /// The load step with the largest axial stress in the sense of the platen, of the rows from the platen's stage on that are balanced; of a net
-/// that is all but broken no row counts, since it may have locked. None without such a row.
+/// 70 % of whose bonds have failed no row counts, since it may have locked. None without such a row.
 [[nodiscard]] std::optional<int> step_of_peak(const std::vector<StepRecord>& history, std::optional<int> platen_stage);
 
 } // namespace kluft
