@@ -154,6 +154,19 @@ bool looks_like_a_triaxial_test(const Scene& scene) {
     return platen && pressed;
 }
 
+/// The first stage in which a bonded body breaks under a platen with nothing at its sides, and is then followed to the end;
+/// -1 without one.
+int stage_of_loose_pieces(const Scene& scene, const Model& model) {
+    if (!model.has_potential_cracks) return -1;
+    for (std::size_t s = 0; s < scene.loads.stages.size(); ++s) {
+        const Stage& stage = scene.loads.stages[s];
+        const auto presses = [](const auto& pressure) { return pressure.second > 0.0; };
+        if (std::ranges::any_of(stage.pressure, presses)) return -1;
+        if (stage.motion && stage.motion->value > 0.0 && !stage.stop_after_drop) return static_cast<int>(s);
+    }
+    return -1;
+}
+
 } // namespace
 
 SceneAccount account_of(const Scene& scene, const SceneModel& built) {
@@ -180,6 +193,13 @@ SceneAccount account_of(const Scene& scene, const SceneModel& built) {
             {"note", fmt::format("a triaxial test is run in plane {}; a cylinder has the lateral pressure all "
                                  "around and no plane of the section is free of the others",
                                  scene.plane == Plane::strain ? "strain" : "stress")});
+    }
+    if (const int stage = stage_of_loose_pieces(scene, built.model); stage >= 0) {
+        lines.push_back(
+            {"note",
+             fmt::format("what breaks without lateral pressure comes loose, and to follow the pieces takes most of "
+                         "the time of a run; stages.{}.stop_after_drop: 80 % ends it behind the peak",
+                         stage)});
     }
     return account;
 }

@@ -26,12 +26,13 @@ constexpr double clear_turn =
 std::string block_description(const BlockSystem& system, int index) {
     const Block& block = system.blocks[index];
     const Vec2 at = system.origin + block.centroid;
-    std::string text = fmt::format("block {} at {}, area {:.3g} m2, interfaces", block_label(system, index),
-                                   place_text(at), block.area);
+    std::string text =
+        fmt::format("block {} at {}, area {:.3g} m2", block_label(system, index), place_text(at), block.area);
+    std::string interfaces;
     for (const Edge& edge : block.edges) {
-        if (edge.interface >= 0) text += fmt::format(" {}", edge.interface);
+        if (edge.interface >= 0) interfaces += fmt::format(" {}", edge.interface);
     }
-    return text;
+    return interfaces.empty() ? text : text + ", interfaces" + interfaces;
 }
 
 std::set<int> blocks_of(const std::vector<MovingBlock>& moving) {

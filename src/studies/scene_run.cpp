@@ -71,6 +71,12 @@ std::string scene_file_for(const fs::path& directory, const Scene& scene, bool m
 
 State state_to_resume(const fs::path& directory, const Scene& scene, const std::string& fingerprint) {
     const fs::path file = directory / "state.h5";
+    if (fs::is_directory(directory) && !fs::exists(file))
+        throw InputError(fmt::format(
+            "{}: expected a state to go on from, found none: no run in {} has saved one yet (they do at the "
+            "end of a stage, each output.checkpoint_seconds and where they are stopped); run without "
+            "--resume",
+            file.string(), directory.string()));
     try {
         return read_state(file, fingerprint);
     } catch (const InputError&) {

@@ -653,6 +653,28 @@ TEST_F(CommandLine, RunThatStopsAfterADropSaysSo) {
     expect_all_files(path("r"));
 }
 
+TEST_F(CommandLine, CheckSaysWhereARunWouldFollowLoosePieces) {
+    write("tiny.yaml", tiny_scene);
+    const std::vector<std::string> unconfined{"check", "tiny.yaml", "--set",
+                                              "stages.0.pressure={left: 0, right: 0, top: 0}", "--set"};
+    const auto said_with = [&](const std::string& assignment) {
+        std::vector<std::string> words = unconfined;
+        words.push_back(assignment);
+        return kluft(words).out;
+    };
+    EXPECT_THAT(said_with("stages.1.steps=8"), HasSubstr("stages.1.stop_after_drop: 80 % ends it behind the peak"));
+    EXPECT_THAT(said_with("stages.1.stop_after_drop=80 %"), Not(HasSubstr("ends it behind the peak")));
+    EXPECT_THAT(said_with("stages.1.strain.value=-1 %"), Not(HasSubstr("ends it behind the peak"))); // pulled
+    EXPECT_THAT(kluft({"check", "tiny.yaml"}).out, Not(HasSubstr("ends it behind the peak")));
+}
+
+TEST_F(CommandLine, ResumedRunSaysThatNothingWasSaved) {
+    write("tiny.yaml", tiny_scene);
+    fs::create_directories(path("r"));
+    expect_refused({"run", "tiny.yaml", "-o", "r", "--resume"},
+                   HasSubstr("state.h5: expected a state to go on from, found none: no run in r has saved one yet"));
+}
+
 TEST_F(CommandLine, QuietRunSaysNothing) {
     write("tiny.yaml", tiny_scene);
     const Result result = kluft({"run", "tiny.yaml", "--quiet", "-o", "r"});
