@@ -24,12 +24,13 @@ using Rows = std::vector<StepRecord>;
 
 constexpr double sliding_share = 0.01; // of what is closed: from there on a body is not elastic
 constexpr std::size_t least_elastic_rows = 3;
-constexpr double elastic_share = 0.3;    // of the peak differential stress, where there are fewer
-constexpr double ratio_slack = 1e-3;     // of Poisson's ratio, for round-off
-constexpr double fall_after_peak = 0.01; // of the peak
-constexpr double residual_share = 0.1;   // of the strain
-constexpr double strain_rounding = 1e-9; // relative
-constexpr double locking_rise = 0.05;    // of the largest stress until then
+constexpr double elastic_share = 0.3;       // of the peak differential stress, where there are fewer
+constexpr double ratio_slack = 1e-3;        // of Poisson's ratio, for round-off
+constexpr double fall_after_peak = 0.01;    // of the peak
+constexpr double fall_out_of_balance = 0.5; // the same, of rows that are not balanced
+constexpr double residual_share = 0.1;      // of the strain
+constexpr double strain_rounding = 1e-9;    // relative
+constexpr double locking_rise = 0.05;       // of the largest stress until then
 
 Rows balanced_rows(const Rows& rows) {
     Rows balanced;
@@ -49,6 +50,13 @@ Rows loaded_rows(const Rows& rows, std::optional<int> platen_stage) {
     return loaded;
 }
 
+/// All rows from that stage on.
+Rows rows_of_stages(const Rows& rows, std::optional<int> platen_stage) {
+    Rows later = rows;
+    std::erase_if(later, [&](const StepRecord& row) { return row.stage < platen_stage.value_or(0); });
+    return later;
+}
+
 /// Balanced rows up to the first one in which the net may be locked.
 Rows rows_with_bonds(const Rows& balanced) {
     const auto loose =
@@ -62,15 +70,20 @@ std::optional<StepRecord> largest_row(const Rows& rows, double sense) {
     return largest == rows.end() ? std::nullopt : std::optional(*largest);
 }
 
-/// While the platen stays or goes on: a stress that falls because the platen goes back says nothing of a strength.
-bool falls_after_peak(const Rows& balanced, const StepRecord& peak, double sense) {
+/// While the platen stays or goes on: a stress that falls because the platen goes back says nothing of a strength. `loaded`: rows of the
+/// stages that count, from the peak on also those out of balance. What a splinter leaves over in these, the stress is not known by, but a
+/// body that has lost most of it does not carry the peak.
+bool falls_after_peak(const Rows& loaded, const StepRecord& peak, double sense) {
     if (peak.axial_stress == 0.0) return false;
-    const double fallen = sense * peak.axial_stress - fall_after_peak * std::abs(peak.axial_stress);
+    const auto lost = [&](double share) { return sense * peak.axial_stress - share * std::abs(peak.axial_stress); };
+    const double fallen = lost(fall_after_peak);
+    const double collapsed = lost(fall_out_of_balance);
     const double gone_back = sense * peak.axial_strain - strain_rounding * std::abs(peak.axial_strain);
-    const auto at = std::ranges::find_if(
-        balanced, [&](const StepRecord& row) { return sense * row.axial_stress >= sense * peak.axial_stress; });
-    return std::any_of(at, balanced.end(), [&](const StepRecord& row) {
-        return sense * row.axial_stress <= fallen && sense * row.axial_strain >= gone_back;
+    const auto at = std::ranges::find_if(loaded, [&](const StepRecord& row) {
+        return row.balanced && sense * row.axial_stress >= sense * peak.axial_stress;
+    });
+    return std::any_of(at, loaded.end(), [&](const StepRecord& row) {
+        return sense * row.axial_stress <= (row.balanced ? fallen : collapsed) && sense * row.axial_strain >= gone_back;
     });
 }
 
@@ -310,8 +323,9 @@ CurveNumbers curve_numbers(const std::vector<StepRecord>& equilibria, const std:
         numbers.peak_strain = peak->axial_strain;
         numbers.jumps_to_peak = peak->jumps;
         numbers.net_locked = is_net_locked(all, platen_stage);
-        numbers.peak_reached = platen_stage && !numbers.net_locked &&
-                               falls_after_peak(loaded_rows(all, platen_stage), *peak, platen_sense(all, platen_stage));
+        numbers.peak_reached =
+            platen_stage && !numbers.net_locked &&
+            falls_after_peak(rows_of_stages(all, platen_stage), *peak, platen_sense(all, platen_stage));
     }
     if (numbers.peak_reached) numbers.residual_stress = residual_stress(history, platen_stage, *numbers.peak_strain);
     if (platen_stage) add_elastic_constants(all, history, *platen_stage, plane, numbers);

@@ -151,6 +151,21 @@ TEST(Summary, HasNoPeakReachedAndNoResidualWhileTheStressRises) {
     EXPECT_TRUE(curve_numbers(rows, rows, 1, Plane::stress).peak_reached);
 }
 
+// An unconfined body that had carried 33 MPa, and 0.6 MPa and less with a splinter out of balance, was said to be still rising.
+TEST(Summary, StateOutOfBalanceIsBehindThePeakWhereItCarriesLessThanHalf) {
+    Rows rows = triangle(100e6, 0.3);
+    rows.resize(53);                            // to 1 % strain
+    rows.push_back(row(60, 1, 0.0105, 0.41e6)); // axial stress 49 % lower
+    rows.back().balanced = false;
+    EXPECT_FALSE(curve_numbers(rows, rows, 1, Plane::stress).peak_reached);
+    rows.push_back(row(61, 1, 0.0106, 0.39e6)); // 51 % lower
+    rows.back().balanced = false;
+    const auto numbers = curve_numbers(rows, rows, 1, Plane::stress);
+    EXPECT_TRUE(numbers.peak_reached);
+    EXPECT_DOUBLE_EQ(*numbers.peak_stress, 1.2e6);
+    EXPECT_FALSE(numbers.residual_stress.has_value()); // of balanced states only
+}
+
 TEST(Summary, ElasticConstantsEndWhereMoreThanAHundredthOfWhatIsClosedSlides) {
     Rows rows = triangle(100e6, 0.3);
     for (auto& each : rows) {

@@ -18,8 +18,9 @@ namespace kluft {
 struct CurveNumbers {
     std::optional<double> peak_stress; ///< largest axial stress over all balanced equilibria, see peak_row
     std::optional<double> peak_strain; ///< axial strain there
-    bool peak_reached = false;         ///< a later balanced equilibrium lies at least 1 % below the peak
-    bool net_locked = false;           ///< see is_net_locked; then no peak is reached
+    bool peak_reached =
+        false; ///< a later balanced equilibrium lies at least 1 % below the peak, or a state out of balance by half
+    bool net_locked = false; ///< see is_net_locked; then no peak is reached
     /// Mean axial stress over the last 10 % of the strain (Pa); none where the peak lies in the last 20 %.
     std::optional<double> residual_stress;
     std::optional<double> axial_modulus;  ///< slope of the differential stress over the axial strain (Pa)
