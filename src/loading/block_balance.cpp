@@ -221,7 +221,8 @@ OwnForces own_forces(const LoadedBody& body, const Eigen::VectorXd& q, const std
     }
     const std::vector<Neighbours> neighbours = neighbours_of(meetings);
     keep_below_neighbours(neighbours, result);
-    if (has_shed_its_load(body, meetings)) raise_to_negligible(body, result);
+    result.has_shed_its_load = has_shed_its_load(body, meetings);
+    if (result.has_shed_its_load) raise_to_negligible(body, result);
     result.around = result.own;
     const auto take = [&](int block,
                           int other) { // a fixed one carries whatever stands on it, and is disturbed by nothing
@@ -239,10 +240,6 @@ OwnForces own_forces(const LoadedBody& body, const Eigen::VectorXd& q, const std
 
 OwnForces own_forces(const LoadedBody& body, const Eigen::VectorXd& q) {
     return own_forces(body, q, meetings_of(body, q));
-}
-
-bool has_shed_its_load(const LoadedBody& body, const Eigen::VectorXd& q) {
-    return has_shed_its_load(body, meetings_of(body, q));
 }
 
 /// The moment is h times the force on w, h dtheta = dw.

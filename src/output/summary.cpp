@@ -50,13 +50,6 @@ Rows loaded_rows(const Rows& rows, std::optional<int> platen_stage) {
     return loaded;
 }
 
-/// All rows from that stage on.
-Rows rows_of_stages(const Rows& rows, std::optional<int> platen_stage) {
-    Rows later = rows;
-    std::erase_if(later, [&](const StepRecord& row) { return row.stage < platen_stage.value_or(0); });
-    return later;
-}
-
 /// Balanced rows up to the first one in which the net may be locked.
 Rows rows_with_bonds(const Rows& balanced) {
     const auto loose =
@@ -70,19 +63,19 @@ std::optional<StepRecord> largest_row(const Rows& rows, double sense) {
     return largest == rows.end() ? std::nullopt : std::optional(*largest);
 }
 
-/// While the platen stays or goes on: a stress that falls because the platen goes back says nothing of a strength. `loaded`: rows of the
-/// stages that count, from the peak on also those out of balance. What a splinter leaves over in these, the stress is not known by, but a
-/// body that has lost most of it does not carry the peak.
-bool falls_after_peak(const Rows& loaded, const StepRecord& peak, double sense) {
+/// While the platen stays or goes on: a stress that falls because the platen goes back says nothing of a strength. Rows out of balance
+/// count too: what a splinter leaves over in these, the stress is not known by, but a body that has lost most of it does not carry the
+/// peak.
+bool falls_after_peak(const Rows& rows, const StepRecord& peak, double sense) {
     if (peak.axial_stress == 0.0) return false;
     const auto lost = [&](double share) { return sense * peak.axial_stress - share * std::abs(peak.axial_stress); };
     const double fallen = lost(fall_after_peak);
     const double collapsed = lost(fall_out_of_balance);
     const double gone_back = sense * peak.axial_strain - strain_rounding * std::abs(peak.axial_strain);
-    const auto at = std::ranges::find_if(loaded, [&](const StepRecord& row) {
-        return row.balanced && sense * row.axial_stress >= sense * peak.axial_stress;
+    const auto at = std::ranges::find_if(rows, [&](const StepRecord& row) {
+        return row.balanced && row.stage >= peak.stage && sense * row.axial_stress >= sense * peak.axial_stress;
     });
-    return std::any_of(at, loaded.end(), [&](const StepRecord& row) {
+    return std::any_of(at, rows.end(), [&](const StepRecord& row) {
         return sense * row.axial_stress <= (row.balanced ? fallen : collapsed) && sense * row.axial_strain >= gone_back;
     });
 }
@@ -324,8 +317,7 @@ CurveNumbers curve_numbers(const std::vector<StepRecord>& equilibria, const std:
         numbers.jumps_to_peak = peak->jumps;
         numbers.net_locked = is_net_locked(all, platen_stage);
         numbers.peak_reached =
-            platen_stage && !numbers.net_locked &&
-            falls_after_peak(rows_of_stages(all, platen_stage), *peak, platen_sense(all, platen_stage));
+            platen_stage && !numbers.net_locked && falls_after_peak(all, *peak, platen_sense(all, platen_stage));
     }
     if (numbers.peak_reached) numbers.residual_stress = residual_stress(history, platen_stage, *numbers.peak_strain);
     if (platen_stage) add_elastic_constants(all, history, *platen_stage, plane, numbers);

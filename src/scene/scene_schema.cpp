@@ -862,9 +862,9 @@ std::vector<KeyRule> option_rules() {
          .type = KeyType::choice,
          .choices = {"unsymmetric", "symmetric"},
          .fallback = "unsymmetric",
-         .doc = "The exact tangent, or its symmetric part (more iterations, cheaper each; near a limit it misses "
-                "equilibria "
-                "that the exact one finds: a wall under `strength_reduction` came to 4.25 in place of 4.58)."},
+         .doc =
+             "The exact tangent, or its symmetric part (more iterations, cheaper each; near a limit it misses "
+             "equilibria that the exact one finds: a wall under `strength_reduction` came to 4.25 in place of 4.58)."},
         {.path = "solver.reuse",
          .type = KeyType::boolean,
          .fallback = "true",

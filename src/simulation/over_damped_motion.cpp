@@ -102,12 +102,6 @@ void place_again(StepInProgress& p, PlacedState& placed, Motion& motion) {
     renew(p, placed);
 }
 
-/// Whether the body has shed its load: then no force is left that a slow beginning of a motion could let grow.
-bool carries_nothing(const StepInProgress& p, const PlacedState& placed, const Equilibrium& moved) {
-    const LoadsAt at = p.loads_at(moved);
-    return has_shed_its_load(loaded_body(p.bench.model, placed.placement, at), moved.displacement);
-}
-
 /// Whether the motion has come to where the last ordinary solve has found its end.
 bool is_at_end(const StepInProgress& p, const Motion& motion) {
     return motion.end.size() > 0 && relative_motion(p.bench.model.system, motion.end - p.displacement()) <=
@@ -128,8 +122,7 @@ std::optional<Equilibrium> find_end(StepInProgress& p, PlacedState& placed, Moti
     motion.tried = motion.step;
     if (motion.detected != p.displacement()) detect_anew(p, placed, motion);
     Equilibrium found = find_at(p, placed, motion.at.load_factor, p.displacement());
-    if (!found.balanced) return std::nullopt;
-    motion.end = found.displacement;
+    motion.end = found.balanced ? found.displacement : Eigen::VectorXd(); // an end that is not found again is none
     if (!is_at_end(p, motion)) return std::nullopt;
     return found;
 }
@@ -232,8 +225,9 @@ std::optional<Equilibrium> take_pseudo_step(StepInProgress& p, PlacedState& plac
     moved.verdict =
         judge_blocks(moved.blocks, motion.last.blocks.left.empty() ? nullptr : &motion.last.blocks, p.goal.balance);
     moved.balanced = moved.verdict.balanced() && moved.viscous_share <= p.goal.balance.share;
-    const bool may_rest = moved.balanced && next.load_factor == 1.0;
-    if (may_rest && (motion.step >= motion.ordinary || carries_nothing(p, placed, moved))) return std::move(moved);
+    // of a body that has shed its load no force is left that a slow beginning of a motion could let grow
+    const bool at_rest = motion.step >= motion.ordinary || moved.blocks.forces.has_shed_its_load;
+    if (moved.balanced && next.load_factor == 1.0 && at_rest) return std::move(moved);
     if (!move_along(p, placed, motion, std::move(next))) return motion.last;
     if (is_falling(p)) {
         fail(p, motion.last, motion.last.viscous_share, FailureKind::falling);

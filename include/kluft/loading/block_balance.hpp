@@ -21,12 +21,11 @@ struct OwnForces {
         around; ///< of a block without loads the largest `own` of the blocks that it meets; else its own
     std::vector<double> roundoff; ///< what round-off of the displacements makes of its forces
     std::vector<char> loaded;     ///< whether weight, pressure or a point force acts on it
+    /// Whether the supports and platens of a body that nothing else loads carry no more than what counts as nothing beside what
+    /// the body has carried (27c). Blocks may be jammed in one another then, but nothing presses on them.
+    bool has_shed_its_load = false;
 };
 [[nodiscard]] OwnForces own_forces(const LoadedBody& body, const Eigen::VectorXd& q);
-
-/// Whether the supports and platens of a body that nothing else loads carry no more at q than what counts as nothing beside what the
-/// body has carried (27c). Blocks may be jammed in one another then, but nothing presses on them.
-[[nodiscard]] bool has_shed_its_load(const LoadedBody& body, const Eigen::VectorXd& q);
 
 /// The rigid part of `forces` on the six unknowns of the affine block `b` at q: force, and moment about the centroid over
 /// sqrt(area) (N/m).
