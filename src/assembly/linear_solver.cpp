@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/LU>
+
 #include "kluft/assembly/blas.hpp"
 #include "kluft/assembly/block_columns.hpp"
 #include "kluft/assembly/krylov.hpp"
 #include "kluft/assembly/lu_factor.hpp"
+#include "kluft/core/change_size.hpp"
 #include "kluft/core/stopwatch.hpp"
 #include "kluft/kinematics/affine.hpp"
 
@@ -33,6 +36,7 @@ struct LinearSolver::Backend {
     Gmres gmres;
     std::vector<double> right_side, solution;
     Eigen::VectorXd residual, product;
+    std::vector<Mat6> inverses; ///< of diagonal blocks
     Factorization kind = Factorization::cholesky;
     LinearSolverStatistics statistics;
 
@@ -82,6 +86,9 @@ struct LinearSolver::Backend {
         supernodal.solve_upper(right_side);
         unpermute(position, nu, right_side.data(), x);
     }
+
+    SolveReport refine(const BlockMatrix& matrix, const Gmres::Operator& precondition, const Eigen::VectorXd& b,
+                       const SolveGoal& goal, int max_refinements, Eigen::VectorXd& x);
 };
 
 LinearSolver::LinearSolver() : backend_(std::make_unique<Backend>()) {}
@@ -142,10 +149,32 @@ void LinearSolver::solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
 
 SolveReport LinearSolver::solve(const BlockMatrix& matrix, const Eigen::VectorXd& b, const SolveGoal& goal,
                                 int max_refinements, Eigen::VectorXd& x) {
-    Backend& k = *backend_;
-    const Stopwatch watch(k.statistics.solve_seconds);
+    const Stopwatch watch(backend_->statistics.solve_seconds);
+    const auto precondition = [&](const Eigen::VectorXd& v, Eigen::VectorXd& y) { backend_->solve(v, y); };
+    return backend_->refine(matrix, precondition, b, goal, max_refinements, x);
+}
+
+SolveReport LinearSolver::solve_by_blocks(const BlockMatrix& matrix, const Eigen::VectorXd& b, const SolveGoal& goal,
+                                          int max_refinements, Eigen::VectorXd& x) {
+    const Stopwatch watch(backend_->statistics.solve_seconds);
+    const BlockPattern& pattern = *matrix.pattern;
+    std::vector<Mat6>& inverses = backend_->inverses;
+    inverses.resize(pattern.n_blocks());
+    for (int row = 0; row < pattern.n_blocks(); ++row) inverses[row] = matrix.values[pattern.diagonal(row)].inverse();
+    const auto precondition = [&](const Eigen::VectorXd& v, Eigen::VectorXd& y) {
+        change_size(y, v.size());
+        for (int row = 0; row < pattern.n_blocks(); ++row) {
+            const auto rows = Eigen::seqN(n_block_unknowns * row, Eigen::fix<n_block_unknowns>);
+            y(rows).noalias() = inverses[row] * v(rows);
+        }
+    };
+    return backend_->refine(matrix, precondition, b, goal, max_refinements, x);
+}
+
+SolveReport LinearSolver::Backend::refine(const BlockMatrix& matrix, const Gmres::Operator& precondition,
+                                          const Eigen::VectorXd& b, const SolveGoal& goal, int max_refinements,
+                                          Eigen::VectorXd& x) {
     const auto multiply = [&](const Eigen::VectorXd& v, Eigen::VectorXd& y) { matrix.multiply(v, y); };
-    const auto precondition = [&](const Eigen::VectorXd& v, Eigen::VectorXd& y) { k.solve(v, y); };
     double matrix_norm = -1.0; // when first needed
     const auto bound = [&](double x_norm) {
         if (goal.backward_error <= 0.0) return goal.residual;
@@ -154,18 +183,18 @@ SolveReport LinearSolver::solve(const BlockMatrix& matrix, const Eigen::VectorXd
     };
     SolveReport report;
     x.setZero(b.size());
-    k.residual = b;
+    residual = b;
     for (int i = 0; i < max_corrections && !report.accepted && report.refinements < max_refinements; ++i) {
         const double x_norm = x.norm();
-        report.refinements += k.gmres.correct(
+        report.refinements += gmres.correct(
             multiply, precondition, max_refinements - report.refinements,
-            [&](double correction) { return safe_share * bound(std::max(x_norm, correction)); }, k.residual, x);
-        multiply(x, k.product);
-        k.residual = b - k.product;
-        const double error = k.residual.norm();
+            [&](double correction) { return safe_share * bound(std::max(x_norm, correction)); }, residual, x);
+        multiply(x, product);
+        residual = b - product;
+        const double error = residual.norm();
         report.accepted = error <= goal.residual || error <= bound(x.norm());
     }
-    k.statistics.refinements += report.refinements;
+    statistics.refinements += report.refinements;
     return report;
 }
 

@@ -16,6 +16,8 @@ constexpr double usual_linear_residual = 0.05; ///< of its right side: as many i
 constexpr double far_linear_residual = 0.02;   ///< of its right side, far from equilibrium: what touches is found there
 constexpr double far_from_equilibrium = 0.01;  ///< right side over F_ref
 constexpr double largest_linear_residual = 0.1; ///< of its right side, near equilibrium
+constexpr double least_mass_share = 0.01;       ///< of the tangent's trace (measured: 0.003 to 0.03)
+constexpr int most_vectors_by_mass = 30;        ///< of such a solution, which takes 9 to 20
 constexpr double travel_residual = 1e-8;        ///< of the border's column
 
 /// Takes the prescribed motions out of a tangent.
@@ -30,6 +32,18 @@ void add_damping(const EquilibriumProblem& problem, double damping, BlockMatrix&
     const std::vector<Block>& blocks = problem.body.system->blocks;
     for (int b = 0; b < matrix.pattern->n_blocks(); ++b)
         matrix.values[matrix.pattern->diagonal(b)] += damping * mass_matrix(blocks[b], problem.least_mass_area);
+}
+
+/// Trace of the mass-like term (Pa).
+double mass_of(const EquilibriumProblem& problem, double damping) {
+    if (problem.eta.empty() && damping == 0.0) return 0.0;
+    const std::vector<Block>& blocks = problem.body.system->blocks;
+    double sum = 0.0;
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+        const double eta = damping + (problem.eta.empty() ? 0.0 : problem.eta[b]);
+        sum += eta * mass_matrix(blocks[b], problem.least_mass_area).trace();
+    }
+    return sum;
 }
 
 /// Whether a point slides under a limit that follows its pressure.
@@ -91,24 +105,30 @@ bool NewtonIncrement::solve_anew(const NewtonPoint& at, TangentKind kind) {
 /// symmetric one, or by one with pivoting, whichever is the first that works.
 bool NewtonIncrement::solve_with_reuse(const NewtonPoint& at, TangentKind kind) {
     const EquilibriumProblem& problem = at.evaluator.problem();
-    if (factor_.is_left_out()) {
-        assemble(at, kind);
-        return solve_anew(at, kind);
-    }
-    if (factor_.update(problem, at.q)) {
-        assemble(at, kind);
-        if (solve_refined(at)) return true;
-    }
-    if (kind == TangentKind::exact && factor_.friction_is_costly() && has_friction_in_tangent(problem, at.q)) {
-        assemble(at, kind);
-        if (factor_.renew_exact(problem, at.q, matrix_) && solve_refined(at)) return true;
-    }
+    assemble(at, kind);
+    if (solve_by_mass(at)) return true;
+    if (factor_.is_left_out()) return solve_anew(at, kind);
+    if (factor_.update(problem, at.q) && solve_refined(at)) return true;
+    if (kind == TangentKind::exact && factor_.friction_is_costly() && has_friction_in_tangent(problem, at.q) &&
+        factor_.renew_exact(problem, at.q, matrix_) && solve_refined(at))
+        return true;
     assemble_symmetric(at);
     const bool renewed = factor_.renew(problem, at.q, std::move(matrix_));
     assemble(at, kind);
     if (renewed && solve_refined(at)) return true;
     factor_.note_failure();
     return solve_anew(at, kind);
+}
+
+/// Without a factor, where much of the tangent is the mass-like term: in short steps of a motion, whose eta changes from one to
+/// the next.
+bool NewtonIncrement::solve_by_mass(const NewtonPoint& at) {
+    const EquilibriumProblem& problem = at.evaluator.problem();
+    if (at.border.exists() || problem.body.kinematics == Kinematics::rigid) return false;
+    if (mass_of(problem, at.damping) < least_mass_share * matrix_.trace()) return false;
+    SolveGoal goal;
+    goal.residual = std::min(at.largest_residual, linear_residual(at, right_side_.norm()));
+    return linear_solver_.solve_by_blocks(matrix_, right_side_, goal, most_vectors_by_mass, increment_).accepted;
 }
 
 bool NewtonIncrement::solve_refined(const NewtonPoint& at) {

@@ -65,6 +65,27 @@ TEST(LinearSolver, RefusesAMatrixWithANumberThatIsNone) {
     EXPECT_TRUE(solver.factorize(whole, Factorization::cholesky)); // nothing of it stays
 }
 
+// Dense Eigen is the independent twin. A factor that was there serves on.
+TEST(LinearSolver, SolvesByItsDiagonalBlocksWhereTheseAreMuchOfTheMatrix) {
+    std::mt19937 generator(7);
+    const BlockPattern pattern = grid_pattern(4);
+    const BlockMatrix matrix = random_matrix(pattern, false, generator);
+    const BlockMatrix other = random_matrix(pattern, true, generator);
+    const Eigen::VectorXd b = Eigen::VectorXd::Random(6 * pattern.n_blocks());
+    LinearSolver solver;
+    solver.analyze(pattern);
+    ASSERT_TRUE(solver.factorize(other, Factorization::cholesky));
+    Eigen::VectorXd x;
+    const SolveReport report = solver.solve_by_blocks(matrix, b, {.residual = 1e-10 * b.norm()}, 60, x);
+    EXPECT_TRUE(report.accepted);
+    EXPECT_GT(report.refinements, 3);
+    const Eigen::VectorXd expected = dense(matrix).partialPivLu().solve(b);
+    EXPECT_LT((x - expected).norm(), 1e-9 * expected.norm());
+    EXPECT_FALSE(solver.solve_by_blocks(matrix, b, {.residual = 1e-10 * b.norm()}, 2, x).accepted);
+    solver.solve(b, x);
+    EXPECT_LT((dense(other) * x - b).norm(), 1e-9 * b.norm());
+}
+
 // Dense Eigen is the independent twin of both sparse paths.
 TEST(LinearSolver, SparseFactorsAgreeWithTheDenseTwin) {
     std::mt19937 generator(4);

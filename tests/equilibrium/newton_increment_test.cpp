@@ -108,6 +108,28 @@ TEST(NewtonIncrement, KeepsItsFactorUntilItIsToldToForgetIt) {
     EXPECT_EQ(start.linear.statistics().factorizations, 2);
 }
 
+// A short step of a motion needs no factor, and (31) holds as with one; in a long one the mass-like term is too small.
+TEST(NewtonIncrement, IsFoundWithoutAFactorWhereTheMassLikeTermIsMuchOfTheTangent) {
+    for (const bool is_short : {true, false}) {
+        Start start(false, Kinematics::affine);
+        const double stiffness = start.tangent().trace();
+        double mass = 0.0;
+        for (const Block& block : start.body.system.blocks) mass += mass_matrix(block, 0.0).trace();
+        const double eta = (is_short ? 0.1 : 1e-4) * stiffness / mass;
+        start.body.problem.eta.assign(start.body.system.blocks.size(), eta);
+        start.body.problem.start = start.q;
+        NewtonIncrement newton(start.linear, {.reuse = true, .motion_limit = 10.0});
+        ASSERT_TRUE(newton.find(start.point(), TangentKind::exact));
+        EXPECT_EQ(start.linear.statistics().factorizations, is_short ? 0 : 1);
+        const Eigen::MatrixXd tangent = start.tangent();
+        Eigen::VectorXd right = -start.residual.forces - tangent * start.prescribed;
+        Eigen::VectorXd left = -start.residual.forces - tangent * newton.increment();
+        start.body.problem.loads.constraints.project(right);
+        start.body.problem.loads.constraints.project(left);
+        EXPECT_LT(left.norm(), 0.1 * right.norm());
+    }
+}
+
 /// The largest of what theory (28a) limits, over what it is relative to.
 double largest_relative_motion(Start& start, const Eigen::VectorXd& increment) {
     const Coordinates& coordinates = start.evaluator.coordinates();

@@ -78,6 +78,11 @@ public:
     SolveReport solve(const BlockMatrix& matrix, const Eigen::VectorXd& b, const SolveGoal& goal, int max_refinements,
                       Eigen::VectorXd& x);
 
+    /// The same without a factor, by the inverses of the diagonal blocks of an affine body's matrix: where these are much of it. The
+    /// factor, if there is one, stays.
+    SolveReport solve_by_blocks(const BlockMatrix& matrix, const Eigen::VectorXd& b, const SolveGoal& goal,
+                                int max_refinements, Eigen::VectorXd& x);
+
     /// How many vectors of the refinement a factorization costs.
     [[nodiscard]] int refinements_worth_a_factorization() const;
 
