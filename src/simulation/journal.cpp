@@ -112,9 +112,11 @@ RunReport Journal::ended(const State& state, const StageEnd& end) const {
         return report;
     }
     if (!end.failure) {
-        std::string why = fmt::format("stage {} ends out of balance", state.at.stage);
-        if (!state.imbalance.moving.empty()) why += ": " + description(model_, state.imbalance.moving);
-        why += listed(end.causes);
+        const Imbalance& imbalance = state.imbalance;
+        const Failure left{
+            .worst_block = imbalance.worst_block, .residual_ratio = imbalance.share, .moving = imbalance.moving};
+        std::string why = fmt::format("stage {} ends out of balance: {}", state.at.stage, description(model_, left)) +
+                          listed(end.causes);
         RunReport report = cut_short(RunStatus::unbalanced, std::move(why));
         report.falling = falling_blocks(model_, state, state.imbalance.moving);
         return report;

@@ -186,6 +186,18 @@ TEST(Ending, InAStepThatIsNotBalancedIsNotDone) {
     EXPECT_EQ(report.falling.front().direction, Vec2(0, -1));
 }
 
+// Each block is in balance, and the mass-like term adds up to too much over the body (27b).
+TEST(Ending, OutOfBalanceWithoutABlockThatMovesNamesTheOneWithMostLeft) {
+    MadeUpRun run;
+    Step step = run.step_to(0.25, false);
+    step.worst_block = 0;
+    step.worst_share = 0.002;
+    commit(std::move(step), {}, run.state, run.journal);
+    EXPECT_THAT(
+        run.journal.ended(run.state, {}).diagnosis,
+        StartsWith("stage 0 ends out of balance: residual 0.002 of the forces, worst is block 0 at (0.5, 0.5)"));
+}
+
 TEST(Ending, SaysWhereTheRunEndedAndAtWhichFactorOfSafety) {
     const MadeUpRun run;
     const Failure failure{.residual_ratio = 0.25};
