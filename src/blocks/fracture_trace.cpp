@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <limits>
 #include <optional>
+#include <unordered_map>
 #include <utility>
+#include <vector>
 
 #include <boost/geometry/algorithms/simplify.hpp>
 #include <boost/geometry/geometries/linestring.hpp>
@@ -87,46 +89,88 @@ std::optional<Vec2> point_across(const Vec2& p, const Vec2& a, const Vec2& b, do
     return std::nullopt;
 }
 
-/// The segment from the first point of `points` to what it nearly meets.
-std::optional<SourceSegment> bridge(const std::vector<Vec2>& points, int source,
-                                    const std::vector<SourceSegment>& segments, const SegmentGrid& grid, double reach) {
-    const Vec2& p = points.front();
-    int nearest = -1;
-    double missing = reach;
-    const Vec2 around(reach, reach);
-    for (const int i : grid.near({p - around, p + around})) {
-        const SourceSegment& other = segments[i];
-        if (other.source == source && follows_closely(points, other, 4.0 * reach)) continue;
-        const double distance = distance_to_segment(p, other.a, other.b);
-        if (distance > missing) continue;
-        if (meets_soon(points, other.a, other.b, 4.0 * reach)) return std::nullopt;
-        missing = distance;
-        nearest = i;
-    }
-    if (nearest < 0) return std::nullopt;
-    const auto& [a, b, ignored] = segments[nearest];
+/// The segment from p to the nearest point of another one, a little across it; nothing where p lies on it.
+std::optional<SourceSegment> segment_to(const Vec2& p, const SourceSegment& other, int source) {
+    const auto& [a, b, ignored] = other;
     if ((p - a).dot(b - a) <= 0.0) return SourceSegment{p, a, source};
     if ((p - b).dot(a - b) <= 0.0) return SourceSegment{p, b, source};
-    const auto across = point_across(p, a, b, missing);
-    if (!across) return std::nullopt;
-    return SourceSegment{p, *across, source};
+    const auto across = point_across(p, a, b, distance_to_segment(p, a, b));
+    return across ? std::optional(SourceSegment{p, *across, source}) : std::nullopt;
+}
+
+/// The ends of the traces of each source.
+using TraceEnds = std::unordered_map<int, std::vector<Vec2>>;
+
+TraceEnds ends_of(const std::vector<SourceTrace>& traces) {
+    TraceEnds ends;
+    for (const SourceTrace& trace : traces) {
+        if (trace.points.front() == trace.points.back()) continue;
+        for (const Vec2& end : {trace.points.front(), trace.points.back()}) ends[trace.source].push_back(end);
+    }
+    return ends;
+}
+
+/// What holds the end of a trace where there is a choice: nothing does that ends there too.
+struct Neighbourhood {
+    const std::vector<SourceSegment>& segments;
+    SegmentGrid grid;
+    TraceEnds ends;
+    double reach = 0.0;
+
+    /// Whether a trace of `other` ends near the first point of `points`, the first trace of `source` itself apart.
+    [[nodiscard]] bool ends_beside(const std::vector<Vec2>& points, int source, int other) const {
+        const auto found = ends.find(other);
+        if (found == ends.end()) return false;
+        const auto n = std::ranges::count_if(found->second,
+                                             [&](const Vec2& end) { return (end - points.front()).norm() <= reach; });
+        return n > (other == source ? 1 : 0);
+    }
+};
+
+/// The segments from the first point of `points` to what it nearly meets: to the nearest trace that ends beside it, and to the
+/// nearest line that goes on there, each unless the trace meets one already.
+std::vector<SourceSegment> bridges(const std::vector<Vec2>& points, int source, const Neighbourhood& around) {
+    struct Nearest {
+        int segment = -1;
+        double missing = 0.0;
+        bool is_met = false;
+    };
+    const Vec2& p = points.front();
+    Nearest ending{.missing = around.reach};
+    Nearest going_on{.missing = around.reach};
+    const Vec2 margin(around.reach, around.reach);
+    for (const int i : around.grid.near({p - margin, p + margin})) {
+        const SourceSegment& other = around.segments[i];
+        if (other.source == source && follows_closely(points, other, 4.0 * around.reach)) continue;
+        Nearest& nearest = around.ends_beside(points, source, other.source) ? ending : going_on;
+        const double distance = distance_to_segment(p, other.a, other.b);
+        if (distance > nearest.missing) continue;
+        nearest = {i, distance, nearest.is_met || meets_soon(points, other.a, other.b, 4.0 * around.reach)};
+    }
+    std::vector<SourceSegment> found;
+    for (const Nearest& nearest : {ending, going_on}) {
+        if (nearest.segment < 0 || nearest.is_met) continue;
+        if (const auto segment = segment_to(p, around.segments[nearest.segment], source)) found.push_back(*segment);
+    }
+    return found;
 }
 
 } // namespace
 
 std::vector<SourceSegment> bridge_ends(const std::vector<SourceTrace>& traces,
                                        const std::vector<SourceSegment>& segments, double reach) {
-    const SegmentGrid grid = grid_of(segments);
-    std::vector<SourceSegment> bridges;
+    const Neighbourhood around{segments, grid_of(segments), ends_of(traces), reach};
+    std::vector<SourceSegment> found;
     for (const SourceTrace& trace : traces) {
         if (trace.points.front() == trace.points.back()) continue;
         std::vector<Vec2> points = trace.points;
         for (int side = 0; side < 2; ++side) {
-            if (const auto found = bridge(points, trace.source, segments, grid, reach)) bridges.push_back(*found);
+            const std::vector<SourceSegment> of_end = bridges(points, trace.source, around);
+            found.insert(found.end(), of_end.begin(), of_end.end());
             std::reverse(points.begin(), points.end());
         }
     }
-    return bridges;
+    return found;
 }
 
 std::vector<Vec2> simplified(const std::vector<Vec2>& points, double tolerance) {

@@ -1,5 +1,7 @@
 #include "kluft/blocks/fracture_trace.hpp"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "kluft/geometry/predicates.hpp"
@@ -48,6 +50,23 @@ TEST(BridgeEnds, GoesToTheNearestPointAlsoWhereThatIsAnEnd) {
     ASSERT_EQ(found.size(), 2U); // from both sides
     EXPECT_EQ(found[0].b, Vec2(10.03, 0.04));
     EXPECT_EQ(found[1].b, Vec2(10, 0));
+}
+
+// Two traces with one tip, or with tips that differ in the last digits or cross there, which misses a line by as little: the
+// tip has to reach the line all the same.
+TEST(BridgeEnds, TracesThatEndTogetherAreJoinedWithWhatGoesOnThere) {
+    const SourceTrace through{{{0, 0}, {10, 0}}, 0};
+    const Vec2 tip(5, 1e-14);
+    for (const Vec2& other_tip : {tip, Vec2(5 + 1e-13, 2e-14), Vec2(5 - 1e-13, 2e-14), Vec2(5.01, 0.02)}) {
+        const auto found = bridges({through, {{tip, {1, 4}}, 1}, {{other_tip, {9, 4}}, 2}}, 0.1);
+        for (const int source : {1, 2}) {
+            const bool reaches = std::ranges::any_of(found, [&](const SourceSegment& bridge) {
+                return bridge.source == source && segments_meet(bridge.a, bridge.b, {0, 0}, {10, 0});
+            });
+            EXPECT_TRUE(reaches) << source << ": " << other_tip.transpose();
+        }
+    }
+    EXPECT_TRUE(bridges({{{{5, 3}, {1, 4}}, 1}, {{{5, 3}, {9, 4}}, 2}}, 0.1).empty()); // nothing else is near
 }
 
 TEST(BridgeEnds, ATraceMayCloseOnItselfButNotOnItsOwnStart) {
