@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 #include "kluft/core/disjoint_sets.hpp"
@@ -63,6 +64,21 @@ std::vector<std::vector<int>> groups_of(int n_blocks, const std::vector<Meeting>
     return members;
 }
 
+/// What is left over on each block beside what drives the whole body along translations that nothing resists, where that is no more
+/// than a share of the loads along them (27d): it accelerates all blocks alike, and strains none.
+std::vector<Vec3> left_beside_drift(const BlockBalance& balance, const BlockGoal& goal) {
+    std::vector<Vec3> left = balance.left;
+    double area = 0.0;
+    for (const double each : balance.area) area += each;
+    for (const auto& [direction, loads] : balance.free) {
+        double driving = 0.0;
+        for (const Vec3& each : left) driving += each.head<2>().dot(direction);
+        if (std::abs(driving) > goal.share * loads) continue;
+        for (std::size_t b = 0; b < left.size(); ++b) left[b].head<2>() -= balance.area[b] / area * driving * direction;
+    }
+    return left;
+}
+
 /// A block, or a group of them, as one body.
 struct Part {
     Vec3 left = Vec3::Zero();
@@ -73,8 +89,8 @@ struct Part {
     [[nodiscard]] double size() const { return std::max(0.0, size_of(left) - roundoff); }
 };
 
-/// The part of a body that these blocks are; the moment is about the centroid of all.
-Part part_of(const BlockBalance& balance, std::span<const int> blocks) {
+/// The part of a body that these blocks are, with what is left over on each; the moment is about the centroid of all.
+Part part_of(const BlockBalance& balance, const std::vector<Vec3>& left, std::span<const int> blocks) {
     Part part;
     double area = 0.0;
     Vec2 centre = Vec2::Zero();
@@ -86,9 +102,9 @@ Part part_of(const BlockBalance& balance, std::span<const int> blocks) {
     double of_loads = 0.0;
     double of_contacts = 0.0;
     for (const int b : blocks) {
-        const Vec2 force = balance.left[b].head<2>();
+        const Vec2 force = left[b].head<2>();
         part.left.head<2>() += force;
-        part.left[2] += std::sqrt(balance.area[b] / area) * balance.left[b][2] +
+        part.left[2] += std::sqrt(balance.area[b] / area) * left[b][2] +
                         cross(balance.position[b] - centre, force) / std::sqrt(area);
         part.loaded = part.loaded || balance.forces.loaded[b];
         (balance.forces.loaded[b] ? of_loads : of_contacts) += balance.forces.own[b];
@@ -253,7 +269,7 @@ Vec3 affine_rigid_part(const BlockSystem& system, const Eigen::VectorXd& q, cons
 namespace {
 
 constexpr double not_held =
-    1e-9; ///< of the cube of the mean eigenvalue: a determinant of rows that leave a motion free
+    1e-9; ///< of the cube of the mean eigenvalue, or of the largest one: of rows that leave a motion free
 
 /// Of each block, whether its prescribed displacements leave no rigid motion free.
 std::vector<char> held_blocks(const LoadedBody& body) {
@@ -274,6 +290,24 @@ std::vector<char> held_blocks(const LoadedBody& body) {
 
 } // namespace
 
+namespace {
+
+std::vector<FreeTranslation> free_translations(const LoadedBody& body, const Eigen::VectorXd& q) {
+    Mat2 resistance = Mat2::Zero();
+    for (const PrescribedDisplacement& row : body.loads->constraints.rows())
+        resistance += row.direction * row.direction.transpose();
+    const Eigen::SelfAdjointEigenSolver<Mat2> eigen(resistance);
+    std::vector<FreeTranslation> free;
+    for (int i = 0; i < 2; ++i) {
+        if (eigen.eigenvalues()[i] > not_held * eigen.eigenvalues()[1]) continue;
+        const Vec2 direction = eigen.eigenvectors().col(i);
+        free.push_back({direction, loads_along(body, q, direction)});
+    }
+    return free;
+}
+
+} // namespace
+
 BlockBalance block_balance(const LoadedBody& body, const Eigen::VectorXd& q, std::vector<Vec3> left) {
     const BlockSystem& system = *body.system;
     BlockBalance result;
@@ -282,6 +316,7 @@ BlockBalance block_balance(const LoadedBody& body, const Eigen::VectorXd& q, std
     result.groups = groups_of(system.n_blocks(), meetings);
     result.left = std::move(left);
     result.held = held_blocks(body);
+    result.free = free_translations(body, q);
     for (int b = 0; b < system.n_blocks(); ++b) {
         result.position.push_back(system.blocks[b].centroid + q.segment<2>(n_block_unknowns * b));
         result.area.push_back(system.blocks[b].area);
@@ -302,9 +337,11 @@ BlockBalance affine_block_balance(const LoadedBody& body, const Eigen::VectorXd&
 BlockVerdict judge_blocks(const BlockBalance& now, const BlockBalance* before, const BlockGoal& goal) {
     BlockVerdict verdict;
     double worst = 0.0;
+    const std::vector<Vec3> left = left_beside_drift(now, goal);
+    const std::vector<Vec3> left_before = before != nullptr ? left_beside_drift(*before, goal) : std::vector<Vec3>{};
     const auto judge = [&](std::span<const int> blocks) {
-        const Part part = part_of(now, blocks);
-        const Part part_before = before != nullptr ? part_of(*before, blocks) : Part{};
+        const Part part = part_of(now, left, blocks);
+        const Part part_before = before != nullptr ? part_of(*before, left_before, blocks) : Part{};
         const Share share = share_of(part, before != nullptr ? &part_before : nullptr, goal);
         verdict.error = std::max(verdict.error, share.value);
         if (share.value <= goal.share) return;

@@ -146,6 +146,13 @@ std::vector<double> driving_loads(const LoadedBody& body, const Eigen::VectorXd&
     return result;
 }
 
+double loads_along(const LoadedBody& body, const Eigen::VectorXd& q, const Vec2& direction) {
+    double sum = 0.0;
+    for (int b = 0; b < body.system->n_blocks(); ++b) sum += std::abs(weight_of(body, b).dot(direction));
+    for_each_surface_load(body, q, [&](int, const Vec2&, const Vec2& force) { sum += std::abs(force.dot(direction)); });
+    return sum;
+}
+
 ContactPiece piece_at(const InterfaceLaw& law, const ContactPoint& point, const Eigen::VectorXd& q) {
     if (law.cohesion == 0.0) return {};
     return {.from = point.piece.from, .to = point.piece.to, .tilt = tilt(point, q)};

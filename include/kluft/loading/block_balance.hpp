@@ -36,13 +36,20 @@ struct OwnForces {
     return std::max(rigid_part.head<2>().norm(), std::abs(rigid_part[2]));
 }
 
+/// A translation of the whole body that neither a support nor a platen resists, and the loads along it.
+struct FreeTranslation {
+    Vec2 direction = Vec2::Zero(); ///< unit vector
+    double loads = 0.0;            ///< sum of the magnitudes of their components (N/m)
+};
+
 /// What is left over on the blocks of a body.
 struct BlockBalance {
     OwnForces forces;
-    std::vector<Vec3> left;     ///< external - internal, in the free motions: force, and moment over sqrt(area)
-    std::vector<Vec2> position; ///< of the centroid (m)
-    std::vector<double> area;   ///< m2
-    std::vector<char> held;     ///< whether its supports hold the block against every rigid motion
+    std::vector<Vec3> left;            ///< external - internal, in the free motions: force, and moment over sqrt(area)
+    std::vector<Vec2> position;        ///< of the centroid (m)
+    std::vector<double> area;          ///< m2
+    std::vector<char> held;            ///< whether its supports hold the block against every rigid motion
+    std::vector<FreeTranslation> free; ///< orthogonal
     std::vector<std::vector<int>> groups; ///< blocks held together by bonds and locked contact points; two or more each
 };
 /// By what is `left` over.
@@ -67,6 +74,7 @@ struct BlockVerdict {
 /// Judges blocks and groups by what is left over now and what was `before`, in the solve that this one started from; null
 /// without one. One without loads on which less is left over than before comes to rest: it only must not disturb the
 /// blocks around it. Nor must it fall where that disturbance is a tenth of what is allowed.
+/// What drives the whole body along a free translation is judged by the loads along that (27d).
 [[nodiscard]] BlockVerdict judge_blocks(const BlockBalance& now, const BlockBalance* before, const BlockGoal& goal);
 
 } // namespace kluft

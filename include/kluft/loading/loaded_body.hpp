@@ -91,6 +91,8 @@ void keep_free_part(const Loads& loads, const Eigen::VectorXd& travel, const Eig
 [[nodiscard]] std::vector<double> load_magnitudes(const LoadedBody& body, const Eigen::VectorXd& q);
 /// The weight and the magnitude of the resultant of pressures and point loads at q, per block (N/m).
 [[nodiscard]] std::vector<double> driving_loads(const LoadedBody& body, const Eigen::VectorXd& q);
+/// Sum of the magnitudes of the components of all loads along a direction (N/m).
+[[nodiscard]] double loads_along(const LoadedBody& body, const Eigen::VectorXd& q, const Vec2& direction);
 
 struct GapAndSlip {
     double gap = 0.0;  ///< total (m)
