@@ -155,6 +155,24 @@ std::vector<SourceSegment> bridges(const std::vector<Vec2>& points, int source, 
     return found;
 }
 
+/// The segment from a bend of the trace to a line that it would touch but for rounding, if there is one.
+std::optional<SourceSegment> bridge_at_bend(const SourceTrace& trace, std::size_t bend, const Neighbourhood& around) {
+    constexpr double rounding = 64.0 * std::numeric_limits<double>::epsilon(); // of the coordinates
+    const Vec2& p = trace.points[bend];
+    const Vec2& before = trace.points[bend - 1];
+    const Vec2& after = trace.points[bend + 1];
+    const double reach = std::min(rounding * p.cwiseAbs().maxCoeff(), around.reach);
+    const Vec2 margin(reach, reach);
+    for (const int i : around.grid.near({p - margin, p + margin})) {
+        const SourceSegment& other = around.segments[i];
+        const bool is_own = other.source == trace.source && (other.a == p || other.b == p);
+        if (is_own || distance_to_segment(p, other.a, other.b) > reach) continue;
+        if (segments_meet(before, p, other.a, other.b) || segments_meet(p, after, other.a, other.b)) continue;
+        return segment_to(p, other, trace.source);
+    }
+    return std::nullopt;
+}
+
 } // namespace
 
 std::vector<SourceSegment> bridge_ends(const std::vector<SourceTrace>& traces,
@@ -162,6 +180,8 @@ std::vector<SourceSegment> bridge_ends(const std::vector<SourceTrace>& traces,
     const Neighbourhood around{segments, grid_of(segments), ends_of(traces), reach};
     std::vector<SourceSegment> found;
     for (const SourceTrace& trace : traces) {
+        for (std::size_t i = 1; i + 1 < trace.points.size(); ++i)
+            if (const auto of_bend = bridge_at_bend(trace, i, around)) found.push_back(*of_bend);
         if (trace.points.front() == trace.points.back()) continue;
         std::vector<Vec2> points = trace.points;
         for (int side = 0; side < 2; ++side) {

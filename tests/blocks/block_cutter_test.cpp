@@ -118,6 +118,49 @@ TEST(BlockCutter, TwoTracesWhoseEndsNearlyMeetMakeOneJoint) {
     EXPECT_EQ(body.report.pruned_ends, 0);
 }
 
+/// A bed y = 0.6 x through a square of 10 m, and two joints that meet at a place of it that rounding puts on one side or the other; as
+/// two traces from there, two to there, or one that bends there.
+GeometrySpec bed_with_two_joints(double x, int kind) {
+    GeometrySpec spec = rectangle(10, 10);
+    add_trace(spec, {{-1, -0.6}, {11, 6.6}});
+    const Vec2 tip(x, 0.6 * x);
+    const Vec2 left(x - 6, 0.6 * x + 10);
+    const Vec2 right(x + 3, 0.6 * x + 10);
+    if (kind == 0) {
+        add_trace(spec, {tip, left});
+        add_trace(spec, {tip, right});
+    } else if (kind == 1) {
+        add_trace(spec, {left, tip});
+        add_trace(spec, {right, tip});
+    } else {
+        add_trace(spec, {left, tip, right});
+    }
+    return spec;
+}
+
+TEST(BlockCutter, JointsThatMeetOnALineCutItWhateverTheRounding) {
+    for (int kind = 0; kind < 3; ++kind) {
+        for (int i = 30; i <= 60; ++i) {
+            const CutBody body = sound_cut(bed_with_two_joints(0.1 * i, kind));
+            EXPECT_EQ(body.system.n_blocks(), 4) << kind << ", " << i;
+            for (const auto& sliver : body.report.merged) EXPECT_LT(sliver.area, 1e-12) << kind << ", " << i;
+        }
+    }
+}
+
+// A sloping face in place of the bed.
+TEST(BlockCutter, JointsThatMeetOnASlopingFaceReachIt) {
+    for (int i = 3; i <= 60; ++i) {
+        const double y = 0.1 * i;
+        GeometrySpec spec;
+        spec.domain = {{0, 0}, {20, 0}, {14, 10}, {0, 10}};
+        const Vec2 tip(20.0 - 0.6 * y, y);
+        add_trace(spec, {tip, tip + Vec2(-std::sqrt(300.0), 10)});
+        add_trace(spec, {tip, tip + Vec2(-12, 12)});
+        EXPECT_EQ(sound_cut(spec).system.n_blocks(), 3) << y;
+    }
+}
+
 TEST(BlockCutter, ATraceThatEndsJustShortOfTheOutlineReachesIt) {
     GeometrySpec spec = rectangle(20, 20);
     spec.reference_spacing = 1.0;

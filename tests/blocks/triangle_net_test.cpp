@@ -269,6 +269,25 @@ TEST(TriangleNet, NearCopiesOfATraceAreTheTrace) {
     }
 }
 
+// Two joints that meet at a place of a bed, but for rounding: the whole length of the three is there.
+TEST(TriangleNet, FollowsJointsThatMeetOnALine) {
+    for (int i = 30; i <= 45; ++i) {
+        const double x = 0.1 * i;
+        GeometrySpec spec = triangulated(10.0, 10.0, {.spacing = 2.0, .relaxation = 0, .seed = 1, .grading = {}});
+        const Vec2 tip(x, 0.6 * x);
+        add_trace(spec, {{-1, -0.6}, {11, 6.6}});
+        add_trace(spec, {tip, tip + Vec2(-6, 10)});
+        add_trace(spec, {tip, tip + Vec2(3, 10)});
+        const CutBody body = cut_blocks(spec);
+        EXPECT_EQ(faults(spec, body), "") << x;
+        const double to_top = 10.0 - tip.y();
+        const double to_left = std::min(tip.x() / 0.6, to_top); // steps of (-0.6, 1)
+        const double expected =
+            10.0 * std::hypot(1.0, 0.6) + to_left * std::hypot(0.6, 1.0) + to_top * std::hypot(0.3, 1.0);
+        EXPECT_NEAR(length_of_fractures(body), expected, 0.02 * expected) << x;
+    }
+}
+
 std::vector<LostFracture> lost_of(GeometrySpec spec, const std::vector<std::vector<Vec2>>& traces) {
     for (const auto& trace : traces) add_trace(spec, trace);
     return cut_blocks(spec).report.lost;

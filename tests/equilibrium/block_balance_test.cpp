@@ -121,6 +121,22 @@ TEST(BlockVerdict, FragmentThatTouchesNothingHasNothingToBalanceWithoutLoads) {
     EXPECT_FALSE(judge_blocks(two_blocks(1e-30, 0.0, 1e-30, true, false), nullptr, {}).balanced());
 }
 
+// theory (27d): what drives both along x, where nothing holds them, is judged by the loads along x; the rest, and what drives them
+// along y, by their own.
+TEST(BlockVerdict, BodyThatIsFreeToDriftIsJudgedAlongThatByItsLoads) {
+    BlockBalance balance = two_blocks(1.0, 1.0, 10.0, true, false);
+    EXPECT_FALSE(judge_blocks(balance, nullptr, {}).balanced());
+    balance.free = {{Vec2(1, 0), 4e3}};
+    EXPECT_TRUE(judge_blocks(balance, nullptr, {}).balanced());
+    balance.free = {{Vec2(1, 0), 1e3}}; // of which 2 is more than a share of 1e-3
+    EXPECT_FALSE(judge_blocks(balance, nullptr, {}).balanced());
+    balance.free = {{Vec2(0, 1), 4e3}};
+    EXPECT_FALSE(judge_blocks(balance, nullptr, {}).balanced());
+    balance = two_blocks(1.0, -1.0, 10.0, true, false); // nothing of it drives the body
+    balance.free = {{Vec2(1, 0), 4e3}};
+    EXPECT_NEAR(judge_blocks(balance, nullptr, {}).error, 0.1, 1e-12);
+}
+
 TEST(BlockVerdict, NamesTheWorstFirst) {
     const BlockVerdict verdict = judge_blocks(two_blocks(0.01, 0.5, 1.0, true, false), nullptr, {});
     ASSERT_EQ(verdict.moving.size(), 2U);

@@ -112,6 +112,38 @@ TEST(Extremes, BlockFallsThroughAGapOntoTheBlockBelow) {
     }
 }
 
+// A net on a smooth bottom under pressures from the sides, which nothing else holds along the bottom, and with weights that are
+// little beside the pressures: it stands as it does on a pinned bottom, whose friction would need loads.
+TEST(Extremes, BodyWithWeightThatIsFreeToDriftStands) {
+    const auto scene = [](double gravity, const char* support) {
+        return fmt::format(R"(
+kluft: 1
+analysis: {{gravity: {}}}
+materials: {{rock: {{density: 2300, youngs_modulus: 5 GPa, poissons_ratio: 0.25, cohesion: 5 MPa, friction_angle: 40 deg,
+             tensile_strength: 2 MPa}}}}
+interfaces:
+  bond: {{kind: potential_crack, fails_to: crack}}
+  crack: {{kind: fracture, friction_angle: 35 deg}}
+geometry:
+  domain: {{rectangle: {{width: 20 cm, height: 40 cm}}}}
+  tessellation: {{triangles: {{spacing: 6 cm}}, interface: bond}}
+boundaries: {{bottom: {{support: {}}}}}
+stages:
+  - {{pressure: {{left: 1 MPa, right: 1 MPa, top: 1 MPa}}, steps: 2}}
+  - {{strain: {{boundary: top, value: 0.1 %}}, platens: smooth, steps: 5}}
+)",
+                           gravity, support);
+    };
+    for (const double gravity : {9.81, 0.1, 1e-9}) {
+        const SceneRun run = run_scene(scene(gravity, "smooth"));
+        EXPECT_EQ(run.report.status, RunStatus::done) << gravity;
+        for (const StepRecord& row : run.history) EXPECT_TRUE(row.balanced) << gravity << ": " << row.step;
+        const SceneRun pinned = run_scene(scene(gravity, "pinned"));
+        const double stress = pinned.history.back().axial_stress; // a little stiffer
+        EXPECT_NEAR(run.history.back().axial_stress, stress, 0.03 * stress) << gravity;
+    }
+}
+
 // rho g s^2 of a block of size s, on one of size 1.
 TEST(Extremes, SmallBlockOnALargeOneSettlesUnderItsWeight) {
     for (const double size : {1.0, 1e-2, 1e-3}) {

@@ -19,6 +19,7 @@ struct SourceTrace {
 /// there anyway, this returns a segment of the trace's source from the end to the nearest point of the other; past it by at most the
 /// distance that was missing, so that the two do cross (the rest separates nothing and is pruned). A trace that ends beside that end
 /// holds it no more than it is held itself: traces that end together are joined with each other and with what goes on there.
+/// A trace that touches a line with a bend is joined with it too, where only rounding separates them.
 /// `segments` holds the segments of all traces and of what else they may abut on. A trace may also abut on a part of
 /// its own that is further along it than 4 reach.
 [[nodiscard]] std::vector<SourceSegment> bridge_ends(const std::vector<SourceTrace>& traces,
