@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "kluft/contact/detection.hpp"
 #include "kluft/kinematics/affine.hpp"
 #include "kluft/loading/boundary_geometry.hpp"
 #include "kluft/loading/loaded_body.hpp"
@@ -17,6 +18,8 @@ namespace {
 
 constexpr double least_pull = 1e-6;        ///< of the largest force on a point of the platens: less is none
 constexpr double least_penetration = 1e-9; ///< of the largest displacement
+constexpr double one_point = 5e-3;         ///< of a block's spacing: vertices nearer to each other are one point
+constexpr double of_thickness = 0.1;       ///< of a block: those of a slab's own face are two
 constexpr double in_plane = 1e-9;          ///< of the body's larger side
 constexpr double in_line = 1e-6;           ///< twice the area of a triangle over the square of its longest side
 constexpr double friction_change = 1e-5;   ///< of the largest force on a point: friction that has settled
@@ -154,6 +157,15 @@ bool update(const PointCheck& check, bool may_open, PlatenPoint& point) {
     return check.platen.tan_friction > 0.0 && update_friction(check, point);
 }
 
+/// Whether a point stands for a vertex of its block: two so near that their forces could only be a couple, which pulls.
+bool has_near(const BlockSystem& system, const std::vector<PlatenPoint>& points, int block, int vertex) {
+    const Block& of_vertex = system.blocks[block];
+    const double near = std::min(one_point * spacing_of(of_vertex), of_thickness * thickness(of_vertex));
+    return std::ranges::any_of(points, [&](const PlatenPoint& point) {
+        return point.block == block && (system.vertices[point.vertex] - system.vertices[vertex]).norm() < near;
+    });
+}
+
 /// Vertices in the plane of the platen's boundary that are none of it.
 void append_beyond(const BlockSystem& system, const Platen& platen, std::vector<PlatenPoint>& points) {
     std::set<std::pair<int, int>> known;
@@ -178,6 +190,7 @@ void append_beyond(const BlockSystem& system, const Platen& platen, std::vector<
 std::vector<PlatenPoint> laid_points(const BlockSystem& system, const Platen& platen, const Eigen::VectorXd& q) {
     std::vector<PlatenPoint> points;
     for_each_vertex(system, platen.boundary, [&](int block, int vertex) {
+        if (has_near(system, points, block, vertex)) return;
         PlatenPoint point{.boundary = platen.boundary, .block = block, .vertex = vertex, .is_laid = true};
         const Vec2 u = displacement_of(system, point, q);
         const bool sticks = platen.tan_friction > 0.0;

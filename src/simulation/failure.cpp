@@ -93,7 +93,8 @@ std::string description(const Model& model, const Failure& failure) {
     std::string text = failure.what;
     if (text.empty()) text = description(model, failure.moving);
     if (text.empty()) {
-        text = fmt::format("residual {:.2g} of the forces", failure.residual_ratio);
+        text = failure.residual_ratio > 0.0 ? fmt::format("residual {:.2g} of the forces", failure.residual_ratio)
+                                            : std::string("the body cannot follow its supports and platens");
         if (failure.worst_block >= 0) text += ", worst is " + block_description(model.system, failure.worst_block);
     }
     if (failure.strength_factor != 1.0)

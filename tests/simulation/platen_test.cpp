@@ -95,6 +95,62 @@ TEST(Platens, HinderTheBodyByTheirFriction) {
     }
 }
 
+/// A specimen of 1 m by 2 m with a joint at 1.7 m, and above it four pairs of joints that meet `beyond` above the platen: between each
+/// pair stands a wedge with a face of two thirds of that.
+std::string wedges_under_a_platen(double beyond, const std::string& platens, const std::string& more = {}) {
+    std::string traces;
+    for (const double x : {0.2, 0.4, 0.6, 0.8}) {
+        for (const double side : {-0.1, 0.1})
+            traces += fmt::format("    - {{trace: [[{:.17g}, 1.7], [{:.17g}, {:.17g}]], interface: joint}}\n", x + side,
+                                  x - 0.2 * side, 1.7 + 1.2 * (0.3 + beyond));
+    }
+    return fmt::format(R"(
+kluft: 1
+analysis: {{plane: stress}}
+materials: {{rock: {{youngs_modulus: 10 GPa, poissons_ratio: 0.25}}}}
+interfaces: {{joint: {{kind: fracture, normal_stiffness: 1e12, shear_stiffness: 1e12, friction_angle: 30}}}}
+geometry:
+  domain: {{rectangle: {{width: 1, height: 2}}}}
+{}
+  fractures:
+{}    - {{trace: [[-0.1, 1.7], [1.1, 1.7]], interface: joint}}
+boundaries: {{bottom: {{support: pinned}}}}
+stages: [{{strain: {{boundary: top, value: 0.1 %}}, platens: {}, steps: 4}}]
+)",
+                       more, traces, platens);
+}
+
+// The two vertices of a face that is hardly there would carry a couple, one of them in tension, beside whose forces friction and opening
+// elsewhere were lost.
+TEST(Platens, StandOnOnePointOfATinyFace) {
+    const auto stress = [](double beyond) {
+        const SceneRun run = run_scene(wedges_under_a_platen(beyond, "{friction_angle: 10}"));
+        EXPECT_EQ(run.report.status, RunStatus::done) << run.report.diagnosis;
+        return run.history.back().axial_stress;
+    };
+    const double expected = stress(1e-3);
+    for (const double beyond : {1e-7, 1e-6, 1e-5, 1e-4})
+        EXPECT_NEAR(stress(beyond), expected, 1e-4 * expected) << beyond;
+}
+
+// A spacing far below that of the blocks allows motions so small that a platen cannot be followed: then there is no result, not one
+// of a body that stays behind.
+TEST(Platens, AreFollowedOrThereIsNoEquilibrium) {
+    for (const char* platens : {"smooth", "{friction_angle: 10}"}) {
+        const auto press_with = [&](const char* spacing) {
+            return run_scene(wedges_under_a_platen(3e-3, platens, fmt::format("  reference_spacing: {}", spacing)));
+        };
+        const double expected = press_with("1e-2").history.back().axial_stress;
+        EXPECT_GT(expected, 9.5e6);
+        for (const char* spacing : {"1e-3", "1e-4", "1e-5"}) {
+            const SceneRun run = press_with(spacing);
+            if (run.report.status == RunStatus::no_equilibrium) continue;
+            EXPECT_EQ(run.report.status, RunStatus::done) << spacing;
+            EXPECT_NEAR(run.history.back().axial_stress, expected, 0.01 * expected) << spacing;
+        }
+    }
+}
+
 /// Two blocks, one on the other, under 1 MPa between platens with friction; the upper one is pushed sideways (N/m).
 SceneRun push(double force) {
     const char* const platen = "stress: {boundary: top, value: 1 MPa}, platens: {friction_angle: 20}";

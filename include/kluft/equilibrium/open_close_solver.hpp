@@ -52,6 +52,7 @@ struct OpenCloseSummary {
     int iterations = 0;          ///< linear solves
     double residual_ratio = 0.0; ///< |R|/F_ref at q
     double force_scale = 0.0;    ///< F_ref (N/m)
+    double left_to_go = 0.0;     ///< of the prescribed displacements (m): before they hold there may be no forces
     int worst_block = -1;        ///< the block with the largest residual
     std::string flaw;            ///< what is no finite number, and where; "" otherwise
     [[nodiscard]] bool converged() const { return termination == Termination::converged; }
