@@ -40,7 +40,7 @@ geometry:
 boundaries:
   bottom: {support: smooth}
 stages:
-  - {name: weight, pressure: {left: 0.1 MPa, right: 0.1 MPa}}
+  - {name: weight, pressure: {left: 0.1 MPa, right: 0.1 MPa, top: 0.1 MPa}}
   - {name: platen, strain: {boundary: top, value: 1 %}, steps: 20}
 ```
 
