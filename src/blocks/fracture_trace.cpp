@@ -110,14 +110,14 @@ TraceEnds ends_of(const std::vector<SourceTrace>& traces) {
     return ends;
 }
 
-/// What holds the end of a trace where there is a choice: nothing does that ends there too.
+/// All lines, and where the traces among them end.
 struct Neighbourhood {
     const std::vector<SourceSegment>& segments;
     SegmentGrid grid;
     TraceEnds ends;
     double reach = 0.0;
 
-    /// Whether a trace of `other` ends near the first point of `points`, the first trace of `source` itself apart.
+    /// Whether a trace of `other` ends within reach of the first point of `points`, a trace of `source`, which is itself none of those.
     [[nodiscard]] bool ends_beside(const std::vector<Vec2>& points, int source, int other) const {
         const auto found = ends.find(other);
         if (found == ends.end()) return false;

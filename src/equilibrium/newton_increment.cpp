@@ -17,7 +17,7 @@ constexpr double far_linear_residual = 0.02;   ///< of its right side, far from 
 constexpr double far_from_equilibrium = 0.01;  ///< right side over F_ref
 constexpr double largest_linear_residual = 0.1; ///< of its right side, near equilibrium
 constexpr double least_mass_share = 0.01;       ///< of the tangent's trace (measured: 0.003 to 0.03)
-constexpr int most_vectors_by_mass = 30;        ///< of such a solution, which takes 9 to 20
+constexpr int most_vectors_without_factor = 30; ///< of a solution, which takes 9 to 20
 constexpr double travel_residual = 1e-8;        ///< of the border's column
 
 /// Takes the prescribed motions out of a tangent.
@@ -62,7 +62,8 @@ double linear_residual(const NewtonPoint& at, double right_side) {
     const bool is_far = right_side > far_from_equilibrium * at.residual.force_scale;
     const bool is_bonded = at.evaluator.problem().body.placement->contacts.empty();
     const double share = is_bonded ? 0.0 : (is_far ? far_linear_residual : usual_linear_residual);
-    return std::min(largest_linear_residual * right_side, std::max(share * right_side, tolerated));
+    return std::min(
+        {at.largest_residual, largest_linear_residual * right_side, std::max(share * right_side, tolerated)});
 }
 
 } // namespace
@@ -101,12 +102,12 @@ bool NewtonIncrement::solve_anew(const NewtonPoint& at, TangentKind kind) {
     return true;
 }
 
-/// Solves by the factor in use with its changes, by a new one, of the tangent itself where points slide and else of the
+/// Solves without a factor, by the factor in use with its changes, by a new one, of the tangent itself where points slide and else of the
 /// symmetric one, or by one with pivoting, whichever is the first that works.
 bool NewtonIncrement::solve_with_reuse(const NewtonPoint& at, TangentKind kind) {
     const EquilibriumProblem& problem = at.evaluator.problem();
     assemble(at, kind);
-    if (solve_by_mass(at)) return true;
+    if (solve_without_factor(at)) return true;
     if (factor_.is_left_out()) return solve_anew(at, kind);
     if (factor_.update(problem, at.q) && solve_refined(at)) return true;
     if (kind == TangentKind::exact && factor_.friction_is_costly() && has_friction_in_tangent(problem, at.q) &&
@@ -120,19 +121,17 @@ bool NewtonIncrement::solve_with_reuse(const NewtonPoint& at, TangentKind kind) 
     return solve_anew(at, kind);
 }
 
-/// Without a factor, where much of the tangent is the mass-like term: in short steps of a motion, whose eta changes from one to
-/// the next.
-bool NewtonIncrement::solve_by_mass(const NewtonPoint& at) {
+/// Where much of the tangent is the mass-like term: in short steps of a motion, whose eta changes from one to the next.
+bool NewtonIncrement::solve_without_factor(const NewtonPoint& at) {
     const EquilibriumProblem& problem = at.evaluator.problem();
     if (at.border.exists() || problem.body.kinematics == Kinematics::rigid) return false;
     if (mass_of(problem, at.damping) < least_mass_share * matrix_.trace()) return false;
-    SolveGoal goal;
-    goal.residual = std::min(at.largest_residual, linear_residual(at, right_side_.norm()));
-    return linear_solver_.solve_by_blocks(matrix_, right_side_, goal, most_vectors_by_mass, increment_).accepted;
+    const SolveGoal goal{.residual = linear_residual(at, right_side_.norm())}; // (31)
+    return linear_solver_.solve_by_blocks(matrix_, right_side_, goal, most_vectors_without_factor, increment_).accepted;
 }
 
 bool NewtonIncrement::solve_refined(const NewtonPoint& at) {
-    const double residual = std::min(at.largest_residual, linear_residual(at, right_side_.norm()));
+    const double residual = linear_residual(at, right_side_.norm());
     const SolveReport report = factor_.solve(matrix_, right_side_, residual, increment_);
     factor_.count(report.refinements);
     if (!report.accepted || !at.border.exists()) return report.accepted;

@@ -62,7 +62,7 @@ StoppingTest::StoppingTest(const OpenCloseOptions& options, const IterationGoal&
 
 bool StoppingTest::finds(const Equations& equations, const Eigen::VectorXd& q, const Iterate& at) {
     summary_.force_scale = at.residual.force_scale;
-    summary_.left_to_go = at.prescribed.lpNorm<Eigen::Infinity>();
+    summary_.left_to_go = at.held ? 0.0 : at.prescribed.lpNorm<Eigen::Infinity>();
     summary_.residual_ratio = summary_.force_scale > 0.0 ? at.norm / summary_.force_scale : 0.0;
     unbalanced_ = {};
     if (is_equilibrium(at)) {

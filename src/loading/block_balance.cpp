@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <span>
 #include <utility>
 
@@ -64,19 +65,17 @@ std::vector<std::vector<int>> groups_of(int n_blocks, const std::vector<Meeting>
     return members;
 }
 
-/// What is left over on each block beside what drives the whole body along translations that nothing resists, where that is no more
-/// than a share of the loads along them (27d): it accelerates all blocks alike, and strains none.
-std::vector<Vec3> left_beside_drift(const BlockBalance& balance, const BlockGoal& goal) {
-    std::vector<Vec3> left = balance.left;
-    double area = 0.0;
-    for (const double each : balance.area) area += each;
+/// What drives the whole body along translations that nothing resists, per area, where that is no more than a share of the loads
+/// along them (27d): it accelerates all blocks alike, and strains none (Pa/m).
+Vec2 drift_of(const BlockBalance& balance, const BlockGoal& goal) {
+    Vec2 drift = Vec2::Zero();
     for (const auto& [direction, loads] : balance.free) {
         double driving = 0.0;
-        for (const Vec3& each : left) driving += each.head<2>().dot(direction);
+        for (const Vec3& left : balance.left) driving += left.head<2>().dot(direction);
         if (std::abs(driving) > goal.share * loads) continue;
-        for (std::size_t b = 0; b < left.size(); ++b) left[b].head<2>() -= balance.area[b] / area * driving * direction;
+        drift += driving / std::reduce(balance.area.begin(), balance.area.end()) * direction;
     }
-    return left;
+    return drift;
 }
 
 /// A block, or a group of them, as one body.
@@ -89,8 +88,8 @@ struct Part {
     [[nodiscard]] double size() const { return std::max(0.0, size_of(left) - roundoff); }
 };
 
-/// The part of a body that these blocks are, with what is left over on each; the moment is about the centroid of all.
-Part part_of(const BlockBalance& balance, const std::vector<Vec3>& left, std::span<const int> blocks) {
+/// The part of a body that these blocks are, without what makes all of it drift; the moment is about the centroid of all.
+Part part_of(const BlockBalance& balance, const Vec2& drift, std::span<const int> blocks) {
     Part part;
     double area = 0.0;
     Vec2 centre = Vec2::Zero();
@@ -102,9 +101,9 @@ Part part_of(const BlockBalance& balance, const std::vector<Vec3>& left, std::sp
     double of_loads = 0.0;
     double of_contacts = 0.0;
     for (const int b : blocks) {
-        const Vec2 force = left[b].head<2>();
+        const Vec2 force = balance.left[b].head<2>() - balance.area[b] * drift;
         part.left.head<2>() += force;
-        part.left[2] += std::sqrt(balance.area[b] / area) * left[b][2] +
+        part.left[2] += std::sqrt(balance.area[b] / area) * balance.left[b][2] +
                         cross(balance.position[b] - centre, force) / std::sqrt(area);
         part.loaded = part.loaded || balance.forces.loaded[b];
         (balance.forces.loaded[b] ? of_loads : of_contacts) += balance.forces.own[b];
@@ -288,10 +287,6 @@ std::vector<char> held_blocks(const LoadedBody& body) {
     return held;
 }
 
-} // namespace
-
-namespace {
-
 std::vector<FreeTranslation> free_translations(const LoadedBody& body, const Eigen::VectorXd& q) {
     Mat2 resistance = Mat2::Zero();
     for (const PrescribedDisplacement& row : body.loads->constraints.rows())
@@ -337,11 +332,11 @@ BlockBalance affine_block_balance(const LoadedBody& body, const Eigen::VectorXd&
 BlockVerdict judge_blocks(const BlockBalance& now, const BlockBalance* before, const BlockGoal& goal) {
     BlockVerdict verdict;
     double worst = 0.0;
-    const std::vector<Vec3> left = left_beside_drift(now, goal);
-    const std::vector<Vec3> left_before = before != nullptr ? left_beside_drift(*before, goal) : std::vector<Vec3>{};
+    const Vec2 drift = drift_of(now, goal);
+    const Vec2 drift_before = before != nullptr ? drift_of(*before, goal) : Vec2::Zero();
     const auto judge = [&](std::span<const int> blocks) {
-        const Part part = part_of(now, left, blocks);
-        const Part part_before = before != nullptr ? part_of(*before, left_before, blocks) : Part{};
+        const Part part = part_of(now, drift, blocks);
+        const Part part_before = before != nullptr ? part_of(*before, drift_before, blocks) : Part{};
         const Share share = share_of(part, before != nullptr ? &part_before : nullptr, goal);
         verdict.error = std::max(verdict.error, share.value);
         if (share.value <= goal.share) return;

@@ -93,8 +93,7 @@ std::string description(const Model& model, const Failure& failure) {
     std::string text = failure.what;
     if (text.empty()) text = description(model, failure.moving);
     if (text.empty()) {
-        text = failure.residual_ratio > 0.0 ? fmt::format("residual {:.2g} of the forces", failure.residual_ratio)
-                                            : std::string("the body cannot follow its supports and platens");
+        text = fmt::format("residual {:.2g} of the forces", failure.residual_ratio);
         if (failure.worst_block >= 0) text += ", worst is " + block_description(model.system, failure.worst_block);
     }
     if (failure.strength_factor != 1.0)

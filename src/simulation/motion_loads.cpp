@@ -1,5 +1,7 @@
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "kluft/simulation/over_damped_motion.hpp"
 
 namespace kluft {
@@ -47,6 +49,10 @@ bool apply_loads(StepInProgress& p, PlacedState& placed, Motion& motion) {
             part *= 0.5;
             if (part >= least_part) continue;
             fail(p, next.moved, next.moved.summary.residual_ratio, FailureKind::no_equilibrium);
+            if (!follows(p, next.moved) && p.step.failure->what.empty())
+                p.step.failure->what = fmt::format("the body cannot follow its supports and platens in motions that "
+                                                   "are small beside a spacing of {:.3g} m",
+                                                   p.bench.model.system.spacing);
             return false;
         }
         const bool platen_moves = platen_motion(p, motion.at) > 0.0;

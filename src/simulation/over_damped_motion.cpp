@@ -14,12 +14,11 @@ namespace kluft {
 
 namespace {
 
-constexpr double collapse_motion = 0.5; ///< of a block in one load step
-constexpr double first_step = 0.1;      ///< pseudo-time, of d2/E: a block of the net hardly deforms in it
-constexpr double least_step = 1e-12;    ///< of the first step
-constexpr double at_once = 1e-6;        ///< of it: who moves far in it is a sliver that finds its place
-constexpr double as_prescribed =
-    1e-6; ///< of the spacing: how far prescribed displacements may be from what they should be
+constexpr double collapse_motion = 0.5;   ///< of a block in one load step
+constexpr double first_step = 0.1;        ///< pseudo-time, of d2/E: a block of the net hardly deforms in it
+constexpr double least_step = 1e-12;      ///< of the first step
+constexpr double at_once = 1e-6;          ///< of it: who moves far in it is a sliver that finds its place
+constexpr double as_prescribed = 1e-6;    ///< of the spacing: how far off a prescribed displacement may be
 constexpr double longest_step = 1e4;      ///< of that of an ordinary solve
 constexpr double shortest_last = 0.01;    ///< of H2/E: the pseudo-time step before an ordinary solve is tried
 constexpr double largest_growth = 3.0;    ///< of the pseudo-time step
@@ -168,10 +167,14 @@ PseudoStep solve_step(StepInProgress& p, const PlacedState& placed, const Motion
     moved.load_factor = motion.at.load_factor;
     moved.strength_factor = motion.at.strength_factor;
     count_solves(p, moved);
-    const bool is_held = moved.summary.left_to_go <= as_prescribed * model.system.spacing;
-    step.balanced = moved.converged() || moved.summary.termination == Termination::relaxed ||
-                    (is_held && moved.summary.residual_ratio <= solver.tolerance); // a single small block, on the way
+    step.balanced =
+        moved.converged() || moved.summary.termination == Termination::relaxed ||
+        (follows(p, moved) && moved.summary.residual_ratio <= solver.tolerance); // a single small block, on the way
     return step;
+}
+
+bool follows(const StepInProgress& p, const Equilibrium& moved) {
+    return moved.summary.left_to_go <= as_prescribed * p.bench.model.system.spacing;
 }
 
 double moved_by(const StepInProgress& p, const Equilibrium& moved) {

@@ -15,8 +15,8 @@ struct SourceTrace {
 };
 
 /// Where a trace abuts on another, the map has rounded its end, which then misses the other by the last digits, or it
-/// was drawn a little short. For each end of a trace within `reach` (m) of another segment, that the trace does not meet
-/// there anyway, this returns a segment of the trace's source from the end to the nearest point of the other; past it by at most the
+/// was drawn a little short. For each end of a trace within `reach` (m) of another segment that the trace does not meet
+/// there anyway this returns a segment of the trace's source from the end to the nearest point of the other; past it by at most the
 /// distance that was missing, so that the two do cross (the rest separates nothing and is pruned). A trace that ends beside that end
 /// holds it no more than it is held itself: traces that end together are joined with each other and with what goes on there.
 /// A trace that touches a line with a bend is joined with it too, where only rounding separates them.

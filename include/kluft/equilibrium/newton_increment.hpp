@@ -57,7 +57,7 @@ private:
     void assemble_symmetric(const NewtonPoint& at);
     [[nodiscard]] bool solve_anew(const NewtonPoint& at, TangentKind kind);
     [[nodiscard]] bool solve_with_reuse(const NewtonPoint& at, TangentKind kind);
-    [[nodiscard]] bool solve_by_mass(const NewtonPoint& at);
+    [[nodiscard]] bool solve_without_factor(const NewtonPoint& at);
     [[nodiscard]] bool solve_refined(const NewtonPoint& at);
     void limit_motions(const NewtonPoint& at);
 

@@ -60,6 +60,9 @@ struct PseudoStep {
 [[nodiscard]] PseudoStep solve_step(StepInProgress& in_progress, const PlacedState& placed, const Motion& motion,
                                     const Eigen::VectorXd& guess);
 
+/// Whether the body is where its supports and platens prescribe it to be: one that stays behind may have no forces at all.
+[[nodiscard]] bool follows(const StepInProgress& in_progress, const Equilibrium& moved);
+
 /// Relative to the motion scale of the block that moves most, from where the step stands.
 [[nodiscard]] double moved_by(const StepInProgress& in_progress, const Equilibrium& moved);
 
