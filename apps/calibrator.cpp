@@ -20,8 +20,8 @@ void become_calibrator(std::vector<std::string> words) {
     const std::filesystem::path calibrator = program.parent_path() / "kluft-calibrate";
     std::error_code ignored;
     if (!std::filesystem::is_regular_file(calibrator, ignored))
-        throw InputError(fmt::format("kluft calibrate: expected the program kluft-calibrate beside {}, found none; it "
-                                     "is built where Ipopt is found (Debian: coinor-libipopt-dev)",
+        throw InputError(fmt::format("kluft calibrate: expected the program kluft-calibrate beside {}, found none; "
+                                     "scripts/build makes it where Ipopt is found (Debian: coinor-libipopt-dev)",
                                      program.string()));
     words.insert(words.begin(), calibrator);
     std::vector<char*> pointers;

@@ -420,11 +420,16 @@ int count_free_pieces(const PlanarMap& map, const SourceNumbers& numbers, double
     return count;
 }
 
-MendLimits mend_limits(const GeometrySpec& spec, const LocalFrame& frame, const SourceNumbers& numbers) {
+/// A piece below it is no block of its own (m2).
+double least_area(const GeometrySpec& spec) {
     constexpr double rounding_area = 1e-12; // of the domain, where no spacing is given
     const double domain_area = std::abs(signed_area(spec.domain));
+    return std::max(rounding_area * domain_area, spec.minimum_area * std::min(mean_cell_area(spec), domain_area));
+}
+
+MendLimits mend_limits(const GeometrySpec& spec, const LocalFrame& frame, const SourceNumbers& numbers) {
     MendLimits limits;
-    limits.area = std::max(rounding_area * domain_area, spec.minimum_area * mean_cell_area(spec));
+    limits.area = least_area(spec);
     limits.edge = resolution(spec, frame);
     if (has_triangles(spec)) limits.width = limits.edge; // a strip would be filled with triangles as narrow as it is
     limits.rounding = 4.0 * std::numeric_limits<double>::epsilon() * frame.box.upper.norm();
@@ -673,8 +678,9 @@ PlanarMap filled_with_triangles(const GeometrySpec& spec, const LocalFrame& fram
 /// What is asked of the traces that have no interface.
 class LossSearch {
 public:
-    LossSearch(const GeometrySpec& spec, const LocalFrame& frame, const SourceNumbers& numbers)
-        : spec_(spec), domain_(frame.to_local(spec.domain)), resolution_(resolution(spec, frame)),
+    LossSearch(const GeometrySpec& spec, const LocalFrame& frame, const SourceNumbers& numbers,
+               const std::map<int, double>& cut_off)
+        : spec_(spec), cut_off_(cut_off), domain_(frame.to_local(spec.domain)), resolution_(resolution(spec, frame)),
           rounding_(1e-12 * frame.box.upper.norm()), segments_(outline_segments(spec, frame)), numbers_(numbers) {
         for (const Polygon& hole : spec.holes) holes_.push_back(frame.to_local(hole));
         if (spec.tessellation && spec.tessellation->region) region_ = frame.to_local(*spec.tessellation->region);
@@ -782,6 +788,10 @@ private:
             if (along >= numbers_.first_fracture) loss.other = along - numbers_.first_fracture;
         } else if ((extent.upper - extent.lower).norm() < resolution_) {
             loss.cause = LostFracture::Cause::too_short;
+        } else if (const auto piece = cut_off_.find(numbers_.first_fracture + fracture);
+                   piece != cut_off_.end() && piece->second < least_area(spec_)) {
+            loss.cause = LostFracture::Cause::cuts_off_little;
+            loss.area = piece->second;
         } else if (has_triangles(spec_) && (region_.empty() || contains(region_, places[places.size() / 2]))) {
             loss.cause = LostFracture::Cause::too_near;
         }
@@ -789,6 +799,7 @@ private:
     }
 
     const GeometrySpec& spec_;
+    const std::map<int, double>& cut_off_;
     Polygon domain_;
     std::vector<Polygon> holes_;
     Polygon region_;
@@ -853,8 +864,9 @@ CutBody cut(const GeometrySpec& spec, ExactCells exact) {
 
     body.system = SystemBuilder(spec, frame, numbers, map).build();
     if (has_triangles(spec)) grade(body.system, side_of_triangles(spec, frame, numbers));
-    body.report.lost = LossSearch(spec, frame, numbers).lost(body.system);
+    body.report.lost = LossSearch(spec, frame, numbers, mended.cut_off).lost(body.system);
     body.report.resolution = resolution(spec, frame);
+    body.report.minimum_area = least_area(spec);
     if (has_triangles(spec)) body.report.fine_details = fine_details(spec, body.report.resolution);
     form_sets(spec, body.system);
     return body;

@@ -215,7 +215,13 @@ private:
         free_other_sides(exit);
         int face = map_.face(exit);
         int kept = map_.face(map_.twin(exit));
-        report_.merged.push_back({face_centroid(map_, face), std::max(0.0, map_.area(face))});
+        const double area = std::max(0.0, map_.area(face));
+        report_.merged.push_back({face_centroid(map_, face), area});
+        for (const int h : map_.half_edges_of(face)) {
+            if (map_.face(map_.twin(h)) != kept || is_outline(h) || is_tessellation(h)) continue;
+            double& largest = report_.cut_off[map_.source(h)];
+            largest = std::max(largest, area);
+        }
         if (map_.faces[kept].size() < map_.faces[face].size()) std::swap(kept, face);
         map_.merge_faces(kept, face);
         return kept;

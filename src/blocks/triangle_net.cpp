@@ -568,8 +568,7 @@ std::vector<SourceSegment> triangle_edges(const TriangleNet& net, const Triangle
     }
     const Filled part = filled_part(triangulation, lines, frame);
     if (part.triangles.empty())
-        throw InputError(
-            "geometry.tessellation.region: expected a polygon that holds a part of the body, found none in it");
+        throw InputError(frame.places.region + ": expected a polygon that holds a part of the body, found none in it");
     for (auto v = triangulation.finite_vertices_begin(); v != triangulation.finite_vertices_end(); ++v)
         circles.add(place_of(v), 0.5 * size.at(place_of(v)));
 

@@ -192,6 +192,11 @@ private:
         judge_parameters();
         result_.met = std::ranges::all_of(result_.targets, [](const TargetResult& each) { return each.met; });
         if (!result_.met) find_obstacles();
+        if (elastic_->have_fractures())
+            result_.warnings.emplace_back(
+                "The elastic targets are met with mapped fractures closed and locked: a run in "
+                "which they slip is softer. Run the calibrated scene and compare its "
+                "youngs_modulus before you use it.");
     }
 
     /// Which target a group of rows belongs to.

@@ -178,6 +178,7 @@ void add_targets(const Calibration& calibration, const CalibrationResult& result
                               percent_of(target.tolerance), found.met ? "met" : "missed", copies});
     }
     page.parts.emplace_back(std::move(table));
+    for (const std::string& warning : result.warnings) page.parts.emplace_back(ReportParagraph{warning});
     if (result.obstacles.empty()) return;
     page.parts.emplace_back(ReportParagraph{"What stands in the way:"});
     page.parts.emplace_back(ReportList{result.obstacles});
@@ -305,6 +306,7 @@ std::string calibrated_scene(const Calibration& calibration, const CalibrationRe
         text += "# " + target_line(calibration.targets[i], result.targets[i]) + "\n";
     for (std::size_t i = 0; i < calibration.parameters.size(); ++i)
         text += "# " + parameter_line(calibration.parameters[i], result.parameters[i]) + "\n";
+    for (const std::string& warning : result.warnings) text += "# " + warning + "\n";
     const fs::path base = calibration.scene.lexically_proximate(fs::absolute(directory).lexically_normal());
     const Json quoted = base.string(); // a quoted text is the same in JSON and YAML
     text += "kluft: 1\nextends: " + quoted.dump() + "\n";
@@ -323,6 +325,7 @@ std::string calibration_json(const Calibration& calibration, const CalibrationRe
     for (std::size_t i = 0; i < calibration.parameters.size(); ++i)
         json["parameters"].push_back(parameter_json(calibration.parameters[i], result.parameters[i]));
     json["obstacles"] = result.obstacles;
+    json["warnings"] = result.warnings;
     json["elastic_evaluations"] = result.elastic_evaluations;
     json["evaluations"] = result.evaluations;
     json["replicas"] = calibration.replicas.count;
@@ -338,6 +341,7 @@ std::string calibration_text(const Calibration& calibration, const CalibrationRe
     for (std::size_t i = 0; i < calibration.parameters.size(); ++i)
         text += parameter_line(calibration.parameters[i], result.parameters[i]) + "\n";
     for (const std::string& obstacle : result.obstacles) text += obstacle + "\n";
+    for (const std::string& warning : result.warnings) text += "warning: " + warning + "\n";
     return text + costs_text(result) + "\n";
 }
 

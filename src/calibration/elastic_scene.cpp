@@ -76,6 +76,11 @@ bool ElasticScene::is_of(const CalibrationTarget& target) const {
     return target.scene == scene_ && same_settings(target.set, set_);
 }
 
+bool ElasticScene::has_fractures() const {
+    return std::ranges::any_of(system_.interfaces,
+                               [](const Interface& each) { return each.origin == EdgeOrigin::fracture; });
+}
+
 std::optional<Eigen::VectorXd> ElasticScene::properties_at(const Eigen::VectorXd& x) const {
     try {
         const Scene scene = read_scene(scene_, assignments(joined(settings_at(calibration_, x), set_)));
@@ -130,6 +135,10 @@ ElasticTargets::ElasticTargets(const Calibration& calibration, const Eigen::Vect
         scene_of_.push_back(static_cast<std::size_t>(known - scenes_.begin()));
         if (known == scenes_.end()) scenes_.emplace_back(calibration, target.scene, target.set, x);
     }
+}
+
+bool ElasticTargets::have_fractures() const {
+    return std::ranges::any_of(scenes_, [](const ElasticScene& each) { return each.has_fractures(); });
 }
 
 std::optional<ResidualRows> ElasticTargets::values_at(const Eigen::VectorXd& x) {

@@ -253,7 +253,8 @@ RunSummary summary_in(const Json& json) {
         const Json& direction = each.at("direction");
         summary.falling.push_back(
             {each.at("block").get<std::string>(), each.at("stage").get<int>(), each.at("load_factor").get<double>(),
-             Vec2(direction.at(0).get<double>(), direction.at(1).get<double>()), each.at("turn").get<int>()});
+             Vec2(direction.at(0).get<double>(), direction.at(1).get<double>()), each.at("turn").get<int>(),
+             each.value("share_of_body", 0.0)}); // an earlier version does not say
     }
     const Json& times = json.at("seconds");
     visit_seconds(summary.costs.seconds, [&](const char* name, double& seconds) {
@@ -311,7 +312,8 @@ CurveNumbers curve_numbers(const std::vector<StepRecord>& equilibria, const std:
                            std::optional<int> platen_stage, Plane plane) {
     CurveNumbers numbers;
     const Rows& all = equilibria.empty() ? history : equilibria;
-    if (const auto peak = peak_row(all, platen_stage)) {
+    const auto peak = peak_row(all, platen_stage);
+    if (peak && (platen_stage || peak->axial_stress != 0.0)) { // else nothing presses on a gauge of the axial stress
         numbers.peak_stress = peak->axial_stress;
         numbers.peak_strain = peak->axial_strain;
         numbers.jumps_to_peak = peak->jumps;
@@ -388,7 +390,8 @@ std::string summary_json(const RunSummary& summary) {
                                           {"stage", each.stage},
                                           {"load_factor", each.load_factor},
                                           {"direction", {each.direction.x(), each.direction.y()}},
-                                          {"turn", each.turn}});
+                                          {"turn", each.turn},
+                                          {"share_of_body", each.share_of_body}});
     json["platen_stage"] = summary.platen_stage ? Json(*summary.platen_stage) : Json(nullptr);
     json["version"] = summary.version;
     json["blas_core"] = summary.blas_core;

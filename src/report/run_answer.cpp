@@ -140,13 +140,16 @@ void add_end(const RunFacts& facts, std::vector<std::string>& warnings) {
     }
 }
 
-/// "Blocks 12, 7 and 31 more move where the run has ended (stage 1, load factor 0.4)."
+/// "Blocks 12, 7 and 31 more, 2.1 % of the body, move where the run has ended (stage 1, load factor 0.4)."
 std::string moving_in_words(const std::vector<FallingBlock>& falling) {
     constexpr std::size_t most_named = 5;
     const std::size_t n_named = std::min(falling.size(), most_named);
     std::string names = falling.front().block;
     for (std::size_t i = 1; i < n_named; ++i) names += (i + 1 == falling.size() ? " and " : ", ") + falling[i].block;
     if (falling.size() > n_named) names += fmt::format(" and {} more", falling.size() - n_named);
+    double share = 0.0;
+    for (const FallingBlock& each : falling) share += each.share_of_body;
+    if (share > 0.0) names += fmt::format(", {:.2g} % of the body,", percent * share);
     return fmt::format("{} {} {} where the run has ended (stage {}, load factor {:.4g}).",
                        falling.size() == 1 ? "Block" : "Blocks", names, falling.size() == 1 ? "moves" : "move",
                        falling.front().stage, falling.front().load_factor);

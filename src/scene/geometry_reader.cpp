@@ -530,6 +530,8 @@ private:
         if (!section.node()->is_mapping()) return;
         if (!gives_one_of(section, {"triangles", "hexagons", "voronoi"}, context_)) return;
         Tessellation tessellation;
+        spec_.places.tessellation = context_.place(section, {});
+        spec_.places.region = context_.place(section, "region");
         if (section.has("region")) tessellation.region = read_polygon(section, "region");
         net_area_ = signed_area(spec_.domain);
         if (tessellation.region) net_area_ = std::min(net_area_, std::abs(signed_area(*tessellation.region)));

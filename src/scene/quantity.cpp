@@ -17,6 +17,8 @@ namespace kluft {
 namespace {
 
 constexpr const char* too_large = ", which is beyond the range of a number";
+constexpr const char* too_small = ", whose products are below the range of a number";
+constexpr double smallest = 1e-100; // but for zero: its square, divided by a number of this kind, is one still
 
 /// Powers of metre, kilogram, second and radian.
 using Dimension = std::array<int, 4>;
@@ -282,6 +284,15 @@ std::optional<long long> read_integer(std::string_view text) {
 
 double to_si(double plain, Measure measure) { return measure == Measure::angle ? plain * degree : plain; }
 
+namespace {
+
+QuantityReading checked(double value) {
+    if (value != 0.0 && std::abs(value) < smallest) return {std::nullopt, too_small};
+    return {value, {}};
+}
+
+} // namespace
+
 QuantityReading read_quantity(std::string_view text, Measure measure) {
     text = trimmed(text);
     const std::size_t length = number_length(text);
@@ -290,14 +301,14 @@ QuantityReading read_quantity(std::string_view text, Measure measure) {
     const auto number = read_number(text.substr(0, length));
     if (!number) return {std::nullopt, too_large};
     const std::string_view unit_text = trimmed(text.substr(length));
-    if (unit_text.empty()) return {to_si(*number, measure), {}};
+    if (unit_text.empty()) return checked(to_si(*number, measure));
     const UnitReading unit = read_unit(unit_text);
     if (!unit.problem.empty()) return {std::nullopt, unit.problem};
     if (unit.dimension != dimension_of(measure))
         return {std::nullopt, fmt::format(", which is in {}", dimension_name(unit.dimension))};
     const auto value = scaled_number(text.substr(0, length), unit.exponent);
     if (!value || !std::isfinite(*value * unit.factor)) return {std::nullopt, too_large};
-    return {*value * unit.factor, {}};
+    return checked(*value * unit.factor);
 }
 
 std::string number_flaw(std::string_view text) {

@@ -21,7 +21,8 @@ namespace {
 constexpr std::size_t most_told = 3; ///< warnings of one kind
 
 /// Why nothing is left of a fracture.
-std::string reason(const LostFracture& lost, const GeometrySpec& geometry, double resolution) {
+std::string reason(const LostFracture& lost, const GeometrySpec& geometry, const CutReport& report) {
+    const double resolution = report.resolution;
     switch (lost.cause) {
     case LostFracture::Cause::too_short:
         return fmt::format("it is shorter than {:.3g} m, the smallest length that the net resolves", resolution);
@@ -29,6 +30,10 @@ std::string reason(const LostFracture& lost, const GeometrySpec& geometry, doubl
         return lost.other < 0 ? "it lies on the outline of the domain"
                               : fmt::format("{} runs along it already",
                                             geometry.fractures[static_cast<std::size_t>(lost.other)].name);
+    case LostFracture::Cause::cuts_off_little:
+        return fmt::format("what it cuts off is {:.3g} m2, less than {:.3g} m2, the smallest block "
+                           "(`geometry.minimum_area`)",
+                           lost.area, report.minimum_area);
     case LostFracture::Cause::too_near:
         return fmt::format("it lies nearer to another line than {:.3g} m, the smallest length that the net resolves, "
                            "or at less than 14 degrees to it",
@@ -50,8 +55,8 @@ std::vector<std::string> lost_fractures(const GeometrySpec& geometry, const CutR
     };
     std::vector<std::string> warnings;
     for (const auto cause :
-         {LostFracture::Cause::too_short, LostFracture::Cause::coincides, LostFracture::Cause::too_near,
-          LostFracture::Cause::separates_nothing, LostFracture::Cause::in_part}) {
+         {LostFracture::Cause::too_short, LostFracture::Cause::coincides, LostFracture::Cause::cuts_off_little,
+          LostFracture::Cause::too_near, LostFracture::Cause::separates_nothing, LostFracture::Cause::in_part}) {
         std::vector<LostFracture> of_cause;
         std::ranges::copy_if(report.lost, std::back_inserter(of_cause),
                              [cause](const LostFracture& lost) { return lost.cause == cause; });
@@ -61,12 +66,19 @@ std::vector<std::string> lost_fractures(const GeometrySpec& geometry, const CutR
             const std::size_t n_others = i + 1 == n_told ? of_cause.size() - n_told : 0;
             warnings.push_back(fmt::format(
                 "{}: {} is left out{}: {}{}", trace.place, trace.name,
-                cause == LostFracture::Cause::in_part ? " in part" : "",
-                reason(of_cause[i], geometry, report.resolution),
+                cause == LostFracture::Cause::in_part ? " in part" : "", reason(of_cause[i], geometry, report),
                 n_others > 0 ? fmt::format("; and {} more fractures for a reason like this", n_others) : ""));
         }
     }
     return warnings;
+}
+
+std::vector<std::string> bare_net(const GeometrySpec& geometry, const BlockSystem& system) {
+    const auto is_of_net = [](const Interface& each) { return each.origin == EdgeOrigin::tessellation; };
+    if (!geometry.tessellation || std::ranges::any_of(system.interfaces, is_of_net)) return {};
+    return {geometry.tessellation->region
+                ? geometry.places.region + ": the net has no edge in it that lies in the body: nothing can crack"
+                : geometry.places.tessellation + ": the net has no edge in the body: nothing can crack"};
 }
 
 std::vector<std::string> fine_details(const GeometrySpec& geometry, const CutReport& report) {
@@ -136,7 +148,8 @@ SceneModel build_scene_model(const Scene& scene) {
         throw;
     }
     built.cut = std::move(body.report);
-    for (const auto& warnings : {lost_fractures(scene.geometry, built.cut), fine_details(scene.geometry, built.cut)})
+    for (const auto& warnings : {lost_fractures(scene.geometry, built.cut), fine_details(scene.geometry, built.cut),
+                                 bare_net(scene.geometry, built.model.system)})
         built.model.warnings.insert(built.model.warnings.end(), warnings.begin(), warnings.end());
     require_memory();
     return built;

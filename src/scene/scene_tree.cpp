@@ -290,6 +290,22 @@ std::string joined_path(const std::string& path, std::string_view key) {
     return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
 }
 
+namespace {
+
+/// Names the first line that a tab indents, which is the mistake then; empty where there is none.
+std::string tab_remark(std::string_view text, int first_line) {
+    for (int line = first_line;; ++line) {
+        const std::string_view rest = text.substr(0, text.find('\n'));
+        const std::size_t indentation = rest.find_first_not_of(" \t");
+        if (indentation != std::string_view::npos && rest.find('\t') < indentation)
+            return fmt::format("; line {} is indented by a tab, where YAML wants spaces", line);
+        if (rest.size() == text.size()) return {};
+        text.remove_prefix(rest.size() + 1);
+    }
+}
+
+} // namespace
+
 SceneNode parse_scene_tree(std::string_view text, int source, const TextPosition& origin, SceneErrors& errors) {
     std::istringstream stream{std::string(text)};
     TreeBuilder builder(source, origin, text, errors);
@@ -300,7 +316,8 @@ SceneNode parse_scene_tree(std::string_view text, int source, const TextPosition
     } catch (const YAML::Exception& error) {
         const TextPosition at{source, origin.line + std::max(error.mark.line, 0),
                               std::max(error.mark.column, 0) + (error.mark.line > 0 ? 1 : origin.column)};
-        errors.add(at, {}, fmt::format("expected valid YAML, found a mistake: {}", error.msg));
+        errors.add(at, {},
+                   fmt::format("expected valid YAML, found a mistake: {}{}", error.msg, tab_remark(text, origin.line)));
         return {};
     } catch (const TooDeep&) {
         return {};

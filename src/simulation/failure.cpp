@@ -86,7 +86,9 @@ std::string description(const Model& model, const std::vector<MovingBlock>& movi
     if (turn != 0 && direction.norm() > 0.0) text += " and turns";
     const std::set<int> all = blocks_of(moving);
     if (all.size() > 1) text += fmt::format(", and {} more", all.size() - 1);
-    return text;
+    double area = 0.0;
+    for (const int b : all) area += model.system.blocks[b].area;
+    return text + fmt::format(", {:.2g} % of the body", 100.0 * area / area_of(model.system));
 }
 
 std::string description(const Model& model, const Failure& failure) {

@@ -18,12 +18,14 @@ namespace {
 std::vector<FallingBlock> falling_blocks(const Model& model, const State& state,
                                          const std::vector<MovingBlock>& moving) {
     std::vector<FallingBlock> falling;
+    const double area = area_of(model.system);
     std::vector<char> named(model.system.blocks.size(), 0);
     for (const MovingBlock& each : moving) {
         if (std::exchange(named[each.block], 1)) continue;
         const auto& names = model.system.block_names;
         falling.push_back({names.empty() ? std::to_string(each.block) : names[each.block], state.at.stage,
-                           state.at.load_factor, each.direction, each.turn});
+                           state.at.load_factor, each.direction, each.turn,
+                           model.system.blocks[each.block].area / area});
     }
     return falling;
 }

@@ -157,7 +157,7 @@ void add_mechanics(const CurveNumbers& a, const CurveNumbers& b, bool tested, Ta
         if (tested) writer.judge(quantity);
     };
     ComparedQuantity& peak = writer.add("peak_stress", "peak axial stress", "MPa", mega, a.peak_stress, b.peak_stress);
-    if (tested || a.peak_stress.value_or(0.0) != 0.0 || b.peak_stress.value_or(0.0) != 0.0) writer.judge(peak);
+    if (tested || a.peak_stress || b.peak_stress) writer.judge(peak);
     judge(writer.add("peak_strain", "peak strain", "%", 1.0 / percent, a.peak_strain, b.peak_strain));
     judge(writer.add("youngs_modulus", "Young's modulus", "MPa", mega, a.youngs_modulus, b.youngs_modulus));
     writer.add("poissons_ratio", "Poisson's ratio", "", 1.0, a.poissons_ratio, b.poissons_ratio);
@@ -215,6 +215,7 @@ void add_costs(const FinishedRun& a, const FinishedRun& b, TableWriter& writer) 
 }
 
 void note_peak(const FinishedRun& run, std::vector<std::string>& notes) {
+    if (!run.platen_stage) return;
     if (!run.numbers.peak_stress) {
         notes.push_back(run.name + " has no balanced equilibrium, so no peak");
     } else if (run.numbers.net_locked) {

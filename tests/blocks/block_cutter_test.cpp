@@ -419,6 +419,32 @@ TEST(BlockCutter, ASliverGoesIntoItsNeighbourAndIsReported) {
     EXPECT_NEAR(body.report.merged[0].at.y(), 20.5, 1e-12);
 }
 
+// Half a body is no sliver, however large the cells of the net are: 5 % of such a cell, 21.7 m2, would be 1.08 m2.
+TEST(BlockCutter, ACellLargerThanTheBodyLosesNoJoint) {
+    GeometrySpec spec = rectangle(1, 2);
+    spec.tessellation = Tessellation{{.spacing = 5.0, .offset = {}}, 1, {}};
+    add_trace(spec, {{-0.2, 0.0}, {1.2, 0.9}});
+    const CutBody body = sound_cut(spec);
+    EXPECT_TRUE(body.report.lost.empty());
+    EXPECT_NEAR(interface_length(body.system, EdgeOrigin::fracture, 0), std::hypot(1.0, 0.9 / 1.4), 1e-12);
+}
+
+// A corner of 0.5 x 0.1 x 0.1 m2 on a body of 1 m2: more or less than the minimum area, a fraction of that body.
+TEST(BlockCutter, AJointThatCutsOffTooLittleIsSaidToDoSo) {
+    GeometrySpec spec = rectangle(1, 1);
+    spec.reference_spacing = 5.0;
+    add_trace(spec, {{0.0, 0.1}, {0.1, 0.0}});
+    spec.minimum_area = 0.004;
+    EXPECT_EQ(sound_cut(spec).system.n_blocks(), 2);
+    spec.minimum_area = 0.006;
+    const CutBody body = sound_cut(spec);
+    EXPECT_EQ(body.system.n_blocks(), 1);
+    EXPECT_DOUBLE_EQ(body.report.minimum_area, 0.006);
+    ASSERT_EQ(body.report.lost.size(), 1U);
+    EXPECT_EQ(body.report.lost[0].cause, LostFracture::Cause::cuts_off_little);
+    EXPECT_NEAR(body.report.lost[0].area, 0.005, 1e-12);
+}
+
 TEST(BlockCutter, SliversPreferToLeaveAcrossTheTessellation) {
     for (int seed = 0; seed < 20; ++seed) {
         Uniform uniform(100 + seed);

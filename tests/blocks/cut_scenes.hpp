@@ -67,7 +67,9 @@ inline std::string faults(const GeometrySpec& spec, const CutBody& body) {
     expected.domain_area = domain_area(spec);
     const bool triangles = spec.tessellation && spec.tessellation->triangles; // which have no smallest area
     expected.minimum_area =
-        body.system.n_blocks() > 1 && !triangles ? spec.minimum_area * hexagon_area(lattice_spacing(spec)) : 0.0;
+        body.system.n_blocks() > 1 && !triangles
+            ? spec.minimum_area * std::min(hexagon_area(lattice_spacing(spec)), std::abs(signed_area(spec.domain)))
+            : 0.0;
     std::string text;
     for (const std::string& sentence : check_block_system(body.system, expected)) text += sentence + '\n';
     const auto expect_corners = [&](const Polygon& polygon) {

@@ -82,6 +82,7 @@ TEST_F(CalibrateProgram, MeetsElasticTargetsWithASceneThatRuns) {
     EXPECT_THAT(text_of(path("out") / "report.html"), HasSubstr("All targets are met."));
     const auto json = nlohmann::json::parse(text_of(path("out") / "calibration.json"));
     EXPECT_TRUE(json.at("met"));
+    EXPECT_TRUE(json.at("warnings").empty()); // no fracture that could slip
     EXPECT_LT(json.at("elastic_evaluations"), 20);
     // The scene itself, at so little strain that its square does not count.
     const SceneRun found =

@@ -71,7 +71,9 @@ TEST_F(ElasticStage, RecoversTheModuliOfAnyNetAndOfFracturedBodies) {
         for (const double start : {200e9, 20e12}) {
             const Calibration wanted = calibration(scene, stiffnesses(start, 0.1 * start));
             const ElasticFit found = fit(wanted);
-            const auto values = ElasticTargets(wanted, found.x).values_at(found.x);
+            ElasticTargets targets(wanted, found.x);
+            EXPECT_EQ(targets.have_fractures(), scene.find(two_fractures) != std::string::npos) << scene;
+            const auto values = targets.values_at(found.x);
             ASSERT_TRUE(values);
             EXPECT_NEAR(values->values[0] / 10e9, 1.0, 1e-6) << start << scene;
             EXPECT_NEAR(values->values[1] / 0.25, 1.0, 1e-6) << start << scene;

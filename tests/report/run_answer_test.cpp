@@ -150,7 +150,8 @@ TEST(RunAnswer, NamesManyBlocksThatMoveInOneLine) {
     EXPECT_THAT(run_answer(facts).warnings,
                 Contains("Blocks 0, 1, 2, 3, 4 and 7 more move where the run has ended (stage 1, load factor 0.25)."));
     facts.summary->falling.resize(2);
-    EXPECT_THAT(run_answer(facts).warnings, Contains(HasSubstr("Blocks 0 and 1 move where")));
+    for (FallingBlock& each : facts.summary->falling) each.share_of_body = 0.002;
+    EXPECT_THAT(run_answer(facts).warnings, Contains(HasSubstr("Blocks 0 and 1, 0.4 % of the body, move where")));
 }
 
 TEST(RunAnswer, OfARunThatWasKilledOrStoppedSaysSo) {

@@ -196,7 +196,8 @@ INSTANTIATE_TEST_SUITE_P(
     NotANumber, RefusedValue,
     testing::Values(
         Refusal{"geometry.domain.rectangle.width=1e-200",
-                "geometry.domain.rectangle.width: expected a number > 0 in m, found '1e-200', which is below 1e-12 m"},
+                "geometry.domain.rectangle.width: expected a number > 0 in m, found '1e-200', whose products are below "
+                "the range of a number"},
         Refusal{"solver.tolerance=.nan",
                 "solver.tolerance: expected a number > 0 and < 1, found '.nan', which is not finite"},
         Refusal{"materials.rock.density=.inf",

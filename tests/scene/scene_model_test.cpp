@@ -54,6 +54,30 @@ TEST(SceneModel, WarnsOfFracturesThatAreNotLeft) {
                 ElementsAre(HasSubstr("geometry.fractures.1: again is left out: main runs along it already")));
 }
 
+// A corner of 0.1 x 0.1 / 2 m2 where the smallest block has 20 % of a hexagon of 0.3 m, 0.0156 m2.
+TEST(SceneModel, WarnsOfAFractureThatCutsOffTooLittle) {
+    EXPECT_THAT(warnings_of({"geometry.fractures.0.trace=[[0, 0.1], [0.1, 0]]", "geometry.minimum_area=0.2",
+                             "geometry.tessellation=null", "geometry.reference_spacing=0.3"}),
+                ElementsAre(AllOf(HasSubstr("geometry.fractures.0: main is left out: what it cuts off is 0.005 m2, "
+                                            "less than 0.0156 m2"),
+                                  HasSubstr("geometry.minimum_area"))));
+}
+
+TEST(SceneModel, WarnsOfANetWithoutAnEdgeInTheBody) {
+    EXPECT_THAT(warnings_of({"geometry.fractures=[]", "geometry.tessellation.triangles=null",
+                             "geometry.tessellation.hexagons={spacing: 9}", "interfaces.joint.friction_angle=20",
+                             "interfaces.crack.friction_angle=20", "interfaces.bond.stiffness_ratio=10"}),
+                ElementsAre(AllOf(HasSubstr("scene.yaml:10:"), HasSubstr("the net has no edge in the body"))));
+    EXPECT_THAT(
+        warnings_of({"geometry.fractures=[]", "geometry.tessellation.triangles=null",
+                     "geometry.tessellation.hexagons={spacing: 0.2}", "interfaces.bond.stiffness_ratio=10",
+                     "geometry.tessellation.region=[[5, 5], [6, 5], [6, 6]]", "interfaces.crack.friction_angle=20"}),
+        ElementsAre(AllOf(HasSubstr("geometry.tessellation.region: the net has no edge in it that lies in the body"))));
+    EXPECT_THAT(refusal_of({"geometry.tessellation.region=[[5, 5], [6, 5], [6, 6]]"}),
+                HasSubstr("--set geometry.tessellation.region=[[5, 5], [6, 5], [6, 6]]: geometry.tessellation.region: "
+                          "expected a polygon that holds a part of the body"));
+}
+
 TEST(SceneModel, WarnsOfDetailsThatAreFinerThanTheNet) {
     EXPECT_THAT(warnings_of({"geometry.domain.polygon=[[0, 0], [0.5, 0], [0.502, 0], [1, 0], [1, 2], [0, 2]]"}),
                 ElementsAre(AllOf(HasSubstr("scene.yaml:8:"),

@@ -228,6 +228,13 @@ TEST(SceneYaml, SyntaxErrorsHaveAPlace) {
         testing::Contains(AllOf(StartsWith("scene.yaml:3:"), HasSubstr("expected valid YAML, found a mistake: "))));
 }
 
+TEST(SceneYaml, ATabAsIndentationIsNamed) {
+    EXPECT_THAT(errors_in("kluft: 1\n\n   \ntitle: x\nmaterials:\n\trock: {density: 1}\n"),
+                testing::Contains(HasSubstr("; line 6 is indented by a tab, where YAML wants spaces")));
+    EXPECT_THAT(errors_in("kluft: 1\ntitle: [a,\tb\nstages: 3\n"),
+                testing::Not(testing::Contains(HasSubstr("tab")))); // which separates what it may separate
+}
+
 TEST(SceneYaml, AnchorsAliasesTagsAndSecondDocumentsAreRefused) {
     const auto with = [](const std::string& line) { return errors_in(test::short_scene + line + "\n"); };
     EXPECT_THAT(with("title: &a text"),

@@ -111,6 +111,8 @@ struct BoundarySides {
 struct GeometryPlaces {
     std::string domain = "geometry.domain";
     std::string blocks = "geometry.blocks";
+    std::string tessellation = "geometry.tessellation";
+    std::string region = "geometry.tessellation.region";
     std::string net = "geometry.tessellation.triangles";
     std::string spacing = "geometry.tessellation.triangles.spacing";
     std::string grading = "geometry.tessellation.triangles.grading";
@@ -125,7 +127,8 @@ struct GeometrySpec {
     std::vector<std::vector<Vec2>> construction_lines; ///< polylines that a net of triangles follows; no fractures
     int material = 0;
     std::vector<MaterialRegion> regions;
-    double minimum_area = 0.05;     ///< smallest block as a fraction of mean_cell_area
+    double minimum_area =
+        0.05; ///< smallest block as a fraction of mean_cell_area, or of the domain where a cell is larger
     double reference_spacing = 0.0; ///< d where there is no tessellation (m); 0 = none given
     std::vector<GivenBlock> blocks; ///< instead of domain, holes, fractures, tessellation and regions
     int blocks_interface = 0;       ///< index into the scene's interface types: of the interfaces between them

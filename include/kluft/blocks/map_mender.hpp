@@ -1,6 +1,7 @@
 // Mends what an exact cut leaves behind: slivers, short edges, needless vertices.
 #pragma once
 
+#include <map>
 #include <vector>
 
 #include "kluft/blocks/arrangement.hpp"
@@ -25,6 +26,7 @@ struct MendReport {
         double area = 0.0;      ///< m2
     };
     std::vector<Merged> merged;
+    std::map<int, double> cut_off;    ///< of fractures, by their source, the largest merged face that they cut off (m2)
     std::vector<SourceSegment> freed; ///< sides of merged faces that went with the side across which these were merged
     int collapsed_edges = 0;
 };

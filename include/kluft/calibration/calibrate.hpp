@@ -42,6 +42,7 @@ struct CalibrationResult {
     int evaluations = 0;         ///< parameter sets run in the strength stage
     std::vector<double> worst;   ///< per parameter set: the largest difference over its tolerance; infinite if not run
     std::vector<std::string> obstacles; ///< sentences: what stands in the way of the targets; empty when they are met
+    std::vector<std::string> warnings;  ///< sentences: where the targets are not those of a run
     double elapsed_s = 0.0;
 };
 

@@ -41,6 +41,9 @@ public:
     /// Whether this is the body of a target.
     [[nodiscard]] bool is_of(const CalibrationTarget& target) const;
 
+    /// Whether mapped fractures cut the body, which a run lets slip and the elastic body does not.
+    [[nodiscard]] bool has_fractures() const;
+
 private:
     [[nodiscard]] std::optional<Eigen::VectorXd> properties_at(const Eigen::VectorXd& x) const;
     [[nodiscard]] std::optional<Eigen::MatrixXd> properties_by_x(const Eigen::VectorXd& x) const;
@@ -61,6 +64,8 @@ public:
 
     /// Indices into Calibration::targets.
     [[nodiscard]] const std::vector<std::size_t>& targets() const { return targets_; }
+    /// Whether mapped fractures cut one of the bodies.
+    [[nodiscard]] bool have_fractures() const;
     /// The values of the targets and their derivatives by x, one row per target.
     [[nodiscard]] std::optional<ResidualRows> values_at(const Eigen::VectorXd& x);
     /// The differences from the targets over the tolerances, one per target.

@@ -31,6 +31,7 @@ struct FallingBlock {
     double load_factor = 0.0;
     Vec2 direction = Vec2::Zero(); ///< of length 1; zero where it only turns
     int turn = 0;                  ///< 1 where it also turns counter-clockwise, -1 clockwise
+    double share_of_body = 0.0;    ///< its area over that of all blocks
 };
 
 struct RunReport {
