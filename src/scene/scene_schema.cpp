@@ -715,7 +715,8 @@ std::vector<KeyRule> loading_rules() {
          .type = KeyType::mapping,
          .doc = "Seeks the factor of safety. Loads stay; tan(phi) and cohesion of fractures, and of the strength of "
                 "potential cracks, are divided by a factor that grows over the steps of the stage. Where a step finds "
-                "no equilibrium, the factor between the last one that stands and the first one that does not is found "
+                "no equilibrium, or one to which a block has moved by more than a hundredth of its size, the factor "
+                "between the last one that stands and the first one that does not is found "
                 "by halving, and the run ends (`collapsed`, exit 0) with `factor_of_safety` in summary.json: null, "
                 "with a warning, if the body stands at `to`; a stage after it has the full strengths again. Tensile "
                 "strengths stay; dilation is cut to the friction "
@@ -772,7 +773,7 @@ std::vector<KeyRule> option_rules() {
          .choices = {"principal_stress", "interface_traction"},
          .fallback = "principal_stress",
          .doc = "Compared with the strength: the mean stress of the two adjacent blocks, or the interface's own "
-                "traction. They are not interchangeable."},
+                "traction. They are not interchangeable. Bending of a single bond does not count."},
         {.path = "cracks.update",
          .type = KeyType::choice,
          .choices = {"event", "critical_first", "all", "single"},

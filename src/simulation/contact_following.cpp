@@ -35,7 +35,9 @@ Equilibrium find_again(StepInProgress& p) {
 
 void let_contacts_follow(StepInProgress& p, Eigen::VectorXd placed_at) {
     if (!p.goal.must_rest && !is_loaded_by_stress(p.bench.stage(p.from))) return;
-    for (int round = 0; !p.failed() && p.step.balanced && has_moved_far(p, placed_at); ++round) {
+    bool stands = !p.goal.must_rest; // else contacts detected anew tell, however little has moved
+    for (int round = 0; !p.failed() && p.step.balanced && (!stands || has_moved_far(p, placed_at)); ++round) {
+        stands = true;
         placed_at = p.displacement();
         const Equilibrium found = find_again(p);
         if (!p.failed() && round == max_rounds_of_detection) fail(p, found, found.viscous_share, FailureKind::falling);

@@ -8,8 +8,6 @@ namespace kluft {
 
 namespace {
 
-constexpr double jump_motion = 0.01; ///< of a block at fixed loads: more than blocks displace elastically
-
 /// Along closed contacts.
 double largest_slip(const Placement& placement, const Eigen::VectorXd& q, const Eigen::VectorXd& moved) {
     double largest = 0.0;

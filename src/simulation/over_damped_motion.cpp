@@ -85,13 +85,16 @@ bool move_along(StepInProgress& p, const PlacedState& placed, Motion& motion, Ps
     return true;
 }
 
+/// How far a block of a falling body has moved, over its motion_scale. With reduced strengths (32b).
+double motion_of_a_fall(const StepInProgress& p) { return p.goal.must_rest ? jump_motion : collapse_motion; }
+
 /// Under a given stress or weight a body that lost its balance may fall for ever.
 bool is_falling(const StepInProgress& p) {
     const BlockSystem& system = p.bench.model.system;
     if (!is_loaded_by_stress(p.bench.stage(p.from))) return false;
     const Eigen::VectorXd moved = p.displacement() - p.from.body.displacement;
     for (int b = 0; b < system.n_blocks(); ++b) {
-        const double far = collapse_motion * motion_scale(system, system.blocks[b]);
+        const double far = motion_of_a_fall(p) * motion_scale(system, system.blocks[b]);
         if (moved.segment<2>(n_block_unknowns * b).norm() > far) return true;
     }
     return false;
@@ -240,7 +243,7 @@ std::optional<Equilibrium> take_pseudo_step(StepInProgress& p, PlacedState& plac
         p.step.failure->moving = moving_on(p, motion.early, std::move(p.step.failure->moving));
         return motion.last;
     }
-    if (motion.largest < 0.5 * collapse_motion) motion.early = p.displacement();
+    if (motion.largest < 0.5 * motion_of_a_fall(p)) motion.early = p.displacement();
     place_again(p, placed, motion);
     motion.step = std::min(motion.step * std::clamp(caution * better, largest_cut, largest_growth),
                            longest_step * motion.ordinary);

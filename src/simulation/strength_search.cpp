@@ -1,11 +1,18 @@
 #include "kluft/simulation/strength_search.hpp"
 
 #include <algorithm>
+#include <functional>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
+
+#include "kluft/kinematics/affine.hpp"
+#include "kluft/simulation/corner_contact.hpp"
+#include "kluft/simulation/over_damped_motion.hpp"
+#include "kluft/simulation/strength_reduction.hpp"
 
 namespace kluft {
 
@@ -38,18 +45,75 @@ std::optional<Failure> find_initial_equilibrium(const StepBench& bench, State& s
     return std::nullopt;
 }
 
-/// Tries a load step and commits it, after the equilibria found before, if there is an equilibrium at its end.
-std::optional<Failure> try_factor(const StepBench& bench, double load_factor, StepKind kind, State& state,
-                                  Eigen::VectorXd& forces, std::vector<StepRecord>& before) {
+/// What a load step to a factor has come to.
+struct Trial {
+    std::optional<Failure> failure;
+    bool is_far = false; ///< the body has moved farther than blocks displace elastically
+};
+
+/// Those that have moved so far, the farthest first.
+std::vector<MovingBlock> moved_blocks(const BlockSystem& system, const Eigen::VectorXd& moved) {
+    std::vector<std::pair<double, MovingBlock>> far;
+    for (int b = 0; b < system.n_blocks(); ++b) {
+        const Vec2 motion = moved.segment<2>(n_block_unknowns * b);
+        const double share = motion.norm() / motion_scale(system, system.blocks[b]);
+        if (share > jump_motion) far.push_back({share, {b, motion.normalized(), 0}});
+    }
+    std::ranges::stable_sort(far, std::greater(), [](const auto& each) { return each.first; });
+    std::vector<MovingBlock> blocks;
+    for (const auto& each : far) blocks.push_back(each.second);
+    return blocks;
+}
+
+/// Of a step that ends in another equilibrium than that in which the body stood.
+Failure failure_by_motion(const StepBench& bench, const Step& step, const Eigen::VectorXd& before) {
+    const auto& at = step.end.at;
+    return {.kind = FailureKind::falling,
+            .load_factor = at.load_factor,
+            .strength_factor = strength_factor(bench.model.loads, at.stage, at.load_factor),
+            .moving = moved_blocks(bench.model.system, step.end.body.displacement - before)};
+}
+
+/// Tries a load step and commits it, after the equilibria found before, if the body stands at its end where it stood (32b).
+Trial try_factor(const StepBench& bench, double load_factor, StepKind kind, State& state, Eigen::VectorXd& forces,
+                 std::vector<StepRecord>& before) {
     begin_load_step(bench);
     Step step = take_step(bench, state, goal_with_strengths_of(bench, state, load_factor));
-    if (step.failure) return step.failure;
+    if (step.failure) return {step.failure, step.failure->kind == FailureKind::falling};
+    const Eigen::VectorXd& start = state.body.displacement;
+    if (relative_motion(bench.model.system, step.end.body.displacement - start) > jump_motion)
+        return {failure_by_motion(bench, step, start), true};
     forces = std::move(step.forces);
     step.equilibria.insert(step.equilibria.begin(), before.begin(), before.end());
     before.clear();
     commit(std::move(step), kind, state, bench.journal);
-    return std::nullopt;
+    return {};
 }
+
+/// Whether a corner holds a block that has slid against it, and the largest factor without one.
+class Corner {
+public:
+    Corner(const Model& model, const StrengthReduction& reduction, const State& state)
+        : model_(model), reduction_(reduction) {
+        look_at(state);
+    }
+
+    void look_at(const State& state) {
+        said_ = corner_contact_warning(model_, state);
+        if (said_.empty()) without_ = reduction_.factor_at(state.at.load_factor);
+    }
+
+    [[nodiscard]] std::string warning() const {
+        if (said_.empty() || !without_) return said_;
+        return said_ + fmt::format("; at {:.4g}, the last load step without one, the body stands", *without_);
+    }
+
+private:
+    const Model& model_;
+    const StrengthReduction& reduction_;
+    std::string said_;
+    std::optional<double> without_;
+};
 
 } // namespace
 
@@ -61,36 +125,50 @@ StageEnd find_strength_limit(const StepBench& bench, State& state) {
     const StrengthReduction& reduction = *bench.stage(state).strength_reduction;
     const int n_steps = bench.stage(state).steps;
     StageEnd end;
+    Corner corner{bench.model, reduction, state};
     std::vector<StepRecord> before; // equilibria that are not told yet
     if (state.at.load_factor == 0.0) end.failure = find_initial_equilibrium(bench, state, before);
     if (end.failure) return {.failure = end.failure, .step = state.at.step + 1};
-    double failing = 1.0; // load factor
-    while (!end.failure && state.at.step_in_stage < n_steps) {
-        failing = static_cast<double>(state.at.step_in_stage + 1) / n_steps;
-        const bool last = state.at.step_in_stage + 1 == n_steps;
-        end.failure = try_factor(bench, failing, {.last_of_stage = last}, state, end.forces, before);
+    const auto width = [&](double to) { // of the factors from the last equilibrium on, relative
+        return reduction.factor_at(to) / reduction.factor_at(state.at.load_factor) - 1.0;
+    };
+    constexpr double none = std::numeric_limits<double>::infinity();
+    double failing = none;    // the least load factor at which the body was found not to stand
+    double tried_from = none; // where it was only too far from the equilibrium there: maybe it is not from nearer by
+    double size = none;       // of a load step in which it does not move too far
+    while (state.at.step_in_stage < n_steps) {
+        const double from = state.at.load_factor;
+        const double next = static_cast<double>(state.at.step_in_stage + 1) / n_steps;
+        const double middle = 0.5 * (from + failing);
+        const bool is_enclosed =
+            failing < none && (width(failing) <= reduction.tolerance || middle <= from || middle >= failing);
+        if (is_enclosed && (tried_from == none || tried_from == from)) break;
+        const double at = is_enclosed ? failing : std::min({next, from + size, middle});
+        const bool last = at == next && state.at.step_in_stage + 1 == n_steps;
+        const Trial trial =
+            try_factor(bench, at, {.regular = at == next, .last_of_stage = last}, state, end.forces, before);
+        if (!trial.failure) {
+            corner.look_at(state);
+            size = at == failing ? 2.0 * (at - from) : 2.0 * size;
+            if (at == failing) failing = none;
+            if (failing == none) end.failure.reset();
+            continue;
+        }
+        end.failure = trial.failure;
+        if (end.failure->kind == FailureKind::too_many_solves) break; // whether it stands is not known
+        failing = at;
+        tried_from = trial.is_far ? from : none;
     }
+    if (const std::string said = corner.warning(); !said.empty()) bench.journal.report().warnings.push_back(said);
     if (!end.failure) {
         bench.journal.report().warnings.push_back(
             fmt::format("the factor of safety is above {:g}, the largest strength factor of stage {}", reduction.to,
                         state.at.stage));
         return end;
     }
-    const auto factor = [&](double load_factor) { return reduction.factor_at(load_factor); };
-    const auto is_open = [&] { // where solves were spent, it is not known whether the body stands
-        return end.failure->kind != FailureKind::too_many_solves &&
-               factor(failing) - factor(state.at.load_factor) > reduction.tolerance * factor(state.at.load_factor);
-    };
-    while (is_open()) {
-        const double middle = 0.5 * (state.at.load_factor + failing);
-        if (middle == state.at.load_factor || middle == failing) break; // to the last digit
-        if (auto failure = try_factor(bench, middle, {.regular = false}, state, end.forces, before)) {
-            end.failure = std::move(failure);
-            failing = middle;
-        }
-    }
     end.step = state.at.step + 1;
-    if (end.failure->kind != FailureKind::too_many_solves) end.factor_of_safety = factor(state.at.load_factor);
+    if (end.failure->kind != FailureKind::too_many_solves)
+        end.factor_of_safety = reduction.factor_at(state.at.load_factor);
     return end;
 }
 

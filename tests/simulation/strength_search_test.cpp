@@ -2,9 +2,12 @@
 
 #include <cmath>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "kluft/kinematics/affine.hpp"
 #include "support/posed_run.hpp"
+#include "support/scene_run.hpp"
 
 namespace kluft {
 namespace {
@@ -79,6 +82,51 @@ TEST(StrengthSearch, FailsWhereTheStateBeforeItDoesNotStand) {
     EXPECT_TRUE(end.failure.has_value());
     EXPECT_FALSE(end.factor_of_safety.has_value());
     EXPECT_EQ(work.state.at.step_in_stage, 0);
+}
+
+/// A block on a plane of 35 degrees with a friction angle of 40, 0.3 m above a ledge that it can come to rest on.
+SceneRun block_above_a_ledge(int steps) {
+    return run_scene(read_scene_text(R"(kluft: 1
+analysis: {gravity: [-5.735764364, -8.191520443]}
+materials: {rock: {density: 2600, youngs_modulus: 20 GPa, poissons_ratio: 0.25}}
+interfaces: {joint: {kind: fracture, normal_stiffness: 10 GPa/m, shear_stiffness: 5 GPa/m, friction_angle: 40}}
+geometry:
+  blocks:
+    - {name: base, polygon: [[-10, -5], [30, -5], [30, 0], [0, 0], [-0.3, 0], [-0.3, 2], [-10, 2]], support: fixed}
+    - {name: slab, polygon: [[0, 0], [10, 0], [10, 4], [0, 4]]}
+stages: [{}, {strength_reduction: {from: 0.5, to: 3}}]
+)",
+                                     {fmt::format("stages.1.steps={}", steps)}, "ledge.yaml"));
+}
+
+// F = tan(phi)/tan(dip): what a block comes to rest on after a slide is not what held it.
+TEST(StrengthSearch, BodyThatComesToRestElsewhereHasFailed) {
+    for (const int steps : {1, 3, 10}) {
+        const SceneRun run = block_above_a_ledge(steps);
+        ASSERT_TRUE(run.report.results.factor_of_safety.has_value()) << steps;
+        EXPECT_NEAR(*run.report.results.factor_of_safety, std::tan(40.0 * degree) / std::tan(35.0 * degree), 2e-4)
+            << steps;
+        EXPECT_NE(run.report.diagnosis.find("'slab'"), std::string::npos) << run.report.diagnosis;
+    }
+}
+
+// What friction loses a wall of 0.3 MPa/m takes over: some 3 % of the block's size, in the end, without a jump.
+TEST(StrengthSearch, SoftJointsThatGiveWayByMuchStand) {
+    const SceneRun run = run_scene(read_scene_text(R"(kluft: 1
+analysis: {gravity: [-5, -8.660254038]}
+materials: {rock: {density: 2600, youngs_modulus: 20 GPa, poissons_ratio: 0.25}}
+interfaces: {joint: {kind: fracture, normal_stiffness: 0.3 MPa/m, shear_stiffness: 1 MPa/m, friction_angle: 50}}
+geometry:
+  reference_spacing: 1
+  blocks:
+    - {name: corner, polygon: [[-1, -1], [1, -1], [1, 0], [0, 0], [0, 1], [-1, 1]], support: fixed}
+    - {name: block, polygon: [[0, 0], [1, 0], [1, 1], [0, 1]]}
+stages: [{}, {strength_reduction: {from: 1, to: 30}, steps: 1}]
+)",
+                                                   {}, "soft.yaml"));
+    EXPECT_TRUE(stands(run)) << run.report.diagnosis;
+    EXPECT_EQ(run.state.at.load_factor, 1.0);
+    EXPECT_GT(relative_motion(run.model.system, run.state.body.displacement), 0.03);
 }
 
 TEST(StrengthSearch, AsksForAResidualWellBelowTheToleranceOfTheFactor) {

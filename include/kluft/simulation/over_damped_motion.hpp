@@ -10,6 +10,10 @@
 
 namespace kluft {
 
+/// Motion of a block at fixed loads, over its motion_scale: more than blocks displace elastically, so that the body has lost
+/// its balance.
+inline constexpr double jump_motion = 0.01;
+
 /// How finely a motion is followed. Lengths are those of blocks (u or D) over their motion_scale.
 struct MotionControl {
     double error = 0.1;           ///< of one pseudo-time step, of the largest motion so far
