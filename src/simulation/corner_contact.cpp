@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <compare>
+#include <functional>
 #include <limits>
 #include <map>
 #include <vector>
@@ -71,32 +72,33 @@ std::vector<double> acting_on_blocks(const LoadedBody& body, const Overlaps& ove
 
 } // namespace
 
-std::string corner_contact_warning(const Model& model, const State& state) {
+std::vector<CornerContact> corner_contacts(const Model& model, const State& state) {
     const BlockSystem& system = model.system;
-    std::string warning;
+    std::vector<CornerContact> corners;
     with_body_of_state(model, state, [&](const LoadedBody& body) {
         const Overlaps overlaps = pressed_overlaps(body, state.body.displacement);
         const std::vector<double> acting = acting_on_blocks(body, overlaps);
-        double largest = 0.0;
         for (const auto& [overlap, touching] : overlaps) {
             const int a = overlap.block_a;
             const int b = overlap.block_b;
             const double size = std::min(spacing_of(system.blocks[a]), spacing_of(system.blocks[b]));
             const int held = acting[a] < acting[b] ? a : b;
             const double share = touching.pressing / acting[held];
-            if (touching.length > short_contact * size || share < large_share || touching.pressing <= largest) continue;
-            largest = touching.pressing;
-            warning =
-                fmt::format("a corner holds block {}: its contact with block {}, {:.2g} mm long at about {}, carries "
-                            "{:.3g} kN/m, {:.2g} "
-                            "% of what acts on it. Where blocks have slid so little that corners catch, they may stand "
-                            "by them alone: "
-                            "without such a corner the factor of safety is lower",
-                            block_label(system, held), block_label(system, held == a ? b : a), 1e3 * touching.length,
-                            place_text(system.origin + touching.place), 1e-3 * touching.pressing, 100.0 * share);
+            if (touching.length > short_contact * size || share < large_share) continue;
+            corners.push_back({a, b, held, touching.length, touching.pressing, share, system.origin + touching.place});
         }
     });
-    return warning;
+    std::ranges::stable_sort(corners, std::greater(), &CornerContact::force);
+    return corners;
+}
+
+std::string description(const Model& model, const CornerContact& corner) {
+    const int other = corner.held == corner.block_a ? corner.block_b : corner.block_a;
+    return fmt::format(
+        "a corner holds block {}: its contact with block {}, {:.2g} mm long at about {}, carries {:.3g} kN/m, "
+        "{:.2g} % of what acts on it",
+        block_label(model.system, corner.held), block_label(model.system, other), 1e3 * corner.length,
+        place_text(corner.place), 1e-3 * corner.force, 100.0 * corner.share);
 }
 
 } // namespace kluft

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "kluft/blocks/block_search.hpp"
 #include "kluft/kinematics/affine.hpp"
 #include "kluft/simulation/corner_contact.hpp"
 #include "kluft/simulation/over_damped_motion.hpp"
@@ -20,6 +21,7 @@ namespace {
 
 constexpr double reduction_balance = 0.1;   ///< of the tolerance of a factor of safety: largest `balance`
 constexpr double reduction_residual = 0.01; ///< of it: largest `tolerance`
+constexpr double share_of_jump = 0.05;      ///< between factors within the tolerance: what goes farther slides
 
 StepGoal goal_with_strengths_of(const StepBench& bench, const State& state, double load_factor) {
     const double tolerance = bench.stage(state).strength_reduction->tolerance;
@@ -74,45 +76,80 @@ Failure failure_by_motion(const StepBench& bench, const Step& step, const Eigen:
             .moving = moved_blocks(bench.model.system, step.end.body.displacement - before)};
 }
 
+/// Where a load step goes to, and how far a body that stands moves on the way (motion_scale).
+struct TrialGoal {
+    double load_factor = 0.0;
+    double farthest = jump_motion;
+    StepKind kind;
+};
+
 /// Tries a load step and commits it, after the equilibria found before, if the body stands at its end where it stood (32b).
-Trial try_factor(const StepBench& bench, double load_factor, StepKind kind, State& state, Eigen::VectorXd& forces,
+Trial try_factor(const StepBench& bench, const TrialGoal& goal, State& state, Eigen::VectorXd& forces,
                  std::vector<StepRecord>& before) {
     begin_load_step(bench);
-    Step step = take_step(bench, state, goal_with_strengths_of(bench, state, load_factor));
+    Step step = take_step(bench, state, goal_with_strengths_of(bench, state, goal.load_factor));
     if (step.failure) return {step.failure, step.failure->kind == FailureKind::falling};
     const Eigen::VectorXd& start = state.body.displacement;
-    if (relative_motion(bench.model.system, step.end.body.displacement - start) > jump_motion)
+    if (relative_motion(bench.model.system, step.end.body.displacement - start) > goal.farthest)
         return {failure_by_motion(bench, step, start), true};
     forces = std::move(step.forces);
     step.equilibria.insert(step.equilibria.begin(), before.begin(), before.end());
     before.clear();
-    commit(std::move(step), kind, state, bench.journal);
+    commit(std::move(step), goal.kind, state, bench.journal);
     return {};
 }
 
-/// Whether a corner holds a block that has slid against it, and the largest factor without one.
-class Corner {
+/// What lies against a factor that is found: it may be that of a body which has moved into another place, as cut it has a lower
+/// one.
+class Doubts {
 public:
-    Corner(const Model& model, const StrengthReduction& reduction, const State& state)
-        : model_(model), reduction_(reduction) {
-        look_at(state);
-    }
+    Doubts(const Model& model, const State& start)
+        : model_(model), start_(start.body.displacement), corners_(corner_contacts(model, start)),
+          far_(std::max(jump_motion, relative_motion(model.system, start_))) {}
 
-    void look_at(const State& state) {
-        said_ = corner_contact_warning(model_, state);
-        if (said_.empty()) without_ = reduction_.factor_at(state.at.load_factor);
+    void look_at(const State& state, double factor) {
+        said_ = of_corners(state);
+        if (said_.empty()) said_ = of_motion(state);
+        if (said_.empty()) without_ = factor;
     }
 
     [[nodiscard]] std::string warning() const {
-        if (said_.empty() || !without_) return said_;
-        return said_ + fmt::format("; at {:.4g}, the last load step without one, the body stands", *without_);
+        if (said_.empty()) return {};
+        return fmt::format(
+            "{}: the factor of safety is lower without that; {:.4g} is the factor of the last load step before", said_,
+            without_);
     }
 
 private:
+    /// Blocks that have slid a little catch with their corners, and may stand by these alone.
+    [[nodiscard]] std::string of_corners(const State& state) const {
+        for (const CornerContact& corner : corner_contacts(model_, state)) {
+            const auto same = [&](const CornerContact& each) {
+                return each.block_a == corner.block_a && each.block_b == corner.block_b;
+            };
+            if (std::ranges::none_of(corners_, same)) return description(model_, corner);
+        }
+        return {};
+    }
+
+    /// More than (32b) in all, and more than the loads have displaced them.
+    [[nodiscard]] std::string of_motion(const State& state) const {
+        const BlockSystem& system = model_.system;
+        const Eigen::VectorXd moved = state.body.displacement - start_;
+        if (relative_motion(system, moved) <= far_) return {};
+        const auto blocks = moved_blocks(system, moved);
+        if (blocks.empty()) return "blocks have turned since strengths are reduced";
+        const int block = blocks.front().block;
+        return fmt::format("block {} has moved by {:.3g} m since strengths are reduced", block_label(system, block),
+                           moved.segment<2>(n_block_unknowns * block).norm());
+    }
+
     const Model& model_;
-    const StrengthReduction& reduction_;
+    Eigen::VectorXd start_;
+    std::vector<CornerContact> corners_;
+    double far_ = 0.0;
     std::string said_;
-    std::optional<double> without_;
+    double without_ = 0.0;
 };
 
 } // namespace
@@ -125,7 +162,8 @@ StageEnd find_strength_limit(const StepBench& bench, State& state) {
     const StrengthReduction& reduction = *bench.stage(state).strength_reduction;
     const int n_steps = bench.stage(state).steps;
     StageEnd end;
-    Corner corner{bench.model, reduction, state};
+    Doubts doubts(bench.model, state);
+    doubts.look_at(state, reduction.factor_at(state.at.load_factor));
     std::vector<StepRecord> before; // equilibria that are not told yet
     if (state.at.load_factor == 0.0) end.failure = find_initial_equilibrium(bench, state, before);
     if (end.failure) return {.failure = end.failure, .step = state.at.step + 1};
@@ -145,10 +183,12 @@ StageEnd find_strength_limit(const StepBench& bench, State& state) {
         if (is_enclosed && (tried_from == none || tried_from == from)) break;
         const double at = is_enclosed ? failing : std::min({next, from + size, middle});
         const bool last = at == next && state.at.step_in_stage + 1 == n_steps;
-        const Trial trial =
-            try_factor(bench, at, {.regular = at == next, .last_of_stage = last}, state, end.forces, before);
+        const TrialGoal goal{.load_factor = at,
+                             .farthest = is_enclosed ? share_of_jump * jump_motion : jump_motion,
+                             .kind = {.regular = at == next, .last_of_stage = last}};
+        const Trial trial = try_factor(bench, goal, state, end.forces, before);
         if (!trial.failure) {
-            corner.look_at(state);
+            doubts.look_at(state, reduction.factor_at(state.at.load_factor));
             size = at == failing ? 2.0 * (at - from) : 2.0 * size;
             if (at == failing) failing = none;
             if (failing == none) end.failure.reset();
@@ -159,7 +199,7 @@ StageEnd find_strength_limit(const StepBench& bench, State& state) {
         failing = at;
         tried_from = trial.is_far ? from : none;
     }
-    if (const std::string said = corner.warning(); !said.empty()) bench.journal.report().warnings.push_back(said);
+    if (const std::string said = doubts.warning(); !said.empty()) bench.journal.report().warnings.push_back(said);
     if (!end.failure) {
         bench.journal.report().warnings.push_back(
             fmt::format("the factor of safety is above {:g}, the largest strength factor of stage {}", reduction.to,

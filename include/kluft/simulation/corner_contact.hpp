@@ -2,15 +2,30 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "kluft/core/vector.hpp"
 #include "kluft/simulation/model.hpp"
 #include "kluft/simulation/state.hpp"
 
 namespace kluft {
 
-/// What is to be said of the contact, short beside its blocks, that carries the largest force (N/m) of those with more than a
-/// twentieth of what acts on one of their blocks; "" where there is none. What acts on a block: its weight, or the sum of the
-/// magnitudes of its contact forces where that is more.
-[[nodiscard]] std::string corner_contact_warning(const Model& model, const State& state);
+/// A contact, short beside its blocks, that carries more than a twentieth of what acts on one of them: its weight, or the sum of
+/// the magnitudes of its contact forces where that is more.
+struct CornerContact {
+    int block_a = 0;
+    int block_b = 0;
+    int held = 0;              ///< the one of them
+    double length = 0.0;       ///< m
+    double force = 0.0;        ///< in compression (N/m)
+    double share = 0.0;        ///< of what acts on the held block
+    Vec2 place = Vec2::Zero(); ///< in the moved body, scene coordinates (m)
+};
+
+/// Of a committed state, the largest force first.
+[[nodiscard]] std::vector<CornerContact> corner_contacts(const Model& model, const State& state);
+
+/// In words, what holds a block there.
+[[nodiscard]] std::string description(const Model& model, const CornerContact& corner);
 
 } // namespace kluft
