@@ -101,4 +101,12 @@ std::string description(const Model& model, const CornerContact& corner) {
         place_text(corner.place), 1e-3 * corner.force, 100.0 * corner.share);
 }
 
+std::string corner_contact_warning(const Model& model, const State& state) {
+    if (model.has_potential_cracks || model.loads.stages[state.at.stage].strength_reduction) return {};
+    const auto corners = corner_contacts(model, state);
+    if (corners.empty()) return {};
+    return description(model, corners.front()) + ": blocks without potential cracks keep their corners, and where "
+                                                 "joints cross these may carry what rock would not";
+}
+
 } // namespace kluft

@@ -12,6 +12,7 @@
 #include "kluft/scene/scene_as_run.hpp"
 #include "kluft/simulation/bond_bending.hpp"
 #include "kluft/simulation/contact_pressure.hpp"
+#include "kluft/simulation/corner_contact.hpp"
 #include "kluft/simulation/fingerprint.hpp"
 #include "kluft/simulation/measurements.hpp"
 #include "kluft/simulation/simulation.hpp"
@@ -109,8 +110,8 @@ RunReport run_stages(const Model& model, const Scene& scene, State& state, StepO
 void warn_of_contacts(const Model& model, const State& state, double largest_stress, RunReport& report) {
     if (report.status == RunStatus::out_of_resources || report.status == RunStatus::interrupted) return;
     try {
-        for (const std::string& warning :
-             {contact_pressure_warning(model, state, largest_stress), bond_bending_warning(model, state)})
+        for (const std::string& warning : {contact_pressure_warning(model, state, largest_stress),
+                                           corner_contact_warning(model, state), bond_bending_warning(model, state)})
             if (!warning.empty()) report.warnings.push_back(warning);
     } catch (const std::bad_alloc&) {
         return;

@@ -54,5 +54,38 @@ TEST(CornerContact, ThatHoldsABlockIsWarnedOf) {
     EXPECT_THAT(ledge.report.warnings, Not(Contains(HasSubstr("corner"))));
 }
 
+/// A specimen of 1 m by 2.5 m with two joints through its middle, of 50 degrees one way and so many the other.
+SceneRun crossing_joints(double angle) {
+    const double slope = std::tan(angle * std::numbers::pi / 180.0);
+    const std::string text = fmt::format(R"(kluft: 1
+materials: {{rock: {{density: 2500, youngs_modulus: 10 GPa, poissons_ratio: 0.25}}}}
+interfaces: {{joint: {{kind: fracture, normal_stiffness: 100 GPa/m, shear_stiffness: 50 GPa/m, friction_angle: 30, cohesion: 0.5 MPa}}}}
+geometry:
+  domain: {{rectangle: {{width: 1, height: 2.5}}}}
+  fractures:
+    - {{name: up, trace: [[-0.5, {}], [1.5, {}]]}}
+    - {{name: down, trace: [[-0.5, {}], [1.5, {}]]}}
+boundaries: {{bottom: {{support: smooth}}}}
+stages:
+  - {{pressure: {{left: 1 MPa, right: 1 MPa, top: 1 MPa}}}}
+  - {{strain: {{boundary: top, value: 0.2 %}}, steps: 10}}
+)",
+                                         1.25 - 1.191753593, 1.25 + 1.191753593, 1.25 + slope, 1.25 - slope);
+    return run_scene(read_scene_text(text, {}, "crossing.yaml"));
+}
+
+// Where the joints cross exactly the tips of two wedges meet, and bear more than the joints do: Jaeger's plane of weakness has
+// 1 MPa + 2 (0.5 MPa + 1 MPa tan 30)/((1 - tan 30/tan 50) sin 100) = 5.24 MPa.
+TEST(CornerContact, OfWedgesThatMeetWithTheirTipsIsWarnedOf) {
+    const SceneRun tips = crossing_joints(50.0);
+    ASSERT_TRUE(stands(tips));
+    EXPECT_GT(tips.history.back().axial_stress, 6e6);
+    EXPECT_THAT(corner_contact_warning(tips.model, tips.state), HasSubstr("carry what rock would not"));
+    const SceneRun beside = crossing_joints(49.9);
+    ASSERT_TRUE(stands(beside));
+    EXPECT_NEAR(beside.history.back().axial_stress, 5.24e6, 0.03e6);
+    EXPECT_THAT(corner_contact_warning(beside.model, beside.state), IsEmpty());
+}
+
 } // namespace
 } // namespace kluft
