@@ -78,6 +78,23 @@ TEST(SceneModel, WarnsOfANetWithoutAnEdgeInTheBody) {
                           "expected a polygon that holds a part of the body"));
 }
 
+// A square of 0.4 m has the area of a circle of 0.226 m, 0.15 of which is 0.034 m.
+TEST(SceneModel, WarnsOfANetThatIsCoarseBesideAnOpening) {
+    const auto warnings = [](const std::vector<std::string>& overrides) {
+        Scene scene = read_scene_text(body_of_triangles, overrides, "scene.yaml");
+        scene.geometry.holes = {{{0.3, 1.3}, {0.7, 1.3}, {0.7, 1.7}, {0.3, 1.7}}};
+        return build_scene_model(scene).model.warnings;
+    };
+    const std::string grading = "geometry.tessellation.triangles.grading";
+    EXPECT_THAT(warnings({}), ElementsAre(AllOf(HasSubstr("scene.yaml:8:"),
+                                                HasSubstr("the net at hole 0 has a spacing of 0.2 m, 0.89 of"))));
+    EXPECT_THAT(warnings({grading + ".openings=0.033"}), IsEmpty());
+    EXPECT_THAT(warnings({grading + ".openings=0.035"}), ElementsAre(HasSubstr("a spacing of 0.035 m")));
+    EXPECT_THAT(warnings({grading + ".region=[[0.1, 1.1], [0.9, 1.1], [0.9, 1.9], [0.1, 1.9]]",
+                          grading + ".region_spacing=0.033"}),
+                IsEmpty());
+}
+
 TEST(SceneModel, WarnsOfDetailsThatAreFinerThanTheNet) {
     EXPECT_THAT(warnings_of({"geometry.domain.polygon=[[0, 0], [0.5, 0], [0.502, 0], [1, 0], [1, 2], [0, 2]]"}),
                 ElementsAre(AllOf(HasSubstr("scene.yaml:8:"),
