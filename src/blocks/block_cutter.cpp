@@ -391,11 +391,17 @@ void take_outside_away(PlanarMap& map, const SourceNumbers& numbers) {
     }
 }
 
+struct FreePieces {
+    int count = 0;
+    std::optional<LoosePiece> longest;
+};
+
 /// Connected pieces of fractures in the body with the same face on both sides, each fracture on its own, that are
 /// longer than `shortest` in all.
-int count_free_pieces(const PlanarMap& map, const SourceNumbers& numbers, double shortest) {
+FreePieces count_free_pieces(const PlanarMap& map, const SourceNumbers& numbers, double shortest) {
     std::vector<int> root;                       // of each free edge, in the order found
     std::vector<double> length;                  // of the piece, at its root
+    std::vector<int> source;                     // of each free edge
     std::map<std::pair<int, int>, int> first_at; // (source, vertex) -> free edge
     const auto find = [&root](int i) {
         while (root[i] != i) i = root[i] = root[root[i]];
@@ -407,6 +413,7 @@ int count_free_pieces(const PlanarMap& map, const SourceNumbers& numbers, double
         const int edge = static_cast<int>(root.size());
         root.push_back(edge);
         length.push_back(map.length(h));
+        source.push_back(map.source(h));
         for (const int v : {map.start(h), map.end(h)}) {
             const int a = find(edge);
             const int b = find(first_at.emplace(std::pair(map.source(h), v), edge).first->second);
@@ -415,9 +422,14 @@ int count_free_pieces(const PlanarMap& map, const SourceNumbers& numbers, double
             length[b] += length[a];
         }
     }
-    int count = 0;
-    for (int i = 0; i < static_cast<int>(root.size()); ++i) count += root[i] == i && length[i] > shortest ? 1 : 0;
-    return count;
+    FreePieces free;
+    for (int i = 0; i < static_cast<int>(root.size()); ++i) {
+        if (root[i] != i || length[i] <= shortest) continue;
+        ++free.count;
+        if (!free.longest || length[i] > free.longest->length)
+            free.longest = LoosePiece{source[i] - numbers.first_fracture, length[i]};
+    }
+    return free;
 }
 
 /// A piece below it is no block of its own (m2).
@@ -425,6 +437,11 @@ double least_area(const GeometrySpec& spec) {
     constexpr double rounding_area = 1e-12; // of the domain, where no spacing is given
     const double domain_area = std::abs(signed_area(spec.domain));
     return std::max(rounding_area * domain_area, spec.minimum_area * std::min(mean_cell_area(spec), domain_area));
+}
+
+void note_free_pieces(const FreePieces& free, CutReport& report) {
+    report.pruned_ends = free.count;
+    report.longest_pruned = free.longest;
 }
 
 MendLimits mend_limits(const GeometrySpec& spec, const LocalFrame& frame, const SourceNumbers& numbers) {
@@ -848,7 +865,7 @@ CutBody cut(const GeometrySpec& spec, ExactCells exact) {
     insert_whole_cells(map, cuts.whole, numbers.tessellation);
     take_outside_away(map, numbers);
     std::vector<SourceSegment> free = has_triangles(spec) ? free_pieces(map) : std::vector<SourceSegment>{};
-    body.report.pruned_ends = count_free_pieces(map, numbers, 2.0 * resolution(spec, frame));
+    note_free_pieces(count_free_pieces(map, numbers, 2.0 * resolution(spec, frame)), body.report);
     map.remove_edges_inside_faces();
 
     MendReport mended = mend(map, mend_limits(spec, frame, numbers));
@@ -856,7 +873,7 @@ CutBody cut(const GeometrySpec& spec, ExactCells exact) {
     if (has_triangles(spec)) {
         free.insert(free.end(), mended.freed.begin(), mended.freed.end());
         map = filled_with_triangles(spec, frame, numbers, std::move(map), free);
-        body.report.pruned_ends = count_free_pieces(map, numbers, 2.0 * resolution(spec, frame));
+        note_free_pieces(count_free_pieces(map, numbers, 2.0 * resolution(spec, frame)), body.report);
         map.remove_edges_inside_faces();
     }
     body.report.collapsed_edges = mended.collapsed_edges;

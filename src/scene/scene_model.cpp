@@ -74,6 +74,22 @@ std::vector<std::string> lost_fractures(const GeometrySpec& geometry, const CutR
     return warnings;
 }
 
+/// Without a net a joint that ends inside a block does not even weaken it.
+std::vector<std::string> pruned_pieces(const GeometrySpec& geometry, const CutReport& report) {
+    if (geometry.tessellation || !report.longest_pruned) return {};
+    constexpr double large_part = 0.05; // of the trace: less is an end that was drawn too long
+    const auto& [fracture, length] = *report.longest_pruned;
+    const FractureTrace& trace = geometry.fractures[static_cast<std::size_t>(fracture)];
+    double whole = 0.0;
+    for (std::size_t i = 0; i + 1 < trace.points.size(); ++i) whole += (trace.points[i + 1] - trace.points[i]).norm();
+    const bool is_told = std::ranges::find(report.lost, fracture, &LostFracture::fracture) != report.lost.end();
+    if (is_told || length <= large_part * whole) return {};
+    return {fmt::format("{}: {:.3g} m of {} end inside a block and are left out{}: without potential cracks "
+                        "(`geometry.tessellation`) a block is cut by what goes through it, and has no other weakness",
+                        trace.place, length, trace.name,
+                        report.pruned_ends > 1 ? fmt::format(", as are {} other pieces", report.pruned_ends - 1) : "")};
+}
+
 std::vector<std::string> bare_net(const GeometrySpec& geometry, const BlockSystem& system) {
     const auto is_of_net = [](const Interface& each) { return each.origin == EdgeOrigin::tessellation; };
     if (!geometry.tessellation || std::ranges::any_of(system.interfaces, is_of_net)) return {};
@@ -185,7 +201,8 @@ SceneModel build_scene_model(const Scene& scene) {
     }
     built.cut = std::move(body.report);
     for (const auto& warnings : {lost_fractures(scene.geometry, built.cut), fine_details(scene.geometry, built.cut),
-                                 bare_net(scene.geometry, built.model.system), coarse_openings(scene.geometry)})
+                                 pruned_pieces(scene.geometry, built.cut), bare_net(scene.geometry, built.model.system),
+                                 coarse_openings(scene.geometry)})
         built.model.warnings.insert(built.model.warnings.end(), warnings.begin(), warnings.end());
     require_memory();
     return built;

@@ -63,6 +63,19 @@ TEST(SceneModel, WarnsOfAFractureThatCutsOffTooLittle) {
                                   HasSubstr("geometry.minimum_area"))));
 }
 
+// Beyond the bed the joint meets nothing; 4 % of it were drawn too long.
+TEST(SceneModel, WarnsOfJointsThatEndInsideABlock) {
+    const auto with = [](const std::string& end) {
+        return warnings_of({"geometry.tessellation=null", "geometry.fractures=[{name: bed, trace: [[0, 1], [1, 1]], "
+                                                          "interface: joint}, {name: main, trace: [[0.5, 0], [0.5, " +
+                                                              end + "]], interface: joint}]"});
+    };
+    EXPECT_THAT(with("1.04"), IsEmpty());
+    EXPECT_THAT(with("1.3"), ElementsAre(AllOf(
+                                 HasSubstr("geometry.fractures.1: 0.3 m of main end inside a block and are left out: "),
+                                 HasSubstr("without potential cracks"))));
+}
+
 TEST(SceneModel, WarnsOfANetWithoutAnEdgeInTheBody) {
     EXPECT_THAT(warnings_of({"geometry.fractures=[]", "geometry.tessellation.triangles=null",
                              "geometry.tessellation.hexagons={spacing: 9}", "interfaces.joint.friction_angle=20",

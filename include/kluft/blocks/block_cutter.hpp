@@ -1,6 +1,7 @@
 // Cuts the domain into blocks along fracture traces and tessellation edges, with exact arithmetic.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,12 @@ struct FineDetail {
     double size = 0.0;      ///< length of the side, or the largest extent of the hole (m)
 };
 
+/// A piece of a fracture that separates nothing.
+struct LoosePiece {
+    int fracture = 0;
+    double length = 0.0; ///< m
+};
+
 /// What the cut had to mend and what came out.
 struct CutReport {
     struct Merged {
@@ -44,6 +51,7 @@ struct CutReport {
     int collapsed_edges = 0;    ///< short edges collapsed to a point
     int joined_ends = 0;        ///< ends of traces that were carried on to what they nearly met
     int pruned_ends = 0;        ///< pieces of traces that separate nothing (dangling ends, isolated traces)
+    std::optional<LoosePiece> longest_pruned; ///< of these
     std::vector<LostFracture> lost;
     std::vector<FineDetail> fine_details; ///< of a body with triangles
     double resolution = 0.0;              ///< the smallest length that the cut resolves (m)
