@@ -144,11 +144,10 @@ std::vector<std::string> coarse_openings(const GeometrySpec& geometry) {
             break;
         }
         warnings.push_back(fmt::format(
-            "{}: the net at hole {} has a spacing of {:.3g} m, {:.2g} of the hole's radius: the first cracks beside it "
-            "come "
-            "late, with triangles at loads 13 % too high at 0.15 of the radius and 28 % at 0.3, with hexagons and "
-            "Voronoi cells "
-            "later; a grading by geometry.tessellation.triangles.grading.openings makes the net finer there",
+            "{}: the net at hole {} has a spacing of {:.3g} m, {:.2g} of the hole's radius: first cracks beside it "
+            "come late, "
+            "with triangles at loads 13 % too high at 0.15 of the radius and 28 % at 0.3, with other cells later; "
+            "geometry.tessellation.triangles.grading.openings makes the net finer there",
             geometry.places.domain, k, spacing, spacing / radius));
     }
     return warnings;
