@@ -53,13 +53,13 @@ struct Trial {
     bool is_far = false; ///< the body has moved farther than blocks displace elastically
 };
 
-/// Those that have moved so far, the farthest first.
-std::vector<MovingBlock> moved_blocks(const BlockSystem& system, const Eigen::VectorXd& moved) {
+/// Those that have moved by more than a share of their motion_scale, the farthest first.
+std::vector<MovingBlock> moved_blocks(const BlockSystem& system, const Eigen::VectorXd& moved, double least_share) {
     std::vector<std::pair<double, MovingBlock>> far;
     for (int b = 0; b < system.n_blocks(); ++b) {
         const Vec2 motion = moved.segment<2>(n_block_unknowns * b);
         const double share = motion.norm() / motion_scale(system, system.blocks[b]);
-        if (share > jump_motion) far.push_back({share, {b, motion.normalized(), 0}});
+        if (share > least_share) far.push_back({share, {b, motion.normalized(), 0}});
     }
     std::ranges::stable_sort(far, std::greater(), [](const auto& each) { return each.first; });
     std::vector<MovingBlock> blocks;
@@ -68,12 +68,12 @@ std::vector<MovingBlock> moved_blocks(const BlockSystem& system, const Eigen::Ve
 }
 
 /// Of a step that ends in another equilibrium than that in which the body stood.
-Failure failure_by_motion(const StepBench& bench, const Step& step, const Eigen::VectorXd& before) {
+Failure failure_by_motion(const StepBench& bench, const Step& step, const Eigen::VectorXd& before, double farthest) {
     const auto& at = step.end.at;
     return {.kind = FailureKind::falling,
             .load_factor = at.load_factor,
             .strength_factor = strength_factor(bench.model.loads, at.stage, at.load_factor),
-            .moving = moved_blocks(bench.model.system, step.end.body.displacement - before)};
+            .moving = moved_blocks(bench.model.system, step.end.body.displacement - before, farthest)};
 }
 
 /// Where a load step goes to, and how far a body that stands moves on the way (motion_scale).
@@ -91,7 +91,7 @@ Trial try_factor(const StepBench& bench, const TrialGoal& goal, State& state, Ei
     if (step.failure) return {step.failure, step.failure->kind == FailureKind::falling};
     const Eigen::VectorXd& start = state.body.displacement;
     if (relative_motion(bench.model.system, step.end.body.displacement - start) > goal.farthest)
-        return {failure_by_motion(bench, step, start), true};
+        return {failure_by_motion(bench, step, start, goal.farthest), true};
     forces = std::move(step.forces);
     step.equilibria.insert(step.equilibria.begin(), before.begin(), before.end());
     before.clear();
@@ -137,7 +137,7 @@ private:
         const BlockSystem& system = model_.system;
         const Eigen::VectorXd moved = state.body.displacement - start_;
         if (relative_motion(system, moved) <= far_) return {};
-        const auto blocks = moved_blocks(system, moved);
+        const auto blocks = moved_blocks(system, moved, far_);
         if (blocks.empty()) return "blocks have turned since strengths are reduced";
         const int block = blocks.front().block;
         return fmt::format("block {} has moved by {:.3g} m since strengths are reduced", block_label(system, block),

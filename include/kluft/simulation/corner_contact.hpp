@@ -1,4 +1,4 @@
-// Corners that hold blocks which have slid against them, in a body with reduced strengths.
+// Corners that hold blocks: short contacts that carry much.
 #pragma once
 
 #include <string>
