@@ -257,6 +257,10 @@ OwnForces own_forces(const LoadedBody& body, const Eigen::VectorXd& q) {
     return own_forces(body, q, meetings_of(body, q));
 }
 
+bool has_shed_its_load(const LoadedBody& body, const Eigen::VectorXd& q) {
+    return body.carried_stress > 0.0 && has_shed_its_load(body, meetings_of(body, q));
+}
+
 /// The moment is h times the force on w, h dtheta = dw.
 Vec3 affine_rigid_part(const BlockSystem& system, const Eigen::VectorXd& q, const Eigen::VectorXd& forces, int b) {
     const Block& block = system.blocks[b];

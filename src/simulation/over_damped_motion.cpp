@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "kluft/core/memory.hpp"
+#include "kluft/equilibrium/left_over.hpp"
 #include "kluft/simulation/breaking.hpp"
 #include "kluft/simulation/mass_term.hpp"
 #include "kluft/simulation/placement.hpp"
@@ -16,6 +17,7 @@ namespace {
 
 constexpr double collapse_motion = 0.5;   ///< of a block in one load step
 constexpr double first_step = 0.1;        ///< pseudo-time, of d2/E: a block of the net hardly deforms in it
+constexpr double first_smooth_step = 1e3; ///< of it, without friction: what presses is pushed away (measured)
 constexpr double least_step = 1e-12;      ///< of the first step
 constexpr double at_once = 1e-6;          ///< of it: who moves far in it is a sliver that finds its place
 constexpr double as_prescribed = 1e-6;    ///< of the spacing: how far off a prescribed displacement may be
@@ -104,6 +106,24 @@ void place_again(StepInProgress& p, PlacedState& placed, Motion& motion) {
     if (relative_motion(p.bench.model.system, p.displacement() - motion.detected) > detection_motion)
         return detect_anew(p, placed, motion);
     renew(p, placed);
+    set_friction(motion.rubs, placed);
+}
+
+/// The state that a body has come to without friction, where it stands by the laws of its contacts.
+std::optional<Equilibrium> stands_with_friction(const StepInProgress& p, PlacedState& placed, const Motion& motion) {
+    renew(p, placed);
+    set_friction(true, placed);
+    Equilibrium found = motion.last;
+    found.blocks = block_balance(loaded_body(p.bench.model, placed.placement, motion.at), p.displacement());
+    found.verdict = judge_blocks(found.blocks, nullptr, p.goal.balance);
+    if (found.verdict.balanced()) return found;
+    return std::nullopt;
+}
+
+/// Contacts rub again, or no longer, where the body has taken up or shed its load (29e).
+void follow_load(Motion& motion) {
+    const bool rubs = !motion.last.blocks.forces.has_shed_its_load;
+    if (std::exchange(motion.rubs, rubs) != rubs) restart(motion);
 }
 
 /// Whether the motion has come to where the last ordinary solve has found its end.
@@ -114,6 +134,7 @@ bool is_at_end(const StepInProgress& p, const Motion& motion) {
 
 /// Whether an ordinary solve may find the end of the motion near by.
 bool may_end(const StepInProgress& p, const Motion& motion) {
+    if (!motion.rubs) return false;
     if (motion.step * mass_coefficient(p.bench.model, 1.0) < shortest_last) return false;
     if (is_at_end(p, motion)) return true;
     const double apart = motion.end.size() > 0 ? tries_beside : tries_apart;
@@ -133,13 +154,20 @@ std::optional<Equilibrium> find_end(StepInProgress& p, PlacedState& placed, Moti
 
 } // namespace
 
-Motion begin_motion(const StepInProgress& p, double load_factor, const MotionControl& control) {
+void set_friction(bool rubs, PlacedState& placed) {
+    for (ContactPoint& point : placed.placement.contacts) point.held_limit = rubs ? std::nullopt : std::optional(0.0);
+}
+
+Motion begin_motion(const StepInProgress& p, PlacedState& placed, double load_factor, const MotionControl& control) {
     const Model& model = p.bench.model;
     const double viscosity = p.bench.solver.viscosity;
     Motion motion{.at = p.loads_at(load_factor), .control = control};
     motion.first = first_step * model.system.spacing * model.system.spacing / model.effective_modulus;
     motion.ordinary = 1.0 / mass_coefficient(model, viscosity > 0.0 ? viscosity : SolverOptions{}.viscosity);
     motion.step = motion.first;
+    const LoadsAt at_start = p.loads_at(p.load_factor());
+    motion.rubs = !has_shed_its_load(loaded_body(model, placed.placement, at_start), p.displacement());
+    set_friction(motion.rubs, placed);
     motion.start = motion.detected = motion.early = p.displacement();
     motion.velocity.setZero(motion.start.size());
     motion.last.load_factor = load_factor;
@@ -148,7 +176,7 @@ Motion begin_motion(const StepInProgress& p, double load_factor, const MotionCon
 }
 
 void restart(Motion& motion) {
-    motion.step = std::min(motion.step, motion.first);
+    motion.step = std::min(motion.step, motion.rubs ? motion.first : first_smooth_step * motion.first);
     motion.velocity.setZero();
     motion.driving.resize(0);
     motion.end.resize(0);
@@ -201,6 +229,7 @@ void add_work(Motion& motion, const Eigen::VectorXd& moved, Eigen::VectorXd afte
 
 void detect_anew(StepInProgress& p, PlacedState& placed, Motion& motion) {
     placed = place(p);
+    set_friction(motion.rubs, placed);
     motion.detected = p.displacement();
 }
 
@@ -236,7 +265,8 @@ std::optional<Equilibrium> take_pseudo_step(StepInProgress& p, PlacedState& plac
     moved.balanced = moved.verdict.balanced() && moved.viscous_share <= p.goal.balance.share;
     // of a body that has shed its load no force is left that a slow beginning of a motion could let grow
     const bool at_rest = motion.step >= motion.ordinary || moved.blocks.forces.has_shed_its_load;
-    if (moved.balanced && next.load_factor == 1.0 && at_rest) return std::move(moved);
+    const bool ends = moved.balanced && next.load_factor == 1.0 && at_rest;
+    if (ends && motion.rubs) return std::move(moved);
     if (!move_along(p, placed, motion, std::move(next))) return motion.last;
     if (is_falling(p)) {
         fail(p, motion.last, motion.last.viscous_share, FailureKind::falling);
@@ -244,9 +274,12 @@ std::optional<Equilibrium> take_pseudo_step(StepInProgress& p, PlacedState& plac
         return motion.last;
     }
     if (motion.largest < 0.5 * motion_of_a_fall(p)) motion.early = p.displacement();
-    place_again(p, placed, motion);
+    if (ends)
+        if (auto end = stands_with_friction(p, placed, motion)) return end;
     motion.step = std::min(motion.step * std::clamp(caution * better, largest_cut, largest_growth),
                            longest_step * motion.ordinary);
+    follow_load(motion);
+    place_again(p, placed, motion);
     break_there(p, placed, motion);
     return find_end(p, placed, motion);
 }

@@ -26,6 +26,8 @@ struct OwnForces {
     bool has_shed_its_load = false;
 };
 [[nodiscard]] OwnForces own_forces(const LoadedBody& body, const Eigen::VectorXd& q);
+/// Whether the supports and platens carry nothing (OwnForces).
+[[nodiscard]] bool has_shed_its_load(const LoadedBody& body, const Eigen::VectorXd& q);
 
 /// The rigid part of `forces` on the six unknowns of the affine block `b` at q: force, and moment about the centroid over
 /// sqrt(area) (N/m).

@@ -40,6 +40,7 @@ struct Motion {
     Eigen::VectorXd early;    ///< displacement before the motion had gone halfway to a collapse (m)
     Eigen::VectorXd driving;  ///< eta M dq of the step before (N/m); empty where the forces have just changed
     double released = 0.0;    ///< energy (J/m)
+    bool rubs = true;         ///< contacts have friction: as long as the body carries a load (29e)
     Equilibrium last;         ///< that the body moved to
 
     /// The largest error of a step.
@@ -48,8 +49,12 @@ struct Motion {
     }
 };
 
-/// A motion from where the step stands, under the loads of a load factor.
-[[nodiscard]] Motion begin_motion(const StepInProgress& in_progress, double load_factor, const MotionControl& control);
+/// A motion from where the step stands and is placed, under the loads of a load factor.
+[[nodiscard]] Motion begin_motion(const StepInProgress& in_progress, PlacedState& placed, double load_factor,
+                                  const MotionControl& control);
+
+/// Contacts follow their laws, or hold no shear traction (29e).
+void set_friction(bool rubs, PlacedState& placed);
 
 /// The forces have changed at once: the motion begins anew.
 void restart(Motion& motion);
