@@ -21,6 +21,7 @@ constexpr double least_turn = 0.1; ///< moment over sqrt(area) and force: a bloc
 constexpr double much_more = 3.0;
 constexpr double balanced_loads =
     1e-3; ///< resultant of the loads on a block over the sum of their magnitudes: less is none
+constexpr double touch_of_a_load = 0.1; ///< of (27c): less does not join a piece to what carries
 constexpr double harmless_share =
     0.1; ///< of the largest share: what a block without loads may leave of forces around it
 
@@ -31,6 +32,7 @@ struct Meeting {
     Vec2 on_a = Vec2::Zero(); ///< force on a, and its opposite on b (N/m)
     double stiffness = 0.0;   ///< Pa
     bool holds = false;       ///< bonded or locked
+    bool bonded = false;
 };
 
 /// All points where blocks meet at q.
@@ -38,18 +40,18 @@ std::vector<Meeting> meetings_of(const LoadedBody& body, const Eigen::VectorXd& 
     const Placement& placement = *body.placement;
     std::vector<Meeting> meetings;
     meetings.reserve(n_bond_points * placement.bonds.size() + placement.contacts.size());
-    const auto add = [&](const auto& pair, const Vec2& normal, const PointTraction& traction, bool holds) {
+    const auto add = [&](const auto& pair, const Vec2& normal, const PointTraction& traction, bool holds, bool bonded) {
         meetings.push_back({pair.block_a, pair.block_b,
                             pair.weight * (traction.normal * normal + traction.shear * pair.tangent),
-                            pair.weight * (*body.laws)[pair.law].normal_stiffness, holds});
+                            pair.weight * (*body.laws)[pair.law].normal_stiffness, holds, bonded});
     };
     for (int i = 0; i < static_cast<int>(placement.bonds.size()); ++i) {
         const Bond& bond = placement.bonds[i];
-        for (int k = 0; k < n_bond_points; ++k) add(bond, bond.normal(), bond_traction(body, i, k, q), true);
+        for (int k = 0; k < n_bond_points; ++k) add(bond, bond.normal(), bond_traction(body, i, k, q), true, true);
     }
     for (const ContactPoint& point : placement.contacts) {
         const PointTraction traction = contact_traction(*body.laws, point, q);
-        add(point, point.normal, traction, traction.state == ContactState::locked);
+        add(point, point.normal, traction, traction.state == ContactState::locked, false);
     }
     return meetings;
 }
@@ -178,11 +180,16 @@ void keep_below_neighbours(const std::vector<Neighbours>& neighbours, OwnForces&
     }
 }
 
-/// The sum of the forces that the body presses on its supports and platens with, by what the blocks there get from others.
-double carried_by_supports(const LoadedBody& body, const std::vector<Meeting>& meetings) {
+/// Whether a support or a platen holds a point of the block.
+std::vector<char> supported_blocks(const LoadedBody& body) {
     std::vector<char> supported(body.system->blocks.size(), 0);
     for (std::size_t b = 0; b < supported.size(); ++b) supported[b] = body.system->blocks[b].fixed ? 1 : 0;
     for (const ConstrainedBlock& each : body.loads->constraints.blocks()) supported[each.block] = 1;
+    return supported;
+}
+
+/// The sum of the forces that the body presses on its supports and platens with, by what the blocks there get from others.
+double carried_by_supports(const std::vector<char>& supported, const std::vector<Meeting>& meetings) {
     std::vector<Vec2> forces(supported.size(), Vec2::Zero());
     for (const Meeting& at : meetings) {
         forces[at.block_a] += at.on_a;
@@ -194,24 +201,48 @@ double carried_by_supports(const LoadedBody& body, const std::vector<Meeting>& m
     return sum;
 }
 
-bool has_shed_its_load(const LoadedBody& body, const std::vector<Meeting>& meetings) {
-    if (!(body.carried_stress > 0.0)) return false;
-    return carried_by_supports(body, meetings) <= negligible_force(body.carried_stress, area_of(*body.system)); // (27c)
+/// Those that no chain of bonds and of forces that count leads from to a support.
+std::vector<char> blocks_aside(const LoadedBody& body, const std::vector<char>& supported,
+                               const std::vector<Meeting>& meetings) {
+    const std::vector<Block>& blocks = body.system->blocks;
+    DisjointSets pieces(body.system->n_blocks());
+    for (const Meeting& at : meetings) {
+        const double area = std::min(blocks[at.block_a].area, blocks[at.block_b].area);
+        const double least = touch_of_a_load * negligible_force(body.carried_stress, area);
+        if (at.bonded || at.on_a.norm() > least) pieces.join(at.block_a, at.block_b);
+    }
+    std::vector<char> carries(blocks.size(), 0); // at the root of a piece
+    for (std::size_t b = 0; b < blocks.size(); ++b)
+        if (supported[b] != 0) carries[pieces.root(static_cast<int>(b))] = 1;
+    std::vector<char> aside(blocks.size());
+    for (std::size_t b = 0; b < blocks.size(); ++b) aside[b] = carries[pieces.root(static_cast<int>(b))] == 0 ? 1 : 0;
+    return aside;
 }
 
-/// Of such a body.
+/// Sets what carries nothing (27c).
+void find_idle(const LoadedBody& body, const std::vector<Meeting>& meetings, OwnForces& forces) {
+    if (!(body.carried_stress > 0.0)) return;
+    const std::vector<char> supported = supported_blocks(body);
+    forces.has_shed_its_load =
+        carried_by_supports(supported, meetings) <= negligible_force(body.carried_stress, area_of(*body.system));
+    forces.idle =
+        forces.has_shed_its_load ? std::vector<char>(supported.size(), 1) : blocks_aside(body, supported, meetings);
+}
+
+/// Of what carries nothing.
 void raise_to_negligible(const LoadedBody& body, OwnForces& forces) {
-    for (int b = 0; b < body.system->n_blocks(); ++b) {
+    for (std::size_t b = 0; b < forces.idle.size(); ++b) {
         const double negligible = negligible_force(body.carried_stress, body.system->blocks[b].area);
-        if (!forces.loaded[b] && forces.own[b] > 0.0) forces.own[b] = std::max(forces.own[b], negligible);
+        if (forces.idle[b] != 0 && !forces.loaded[b] && forces.own[b] > 0.0)
+            forces.own[b] = std::max(forces.own[b], negligible);
     }
 }
 
 OwnForces own_forces(const LoadedBody& body, const Eigen::VectorXd& q, const std::vector<Meeting>& meetings) {
     const auto n = static_cast<std::size_t>(body.system->n_blocks());
-    OwnForces result{driving_loads(body, q), {}, std::vector<double>(n, 0.0), std::vector<char>(n, 0)};
+    OwnForces result{driving_loads(body, q),     {}, std::vector<double>(n, 0.0), std::vector<char>(n, 0), false, {},
+                     std::vector<double>(n, 0.0)};
     const std::vector<double> magnitudes = load_magnitudes(body, q);
-    std::vector<double> of_contacts(n, 0.0);
     const auto roundoff_of = [](double stiffness, double moved) {
         return 64.0 * std::numeric_limits<double>::epsilon() * stiffness * moved;
     };
@@ -221,7 +252,7 @@ OwnForces own_forces(const LoadedBody& body, const Eigen::VectorXd& q, const std
     for (const Meeting& at : meetings) {
         const double roundoff = roundoff_of(at.stiffness, std::max(motion(at.block_a), motion(at.block_b)));
         for (const int b : {at.block_a, at.block_b}) {
-            of_contacts[b] += at.on_a.norm();
+            result.of_contacts[b] += at.on_a.norm();
             result.roundoff[b] = std::max(result.roundoff[b], roundoff);
         }
     }
@@ -231,13 +262,13 @@ OwnForces own_forces(const LoadedBody& body, const Eigen::VectorXd& q, const std
             std::max(result.roundoff[b], roundoff_of(2.0 * moduli.mu + moduli.lambda, motion(static_cast<int>(b))));
         result.loaded[b] = result.own[b] > balanced_loads * magnitudes[b];
         if (result.loaded[b]) continue;
-        result.own[b] = of_contacts[b];
-        if (of_contacts[b] == 0.0) result.own[b] = magnitudes[b];
+        result.own[b] = result.of_contacts[b];
+        if (result.of_contacts[b] == 0.0) result.own[b] = magnitudes[b];
     }
     const std::vector<Neighbours> neighbours = neighbours_of(meetings);
     keep_below_neighbours(neighbours, result);
-    result.has_shed_its_load = has_shed_its_load(body, meetings);
-    if (result.has_shed_its_load) raise_to_negligible(body, result);
+    find_idle(body, meetings, result);
+    raise_to_negligible(body, result);
     result.around = result.own;
     const auto take = [&](int block,
                           int other) { // a fixed one carries whatever stands on it, and is disturbed by nothing
@@ -255,10 +286,6 @@ OwnForces own_forces(const LoadedBody& body, const Eigen::VectorXd& q, const std
 
 OwnForces own_forces(const LoadedBody& body, const Eigen::VectorXd& q) {
     return own_forces(body, q, meetings_of(body, q));
-}
-
-bool has_shed_its_load(const LoadedBody& body, const Eigen::VectorXd& q) {
-    return body.carried_stress > 0.0 && has_shed_its_load(body, meetings_of(body, q));
 }
 
 /// The moment is h times the force on w, h dtheta = dw.

@@ -69,12 +69,12 @@ void hold_balanced_part(Step& step) {
 bool is_jump(const StepInProgress& p, const Equilibrium& found) { return moved_by(p, found) > jump_motion; }
 
 Equilibrium follow_motion(StepInProgress& p, PlacedState& placed, double load_factor, const MotionControl& control) {
-    Motion motion = begin_motion(p, placed, load_factor, control);
+    Motion motion = begin_motion(p, load_factor, control);
     if (load_factor != p.load_factor() && !apply_loads(p, placed, motion)) return motion.last;
     std::optional<Equilibrium> end;
     for (int i = 0; i < control.max_steps && !end; ++i) end = take_pseudo_step(p, placed, motion);
     Equilibrium found = end ? std::move(*end) : given_up(p, std::move(motion.last));
-    set_friction(true, placed);
+    set_friction({}, placed);
     note_jump(p, placed, motion, found);
     return found;
 }

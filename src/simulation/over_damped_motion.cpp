@@ -15,20 +15,21 @@ namespace kluft {
 
 namespace {
 
-constexpr double collapse_motion = 0.5;   ///< of a block in one load step
-constexpr double first_step = 0.1;        ///< pseudo-time, of d2/E: a block of the net hardly deforms in it
-constexpr double first_smooth_step = 1e3; ///< of it, without friction: what presses is pushed away (measured)
-constexpr double least_step = 1e-12;      ///< of the first step
-constexpr double at_once = 1e-6;          ///< of it: who moves far in it is a sliver that finds its place
-constexpr double as_prescribed = 1e-6;    ///< of the spacing: how far off a prescribed displacement may be
-constexpr double longest_step = 1e4;      ///< of that of an ordinary solve
-constexpr double shortest_last = 0.01;    ///< of H2/E: the pseudo-time step before an ordinary solve is tried
-constexpr double largest_growth = 3.0;    ///< of the pseudo-time step
-constexpr double largest_cut = 0.2;       ///< of it
-constexpr double least_cut = 0.7;         ///< of one that is taken again
-constexpr double caution = 0.9;           ///< in the error expected of the next one
-constexpr double tries_apart = 4.0;       ///< growth of the pseudo-time step between two ordinary solves
-constexpr double tries_beside = 64.0;     ///< the same, while the motion is far from the end that one has found
+constexpr double collapse_motion = 0.5; ///< of a block in one load step
+constexpr double first_step = 0.1;      ///< pseudo-time, of d2/E: a block of the net hardly deforms in it
+constexpr double age_of_friction = 1.0; ///< H2/E: forces have gone through the body
+constexpr double least_push = 0.01;     ///< of the sum of a block's contact forces: what is left over of them moves it
+constexpr double least_step = 1e-12;    ///< of the first step
+constexpr double at_once = 1e-6;        ///< of it: who moves far in it is a sliver that finds its place
+constexpr double as_prescribed = 1e-6;  ///< of the spacing: how far off a prescribed displacement may be
+constexpr double longest_step = 1e4;    ///< of that of an ordinary solve
+constexpr double shortest_last = 0.01;  ///< of H2/E: the pseudo-time step before an ordinary solve is tried
+constexpr double largest_growth = 3.0;  ///< of the pseudo-time step
+constexpr double largest_cut = 0.2;     ///< of it
+constexpr double least_cut = 0.7;       ///< of one that is taken again
+constexpr double caution = 0.9;         ///< in the error expected of the next one
+constexpr double tries_apart = 4.0;     ///< growth of the pseudo-time step between two ordinary solves
+constexpr double tries_beside = 64.0;   ///< the same, while the motion is far from the end that one has found
 constexpr double far_from_expected = 2.0; ///< times the error: not the way of the motion
 constexpr double detection_motion = 5e-3; ///< of a block between two detections of contacts
 constexpr double unlimited = std::numeric_limits<double>::infinity();
@@ -106,13 +107,13 @@ void place_again(StepInProgress& p, PlacedState& placed, Motion& motion) {
     if (relative_motion(p.bench.model.system, p.displacement() - motion.detected) > detection_motion)
         return detect_anew(p, placed, motion);
     renew(p, placed);
-    set_friction(motion.rubs, placed);
+    set_friction(motion.smooth, placed);
 }
 
 /// The state that a body has come to without friction, where it stands by the laws of its contacts.
 std::optional<Equilibrium> stands_with_friction(const StepInProgress& p, PlacedState& placed, const Motion& motion) {
     renew(p, placed);
-    set_friction(true, placed);
+    set_friction({}, placed);
     Equilibrium found = motion.last;
     found.blocks = block_balance(loaded_body(p.bench.model, placed.placement, motion.at), p.displacement());
     found.verdict = judge_blocks(found.blocks, nullptr, p.goal.balance);
@@ -120,10 +121,25 @@ std::optional<Equilibrium> stands_with_friction(const StepInProgress& p, PlacedS
     return std::nullopt;
 }
 
-/// Contacts rub again, or no longer, where the body has taken up or shed its load (29e).
-void follow_load(Motion& motion) {
-    const bool rubs = !motion.last.blocks.forces.has_shed_its_load;
-    if (std::exchange(motion.rubs, rubs) != rubs) restart(motion);
+/// Whether the forces of a block's contacts move it. Those of one that is held by friction balance.
+bool is_pushed(const BlockSystem& system, const Equilibrium& at, const Eigen::VectorXd& driving, int b) {
+    const double drives = size_of(affine_rigid_part(system, at.displacement, driving, b));
+    return drives > least_push * at.blocks.forces.of_contacts[b];
+}
+
+/// Contacts of idle blocks no longer rub once these move for so long that forces have gone through the body, which would have
+/// held them by friction; they rub again where blocks take up a load (29e).
+void follow_load(const StepInProgress& p, Motion& motion) {
+    const Model& model = p.bench.model;
+    const std::vector<char>& idle = motion.last.blocks.forces.idle;
+    const double height = (model.system.upper - model.system.lower).maxCoeff();
+    motion.age += motion.step_before;
+    if (idle.empty() || motion.age < age_of_friction * height * height / model.effective_modulus) return;
+    motion.smooth.resize(idle.size(), 0);
+    for (int b = 0; b < model.system.n_blocks(); ++b) {
+        const bool rubbed = motion.smooth[b] == 0;
+        motion.smooth[b] = idle[b] != 0 && (!rubbed || is_pushed(model.system, motion.last, motion.driving, b)) ? 1 : 0;
+    }
 }
 
 /// Whether the motion has come to where the last ordinary solve has found its end.
@@ -134,7 +150,6 @@ bool is_at_end(const StepInProgress& p, const Motion& motion) {
 
 /// Whether an ordinary solve may find the end of the motion near by.
 bool may_end(const StepInProgress& p, const Motion& motion) {
-    if (!motion.rubs) return false;
     if (motion.step * mass_coefficient(p.bench.model, 1.0) < shortest_last) return false;
     if (is_at_end(p, motion)) return true;
     const double apart = motion.end.size() > 0 ? tries_beside : tries_apart;
@@ -146,28 +161,30 @@ std::optional<Equilibrium> find_end(StepInProgress& p, PlacedState& placed, Moti
     if (!may_end(p, motion)) return std::nullopt;
     motion.tried = motion.step;
     if (motion.detected != p.displacement()) detect_anew(p, placed, motion);
+    set_friction({}, placed);
     Equilibrium found = find_at(p, placed, motion.at.load_factor, p.displacement());
     motion.end = found.balanced ? found.displacement : Eigen::VectorXd(); // an end that is not found again is none
-    if (!is_at_end(p, motion)) return std::nullopt;
-    return found;
+    if (is_at_end(p, motion)) return found;
+    set_friction(motion.smooth, placed);
+    return std::nullopt;
 }
 
 } // namespace
 
-void set_friction(bool rubs, PlacedState& placed) {
-    for (ContactPoint& point : placed.placement.contacts) point.held_limit = rubs ? std::nullopt : std::optional(0.0);
+void set_friction(const std::vector<char>& smooth, PlacedState& placed) {
+    for (ContactPoint& point : placed.placement.contacts) {
+        const bool rubs = smooth.empty() || (smooth[point.block_a] == 0 && smooth[point.block_b] == 0);
+        point.held_limit = rubs ? std::nullopt : std::optional(0.0);
+    }
 }
 
-Motion begin_motion(const StepInProgress& p, PlacedState& placed, double load_factor, const MotionControl& control) {
+Motion begin_motion(const StepInProgress& p, double load_factor, const MotionControl& control) {
     const Model& model = p.bench.model;
     const double viscosity = p.bench.solver.viscosity;
     Motion motion{.at = p.loads_at(load_factor), .control = control};
     motion.first = first_step * model.system.spacing * model.system.spacing / model.effective_modulus;
     motion.ordinary = 1.0 / mass_coefficient(model, viscosity > 0.0 ? viscosity : SolverOptions{}.viscosity);
     motion.step = motion.first;
-    const LoadsAt at_start = p.loads_at(p.load_factor());
-    motion.rubs = !has_shed_its_load(loaded_body(model, placed.placement, at_start), p.displacement());
-    set_friction(motion.rubs, placed);
     motion.start = motion.detected = motion.early = p.displacement();
     motion.velocity.setZero(motion.start.size());
     motion.last.load_factor = load_factor;
@@ -176,7 +193,9 @@ Motion begin_motion(const StepInProgress& p, PlacedState& placed, double load_fa
 }
 
 void restart(Motion& motion) {
-    motion.step = std::min(motion.step, motion.rubs ? motion.first : first_smooth_step * motion.first);
+    motion.step = std::min(motion.step, motion.first);
+    motion.age = 0.0;
+    motion.smooth.clear();
     motion.velocity.setZero();
     motion.driving.resize(0);
     motion.end.resize(0);
@@ -229,7 +248,7 @@ void add_work(Motion& motion, const Eigen::VectorXd& moved, Eigen::VectorXd afte
 
 void detect_anew(StepInProgress& p, PlacedState& placed, Motion& motion) {
     placed = place(p);
-    set_friction(motion.rubs, placed);
+    set_friction(motion.smooth, placed);
     motion.detected = p.displacement();
 }
 
@@ -240,8 +259,8 @@ bool checks_events(const StepGoal& goal) { return goal.checks_cracks && goal.cra
 void break_there(StepInProgress& p, PlacedState& placed, Motion& motion) {
     touch_anew(p, motion);
     if (!checks_events(p.goal) || !break_at(p, placed, motion.at)) return;
-    detect_anew(p, placed, motion);
     restart(motion);
+    detect_anew(p, placed, motion);
 }
 
 std::optional<Equilibrium> take_pseudo_step(StepInProgress& p, PlacedState& placed, Motion& motion) {
@@ -266,7 +285,8 @@ std::optional<Equilibrium> take_pseudo_step(StepInProgress& p, PlacedState& plac
     // of a body that has shed its load no force is left that a slow beginning of a motion could let grow
     const bool at_rest = motion.step >= motion.ordinary || moved.blocks.forces.has_shed_its_load;
     const bool ends = moved.balanced && next.load_factor == 1.0 && at_rest;
-    if (ends && motion.rubs) return std::move(moved);
+    const bool rubs = std::ranges::none_of(motion.smooth, [](char smooth) { return smooth != 0; });
+    if (ends && rubs) return std::move(moved);
     if (!move_along(p, placed, motion, std::move(next))) return motion.last;
     if (is_falling(p)) {
         fail(p, motion.last, motion.last.viscous_share, FailureKind::falling);
@@ -274,11 +294,12 @@ std::optional<Equilibrium> take_pseudo_step(StepInProgress& p, PlacedState& plac
         return motion.last;
     }
     if (motion.largest < 0.5 * motion_of_a_fall(p)) motion.early = p.displacement();
-    if (ends)
+    if (ends) {
         if (auto end = stands_with_friction(p, placed, motion)) return end;
+    }
     motion.step = std::min(motion.step * std::clamp(caution * better, largest_cut, largest_growth),
                            longest_step * motion.ordinary);
-    follow_load(motion);
+    follow_load(p, motion);
     place_again(p, placed, motion);
     break_there(p, placed, motion);
     return find_end(p, placed, motion);

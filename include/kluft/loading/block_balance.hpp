@@ -24,10 +24,11 @@ struct OwnForces {
     /// Whether the supports and platens of a body that nothing else loads carry no more than what counts as nothing beside what
     /// the body has carried (27c). Blocks may be jammed in one another then, but nothing presses on them.
     bool has_shed_its_load = false;
+    /// Blocks of pieces that carry nothing: all of such a body, else those that what carries touches with next to nothing (27c).
+    std::vector<char> idle;
+    std::vector<double> of_contacts; ///< sum of the magnitudes of the contact forces of each block
 };
 [[nodiscard]] OwnForces own_forces(const LoadedBody& body, const Eigen::VectorXd& q);
-/// Whether the supports and platens carry nothing (OwnForces).
-[[nodiscard]] bool has_shed_its_load(const LoadedBody& body, const Eigen::VectorXd& q);
 
 /// The rigid part of `forces` on the six unknowns of the affine block `b` at q: force, and moment about the centroid over
 /// sqrt(area) (N/m).

@@ -3,6 +3,7 @@
 
 #include <limits>
 #include <optional>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -40,7 +41,8 @@ struct Motion {
     Eigen::VectorXd early;    ///< displacement before the motion had gone halfway to a collapse (m)
     Eigen::VectorXd driving;  ///< eta M dq of the step before (N/m); empty where the forces have just changed
     double released = 0.0;    ///< energy (J/m)
-    bool rubs = true;         ///< contacts have friction: as long as the body carries a load (29e)
+    double age = 0.0;         ///< pseudo-time since the forces have changed
+    std::vector<char> smooth; ///< blocks whose contacts do not rub (29e); empty: none
     Equilibrium last;         ///< that the body moved to
 
     /// The largest error of a step.
@@ -49,12 +51,11 @@ struct Motion {
     }
 };
 
-/// A motion from where the step stands and is placed, under the loads of a load factor.
-[[nodiscard]] Motion begin_motion(const StepInProgress& in_progress, PlacedState& placed, double load_factor,
-                                  const MotionControl& control);
+/// A motion from where the step stands, under the loads of a load factor.
+[[nodiscard]] Motion begin_motion(const StepInProgress& in_progress, double load_factor, const MotionControl& control);
 
-/// Contacts follow their laws, or hold no shear traction (29e).
-void set_friction(bool rubs, PlacedState& placed);
+/// Contacts follow their laws, but those of smooth blocks hold no shear traction (29e).
+void set_friction(const std::vector<char>& smooth, PlacedState& placed);
 
 /// The forces have changed at once: the motion begins anew.
 void restart(Motion& motion);
