@@ -127,14 +127,21 @@ bool is_pushed(const BlockSystem& system, const Equilibrium& at, const Eigen::Ve
     return drives > least_push * at.blocks.forces.of_contacts[b];
 }
 
+/// The pseudo-time in which forces go through the body, by its blocks and by its softest interfaces.
+double time_of_forces(const Model& model) {
+    double softest = std::numeric_limits<double>::infinity();
+    for (const InterfaceLaw& law : model.laws) softest = std::min({softest, law.normal_stiffness, law.shear_stiffness});
+    const double height = (model.system.upper - model.system.lower).maxCoeff();
+    return height * height * (1.0 / model.effective_modulus + 1.0 / (softest * model.system.spacing));
+}
+
 /// Contacts of idle blocks no longer rub once these move for so long that forces have gone through the body, which would have
 /// held them by friction; they rub again where blocks take up a load (29e).
 void follow_load(const StepInProgress& p, Motion& motion) {
     const Model& model = p.bench.model;
     const std::vector<char>& idle = motion.last.blocks.forces.idle;
-    const double height = (model.system.upper - model.system.lower).maxCoeff();
     motion.age += motion.step_before;
-    if (idle.empty() || motion.age < age_of_friction * height * height / model.effective_modulus) return;
+    if (idle.empty() || motion.age < time_of_forces(model)) return;
     motion.smooth.resize(idle.size(), 0);
     for (int b = 0; b < model.system.n_blocks(); ++b) {
         const bool rubbed = motion.smooth[b] == 0;
