@@ -17,7 +17,6 @@ namespace {
 
 constexpr double collapse_motion = 0.5; ///< of a block in one load step
 constexpr double first_step = 0.1;      ///< pseudo-time, of d2/E: a block of the net hardly deforms in it
-constexpr double age_of_friction = 1.0; ///< H2/E: forces have gone through the body
 constexpr double least_push = 0.01;     ///< of the sum of a block's contact forces: what is left over of them moves it
 constexpr double least_step = 1e-12;    ///< of the first step
 constexpr double at_once = 1e-6;        ///< of it: who moves far in it is a sliver that finds its place
@@ -135,8 +134,8 @@ double time_of_forces(const Model& model) {
     return height * height * (1.0 / model.effective_modulus + 1.0 / (softest * model.system.spacing));
 }
 
-/// Contacts of idle blocks no longer rub once these move for so long that forces have gone through the body, which would have
-/// held them by friction; they rub again where blocks take up a load (29e).
+/// Contacts of idle blocks that are pushed no longer rub once the motion has gone on for the time in which friction could have
+/// held them; they rub again where blocks take up a load (29e).
 void follow_load(const StepInProgress& p, Motion& motion) {
     const Model& model = p.bench.model;
     const std::vector<char>& idle = motion.last.blocks.forces.idle;
