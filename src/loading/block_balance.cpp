@@ -32,7 +32,7 @@ struct Meeting {
     Vec2 on_a = Vec2::Zero(); ///< force on a, and its opposite on b (N/m)
     double stiffness = 0.0;   ///< Pa
     bool holds = false;       ///< bonded or locked
-    bool bonded = false;
+    bool bonded = false;      ///< of these, holds against tension
 };
 
 /// All points where blocks meet at q.
@@ -201,7 +201,7 @@ double carried_by_supports(const std::vector<char>& supported, const std::vector
     return sum;
 }
 
-/// Those that no chain of bonds and of forces that count leads from to a support.
+/// Those that no chain of bonds and of forces that count leads from to a support. Source: (27c).
 std::vector<char> blocks_aside(const LoadedBody& body, const std::vector<char>& supported,
                                const std::vector<Meeting>& meetings) {
     const std::vector<Block>& blocks = body.system->blocks;
@@ -223,13 +223,13 @@ std::vector<char> blocks_aside(const LoadedBody& body, const std::vector<char>& 
 void find_idle(const LoadedBody& body, const std::vector<Meeting>& meetings, OwnForces& forces) {
     if (!(body.carried_stress > 0.0)) return;
     const std::vector<char> supported = supported_blocks(body);
-    forces.has_shed_its_load =
-        carried_by_supports(supported, meetings) <= negligible_force(body.carried_stress, area_of(*body.system));
+    const double negligible = negligible_force(body.carried_stress, area_of(*body.system)); // (27c)
+    forces.has_shed_its_load = carried_by_supports(supported, meetings) <= negligible;
     forces.idle =
         forces.has_shed_its_load ? std::vector<char>(supported.size(), 1) : blocks_aside(body, supported, meetings);
 }
 
-/// Of what carries nothing.
+/// The own forces of what carries nothing (27c).
 void raise_to_negligible(const LoadedBody& body, OwnForces& forces) {
     for (std::size_t b = 0; b < forces.idle.size(); ++b) {
         const double negligible = negligible_force(body.carried_stress, body.system->blocks[b].area);

@@ -120,13 +120,13 @@ std::optional<Equilibrium> stands_with_friction(const StepInProgress& p, PlacedS
     return std::nullopt;
 }
 
-/// Whether the forces of a block's contacts move it. Those of one that is held by friction balance.
+/// Whether the forces of a block's contacts move it; those of one that friction holds balance. Source: (29e).
 bool is_pushed(const BlockSystem& system, const Equilibrium& at, const Eigen::VectorXd& driving, int b) {
     const double drives = size_of(affine_rigid_part(system, at.displacement, driving, b));
     return drives > least_push * at.blocks.forces.of_contacts[b];
 }
 
-/// The pseudo-time in which forces go through the body, by its blocks and by its softest interfaces.
+/// The pseudo-time in which forces go through the body, by its blocks and by its softest interfaces (m2/Pa). Source: (29e).
 double time_of_forces(const Model& model) {
     double softest = std::numeric_limits<double>::infinity();
     for (const InterfaceLaw& law : model.laws) softest = std::min({softest, law.normal_stiffness, law.shear_stiffness});
@@ -136,15 +136,15 @@ double time_of_forces(const Model& model) {
 
 /// Contacts of idle blocks that are pushed no longer rub once the motion has gone on for the time in which friction could have
 /// held them; they rub again where blocks take up a load (29e).
-void follow_load(const StepInProgress& p, Motion& motion) {
+void update_smooth_blocks(const StepInProgress& p, Motion& motion) {
     const Model& model = p.bench.model;
     const std::vector<char>& idle = motion.last.blocks.forces.idle;
     motion.age += motion.step_before;
     if (idle.empty() || motion.age < time_of_forces(model)) return;
     motion.smooth.resize(idle.size(), 0);
     for (int b = 0; b < model.system.n_blocks(); ++b) {
-        const bool rubbed = motion.smooth[b] == 0;
-        motion.smooth[b] = idle[b] != 0 && (!rubbed || is_pushed(model.system, motion.last, motion.driving, b)) ? 1 : 0;
+        const bool slips_free = motion.smooth[b] != 0 || is_pushed(model.system, motion.last, motion.driving, b);
+        motion.smooth[b] = idle[b] != 0 && slips_free ? 1 : 0;
     }
 }
 
@@ -305,7 +305,7 @@ std::optional<Equilibrium> take_pseudo_step(StepInProgress& p, PlacedState& plac
     }
     motion.step = std::min(motion.step * std::clamp(caution * better, largest_cut, largest_growth),
                            longest_step * motion.ordinary);
-    follow_load(p, motion);
+    update_smooth_blocks(p, motion);
     place_again(p, placed, motion);
     break_there(p, placed, motion);
     return find_end(p, placed, motion);
