@@ -156,6 +156,7 @@ bool is_at_end(const StepInProgress& p, const Motion& motion) {
 
 /// Whether an ordinary solve may find the end of the motion near by.
 bool may_end(const StepInProgress& p, const Motion& motion) {
+    if (motion.last.blocks.forces.has_shed_its_load) return false; // such a motion ends where the body is at rest
     if (motion.step * mass_coefficient(p.bench.model, 1.0) < shortest_last) return false;
     if (is_at_end(p, motion)) return true;
     const double apart = motion.end.size() > 0 ? tries_beside : tries_apart;

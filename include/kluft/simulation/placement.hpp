@@ -35,6 +35,7 @@ inline constexpr double contact_reach = 0.1;
 
 /// The body in a placement under loads, both of which it refers to.
 [[nodiscard]] LoadedBody loaded_body(const Model& model, const Placement& placement, const LoadsAt& at);
+LoadedBody loaded_body(const Model& model, const Placement& placement, LoadsAt&& at) = delete; ///< it refers to them
 
 /// Puts the shear tractions of the bonds and the histories of the touching contacts at displacements q into the state.
 /// Contacts that are open and have not dilated are forgotten.
