@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,6 +13,7 @@
 #include "kluft/core/memory.hpp"
 #include "kluft/core/place_text.hpp"
 #include "kluft/geometry/polygon.hpp"
+#include "kluft/scene/coarse_places.hpp"
 
 namespace kluft {
 
@@ -119,40 +119,6 @@ std::vector<std::string> fine_details(const GeometrySpec& geometry, const CutRep
     return warnings;
 }
 
-/// Of the net at the wall of a hole (m).
-double spacing_at(const Polygon& hole, const Tessellation& net, double spacing) {
-    if (!net.triangles) return spacing;
-    const TriangleGrading& grading = net.triangles->grading;
-    if (grading.openings > 0.0) spacing = std::min(spacing, grading.openings);
-    if (!grading.region.empty() && contains(grading.region, hole.front()))
-        spacing = std::min(spacing, grading.region_spacing);
-    return spacing;
-}
-
-/// What a criterion of mean stresses sees of the stress at a wall falls with the size of the blocks there.
-std::vector<std::string> coarse_openings(const GeometrySpec& geometry) {
-    if (!geometry.tessellation) return {};
-    constexpr double fine_enough =
-        0.15; // of the radius of a circle as large: 13 % too late with triangles (docs/accuracy.md)
-    std::vector<std::string> warnings;
-    for (std::size_t k = 0; k < geometry.holes.size(); ++k) {
-        const double radius = std::sqrt(std::abs(signed_area(geometry.holes[k])) / std::numbers::pi);
-        const double spacing = spacing_at(geometry.holes[k], *geometry.tessellation, lattice_spacing(geometry));
-        if (spacing <= fine_enough * radius) continue;
-        if (warnings.size() == most_told) {
-            warnings.push_back(fmt::format("{}: and more holes like this", geometry.places.domain));
-            break;
-        }
-        warnings.push_back(fmt::format(
-            "{}: the net at hole {} has a spacing of {:.3g} m, {:.2g} of the hole's radius: first cracks beside it "
-            "come late, "
-            "with triangles at loads 13 % too high at 0.15 of the radius and 28 % at 0.3, with other cells later; "
-            "geometry.tessellation.triangles.grading.openings makes the net finer there",
-            geometry.places.domain, k, spacing, spacing / radius));
-    }
-    return warnings;
-}
-
 /// Twice the area over the length of the outline: of a strip its width (m).
 double width_of(const Polygon& domain) {
     double length = 0.0;
@@ -201,7 +167,7 @@ SceneModel build_scene_model(const Scene& scene) {
     built.cut = std::move(body.report);
     for (const auto& warnings : {lost_fractures(scene.geometry, built.cut), fine_details(scene.geometry, built.cut),
                                  pruned_pieces(scene.geometry, built.cut), bare_net(scene.geometry, built.model.system),
-                                 coarse_openings(scene.geometry)})
+                                 coarse_places(scene.geometry, built.cut, scene.interface_types)})
         built.model.warnings.insert(built.model.warnings.end(), warnings.begin(), warnings.end());
     require_memory();
     return built;
