@@ -7,6 +7,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
+#include "kluft/loading/stored_energy.hpp"
 #include "kluft/reference/block_inertia.hpp"
 
 namespace kluft {
@@ -54,25 +55,6 @@ double EnergyBalance::error() const {
         largest = std::max(largest, std::abs(term));
     }
     return largest > 0.0 ? (external_work - become) / largest : 0.0;
-}
-
-double contact_energy(const LoadedBody& body, const ContactPoint& point, const Eigen::VectorXd& q) {
-    const InterfaceLaw& law = (*body.laws)[point.law];
-    const auto traction = contact_traction(*body.laws, point, q);
-    const double elastic_gap = gap_and_slip(point, q).gap - traction.history.dilation;
-    const double shear = law.shear_stiffness > 0.0 ? traction.shear * traction.shear / law.shear_stiffness : 0.0;
-    return point.weight * (contact_energy(law, elastic_gap) + 0.5 * shear);
-}
-
-double bond_energy(const LoadedBody& body, const Bond& bond, const Eigen::VectorXd& q) {
-    const InterfaceLaw& law = (*body.laws)[bond.law];
-    double energy = 0.0;
-    for (int k = 0; k < n_bond_points; ++k) {
-        const auto traction = bond_traction(law, bond, k, q);
-        energy += 0.5 * traction.normal * traction.normal / law.normal_stiffness;
-        if (law.shear_stiffness > 0.0) energy += 0.5 * traction.shear * traction.shear / law.shear_stiffness;
-    }
-    return bond.weight * energy;
 }
 
 ExplicitMotion::ExplicitMotion(const LoadedBody& body, Placement placement, Loads loads, std::vector<Mat6> masses,

@@ -15,6 +15,7 @@
 #include "kluft/fracture/crack_check.hpp"
 #include "kluft/loading/block_balance.hpp"
 #include "kluft/loading/boundary_geometry.hpp"
+#include "kluft/loading/stored_energy.hpp"
 #include "kluft/reference/block_inertia.hpp"
 #include "kluft/reference/explicit_motion.hpp"
 #include "kluft/simulation/causes.hpp"

@@ -35,10 +35,11 @@ void note_jump(StepInProgress& p, const PlacedState& placed, Motion& motion, con
     const Eigen::VectorXd moved = end.displacement - motion.start;
     const int n_blocks = blocks_that_moved(p.bench.model.system, moved);
     if (n_blocks == 0) return;
-    if (end.balanced) add_work(motion, end.displacement - p.displacement(), Eigen::VectorXd::Zero(moved.size()));
+    if (end.balanced)
+        add_motion(p, placed, motion.at, end.displacement, Eigen::VectorXd::Zero(moved.size()), motion.energy);
     p.step.jumps.push_back({.step = p.step.end.at.step + 1,
                             .load_factor = motion.at.load_factor,
-                            .released_energy = motion.released,
+                            .released_energy = released_energy(p, placed, motion.at, end.displacement, motion.energy),
                             .largest_slip = largest_slip(placed.placement, end.displacement, moved),
                             .blocks = n_blocks});
     ++p.step.end.jumps;
@@ -70,6 +71,7 @@ bool is_jump(const StepInProgress& p, const Equilibrium& found) { return moved_b
 
 Equilibrium follow_motion(StepInProgress& p, PlacedState& placed, double load_factor, const MotionControl& control) {
     Motion motion = begin_motion(p, load_factor, control);
+    motion.energy = energy_at_start(p, placed, motion.at);
     if (load_factor != p.load_factor() && !apply_loads(p, placed, motion)) return motion.last;
     std::optional<Equilibrium> end;
     for (int i = 0; i < control.max_steps && !end; ++i) end = take_pseudo_step(p, placed, motion);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
@@ -22,6 +23,10 @@ double platen_motion(const StepInProgress& p, const LoadsAt& at) {
     return relative_motion(p.bench.model.system, prescribed);
 }
 
+bool moves_platens(const LoadsAt& at) {
+    return std::ranges::any_of(at.loads.platens, [](const Platen& platen) { return platen.velocity != 0.0; });
+}
+
 /// The longest pseudo-time step under the loads of the motion that can be solved and in which the body does not go much farther than
 /// its platen; one that is not solved where there is none.
 PseudoStep solve_load_step(StepInProgress& p, const PlacedState& placed, Motion& motion) {
@@ -43,6 +48,8 @@ bool apply_loads(StepInProgress& p, PlacedState& placed, Motion& motion) {
     double reached = p.load_factor();
     double part = target - reached;
     const double least_part = part / most_load_parts;
+    const bool platen_moves = moves_platens(motion.at);
+    const double platen_work = platen_moves ? work_of_platens(p, placed) : 0.0; // per unit of load factor
     while (reached < target) {
         const double next_load = reached + part < target ? reached + part : target;
         motion.at = p.loads_at(next_load);
@@ -57,14 +64,15 @@ bool apply_loads(StepInProgress& p, PlacedState& placed, Motion& motion) {
                                                    p.bench.model.system.spacing);
             return false;
         }
-        const bool platen_moves = platen_motion(p, motion.at) > 0.0;
-        const Eigen::VectorXd moved = next.moved.displacement - p.displacement();
-        add_work(motion, moved, driving_forces(p.bench.model.system, moved / motion.step));
-        if (!move_body(p, placed, next.moved)) return false;
-        if (platen_moves) { // with which the body has to go
-            motion.start = p.displacement();
-            motion.released = 0.0;
+        const Eigen::VectorXd& end = next.moved.displacement;
+        if (platen_moves) {
+            add_platen_motion(p, placed, motion.at, end, platen_work * (next_load - reached), motion.energy);
+        } else {
+            const Eigen::VectorXd velocity = (end - p.displacement()) / motion.step;
+            add_motion(p, placed, motion.at, end, driving_forces(p.bench.model.system, velocity), motion.energy);
         }
+        if (!move_body(p, placed, next.moved)) return false;
+        if (platen_moves) motion.start = p.displacement(); // with which the body has to go
         reached = next_load;
         motion.last = std::move(next.moved);
         detect_anew(p, placed, motion);

@@ -78,7 +78,7 @@ bool move_along(StepInProgress& p, const PlacedState& placed, Motion& motion, Ps
     const double before = relative_motion(system, motion.velocity);
     const double now = relative_motion(system, velocity);
     motion.way_left = now < before ? now * length * now / (before - now) : unlimited; // it falls by the same factor
-    add_work(motion, taken.moved.displacement - p.displacement(), driving_forces(system, velocity));
+    add_motion(p, placed, motion.at, taken.moved.displacement, driving_forces(system, velocity), motion.energy);
     motion.velocity = velocity;
     motion.step_before = length;
     motion.last = std::move(taken.moved);
@@ -143,7 +143,7 @@ void update_smooth_blocks(const StepInProgress& p, Motion& motion) {
     if (idle.empty() || motion.age < time_of_forces(model)) return;
     motion.smooth.resize(idle.size(), 0);
     for (int b = 0; b < model.system.n_blocks(); ++b) {
-        const bool slips_free = motion.smooth[b] != 0 || is_pushed(model.system, motion.last, motion.driving, b);
+        const bool slips_free = motion.smooth[b] != 0 || is_pushed(model.system, motion.last, motion.energy.driving, b);
         motion.smooth[b] = idle[b] != 0 && slips_free ? 1 : 0;
     }
 }
@@ -204,7 +204,7 @@ void restart(Motion& motion) {
     motion.age = 0.0;
     motion.smooth.clear();
     motion.velocity.setZero();
-    motion.driving.resize(0);
+    motion.energy.driving.resize(0);
     motion.end.resize(0);
     motion.step_before = motion.tried = 0.0;
     motion.way_left = unlimited;
@@ -236,21 +236,6 @@ bool follows(const StepInProgress& p, const Equilibrium& moved) {
 
 double moved_by(const StepInProgress& p, const Equilibrium& moved) {
     return relative_motion(p.bench.model.system, moved.displacement - p.displacement());
-}
-
-Eigen::VectorXd driving_forces(const BlockSystem& system, const Eigen::VectorXd& velocity) {
-    Eigen::VectorXd forces(velocity.size());
-    for (int b = 0; b < system.n_blocks(); ++b) {
-        const auto rows = Eigen::seqN(n_block_unknowns * b, n_block_unknowns);
-        forces(rows) = mass_product(system.blocks[b], 0.0, velocity(rows));
-    }
-    return forces;
-}
-
-void add_work(Motion& motion, const Eigen::VectorXd& moved, Eigen::VectorXd after) {
-    const bool changed = motion.driving.size() == 0;
-    motion.released += 0.5 * ((changed ? after : motion.driving) + after).dot(moved);
-    motion.driving = std::move(after);
 }
 
 void detect_anew(StepInProgress& p, PlacedState& placed, Motion& motion) {

@@ -106,9 +106,4 @@ private:
     EnergyBalance spent_; ///< external work and what was lost
 };
 
-/// Elastic energy of a contact point at q (J/m).
-[[nodiscard]] double contact_energy(const LoadedBody& body, const ContactPoint& point, const Eigen::VectorXd& q);
-/// The same of a bond.
-[[nodiscard]] double bond_energy(const LoadedBody& body, const Bond& bond, const Eigen::VectorXd& q);
-
 } // namespace kluft

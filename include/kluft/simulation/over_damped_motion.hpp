@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include "kluft/simulation/released_energy.hpp"
 #include "kluft/simulation/step_in_progress.hpp"
 
 namespace kluft {
@@ -39,8 +40,7 @@ struct Motion {
     Eigen::VectorXd velocity; ///< of the step before (Pa/m); zero where the forces have just changed
     Eigen::VectorXd detected; ///< displacement at which contacts were detected (m)
     Eigen::VectorXd early;    ///< displacement before the motion had gone halfway to a collapse (m)
-    Eigen::VectorXd driving;  ///< eta M dq of the step before (N/m); empty where the forces have just changed
-    double released = 0.0;    ///< energy (J/m)
+    MotionEnergy energy;
     double age = 0.0;         ///< pseudo-time since the forces have changed
     std::vector<char> smooth; ///< blocks whose contacts do not rub (29e); empty: none
     Equilibrium last;         ///< that the body moved to
@@ -75,13 +75,6 @@ struct PseudoStep {
 
 /// Relative to the motion scale of the block that moves most, from where the step stands.
 [[nodiscard]] double moved_by(const StepInProgress& in_progress, const Equilibrium& moved);
-
-/// M dq/dt, the forces out of balance at the end of a pseudo-time step (N/m).
-[[nodiscard]] Eigen::VectorXd driving_forces(const BlockSystem& system, const Eigen::VectorXd& velocity);
-
-/// Adds the work of the forces out of balance over a displacement to the energy released, from what they were before to what they
-/// are after it.
-void add_work(Motion& motion, const Eigen::VectorXd& moved, Eigen::VectorXd after);
 
 /// Places the body anew where the motion has come to.
 void detect_anew(StepInProgress& in_progress, PlacedState& placed, Motion& motion);
