@@ -124,12 +124,16 @@ int say_help(const CLI::App& app, const CLI::Success& help) {
     return finished(ExitCode::done);
 }
 
+/// An empty name, as of a shell variable that is not set, is a mistake and not the default.
+std::string flaw_of_name(const std::string& name) { return name.empty() ? "expected a name, found none" : ""; }
+
 void add_run_command(CLI::App& app, Command& command) {
     auto arguments = std::make_shared<kluft::RunArguments>();
     CLI::App* sub =
         app.add_subcommand("run", "Run a scene: load it step by step and write curves, fields and pictures");
     sub->add_option("scene", arguments->scene, "Scene file (YAML)")->required();
-    sub->add_option("-o,--output", arguments->directory, "Directory of the results (default: results/<scene name>)");
+    sub->add_option("-o,--output", arguments->directory, "Directory of the results (default: results/<scene name>)")
+        ->check(flaw_of_name);
     sub->add_option("--set", arguments->overrides, "Replace a value of the scene, e.g. --set stages.1.steps=200")
         ->take_all()
         ->allow_extra_args(false);
@@ -176,9 +180,10 @@ void add_draw_command(CLI::App& app, Command& command) {
         "draw", "Draw a scene's blocks; blocks, curve and histories of a run; the curves of several runs");
     sub->add_option("source", arguments->sources, "Scene file, or directories of results")->required();
     sub->add_option(
-        "-o,--output", arguments->picture,
-        "One picture, .png, .svg or .pdf; of a single run that of its blocks (default: <scene name>.png; "
-        "DIR/curve, DIR/blocks and DIR/histories, each .png and .svg; curves.png; <run>-<field>-<step>.png)");
+           "-o,--output", arguments->picture,
+           "One picture, .png, .svg or .pdf; of a single run that of its blocks (default: <scene name>.png; "
+           "DIR/curve, DIR/blocks and DIR/histories, each .png and .svg; curves.png; <run>-<field>-<step>.png)")
+        ->check(flaw_of_name);
     CLI::Option* curve = sub->add_flag("--curve", arguments->curve, "Of a run only the curve");
     CLI::Option* blocks = sub->add_flag("--blocks", arguments->blocks, "Of a run only the blocks")->excludes(curve);
     sub->add_flag("--histories", arguments->histories, "Of a run only what its scene follows (output.histories)")
@@ -226,7 +231,8 @@ void add_export_command(CLI::App& app, Command& command) {
         app.add_subcommand("export", "Write a state of a run as a map: blocks as polygons, interfaces as lines");
     sub->add_option("directory", arguments->directory, "Directory of results")->required();
     sub->add_option("-o,--output", arguments->output,
-                    "GeoPackage (.gpkg) or GeoJSON (.geojson) (default: <run name>.gpkg)");
+                    "GeoPackage (.gpkg) or GeoJSON (.geojson) (default: <run name>.gpkg)")
+        ->check(flaw_of_name);
     sub->add_option("--step", arguments->step,
                     "A kept state: a load step, peak (the one kept nearest to the peak) or last (default)");
     sub->footer(
@@ -250,7 +256,8 @@ void add_compare_command(CLI::App& app, Command& command) {
         ->capture_default_str();
     sub->add_option("-o,--output", arguments->output,
                     "Directory of compare.md, compare.json, curves.png, cracks.png and both as .svg (default: "
-                    "results/compare-<A>-<B>)");
+                    "results/compare-<A>-<B>)")
+        ->check(flaw_of_name);
     sub->footer("The curves are those of differential stress over axial strain, linear between balanced load steps, "
                 "compared at\n201 equal steps of strain up to the smaller of both peak strains, relative to A's peak "
                 "differential stress.\n"
@@ -275,6 +282,7 @@ void add_envelope_command(CLI::App& app, Command& command) {
         ->required();
     sub->add_option("-o,--output", arguments->picture,
                     "Picture, .png or .svg; a table and a .json of the same name go beside it")
+        ->check(flaw_of_name)
         ->capture_default_str();
     sub->add_option("--tension", arguments->tension,
                     "Tensile strength of a test made elsewhere, e.g. '0.12 MPa'; once for each test")
@@ -284,14 +292,14 @@ void add_envelope_command(CLI::App& app, Command& command) {
         ->take_all()
         ->allow_extra_args(false);
     sub->add_option("--title", arguments->title, "Title of the picture")->capture_default_str();
-    sub->footer(
-        "Runs that were still rising, ended unbalanced or whose net locked are bounds: they are drawn and listed, but "
-        "not fitted.\nRuns that pull, and rows of tables with sigma_3 below zero, give the tensile strength.\n"
-        "Other columns of tables: run, peak_reached, balanced, net_locked (0 or 1).\n"
-        "Examples:\n"
-        "  kluft envelope results/case-5-all results/case-3-all results/case-4-all results/case-6-all\n"
-        "  kluft envelope field-tests.csv results/case-3-all --tension '0.1 MPa' --tension '0.12 MPa'\n"
-        "  kluft envelope results/low results/high -o both.png --compare 'field tests=0.16 MPa, 36.2 deg'");
+    sub->footer("Runs that were not yet falling, ended unbalanced or whose net locked are bounds: they are drawn and "
+                "listed, but "
+                "not fitted.\nRuns that pull, and rows of tables with sigma_3 below zero, give the tensile strength.\n"
+                "Other columns of tables: run, peak_reached, balanced, net_locked (0 or 1).\n"
+                "Examples:\n"
+                "  kluft envelope results/case-5-all results/case-3-all results/case-4-all results/case-6-all\n"
+                "  kluft envelope field-tests.csv results/case-3-all --tension '0.1 MPa' --tension '0.12 MPa'\n"
+                "  kluft envelope results/low results/high -o both.png --compare 'field tests=0.16 MPa, 36.2 deg'");
     sub->callback([arguments, &command] { command = [arguments] { return kluft::envelope(*arguments); }; });
 }
 
@@ -305,8 +313,9 @@ void add_study_command(CLI::App& app, Command& command) {
         ->required()
         ->expected(1, 2);
     sub->add_option(
-        "-o,--output", arguments->directory,
-        "Directory of the results (default: results/<study name>, results/<scene>-step-size, results/<scene>-trade)");
+           "-o,--output", arguments->directory,
+           "Directory of the results (default: results/<study name>, results/<scene>-step-size, results/<scene>-trade)")
+        ->check(flaw_of_name);
     sub->add_option("--jobs", arguments->jobs, "Cases that run at once (default: the number of processors)")
         ->check(CLI::Range(1, most_threads));
     sub->add_option("--set", arguments->overrides, "Replace a value of the scene in all cases")
@@ -336,7 +345,8 @@ void add_calibrate_command(CLI::App& app, Command& command) {
     CLI::App* sub = app.add_subcommand(
         "calibrate", "Find the values of a scene's keys with which it shows what was measured on the rock");
     sub->add_option("target", arguments->target, "Calibration file (YAML): a scene, parameters, targets")->required();
-    sub->add_option("-o,--output", arguments->directory, "Directory of the results (default: results/<file name>)");
+    sub->add_option("-o,--output", arguments->directory, "Directory of the results (default: results/<file name>)")
+        ->check(flaw_of_name);
     sub->add_option("--jobs", arguments->jobs, "Runs at once (default: the number of processors)")
         ->check(CLI::Range(1, most_threads));
     sub->add_flag("--quiet", arguments->quiet, "No progress");

@@ -143,7 +143,7 @@ RunSummary summary_with_peak(const fs::path& directory) {
     if (read_peak(directory, directory.filename()).net_locked)
         throw InputError("loose blocks of the net carried the load, as masonry does, and not the rock");
     if (summary.numbers.peak_reached || summary.status == RunStatus::collapsed) return summary;
-    throw InputError(fmt::format("the stress was still rising where the run ended ({}{}{})",
+    throw InputError(fmt::format("the stress was not yet falling where the run ended ({}{}{})",
                                  status_name(summary.status), summary.message.empty() ? "" : ": ",
                                  summary.message.substr(0, summary.message.find('\n'))));
 }

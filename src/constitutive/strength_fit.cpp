@@ -133,7 +133,7 @@ PeakUse use_of(const PeakPoint& point) {
 
 std::string bound_reason(const PeakPoint& point) {
     if (point.net_locked) return "net locked";
-    if (!point.peak_reached) return "still rising";
+    if (!point.peak_reached) return "not yet falling";
     return point.balanced ? "" : "unbalanced";
 }
 

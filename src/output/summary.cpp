@@ -329,7 +329,7 @@ CurveNumbers curve_numbers(const std::vector<StepRecord>& equilibria, const std:
 
 std::string peak_remark(const CurveNumbers& numbers) {
     if (numbers.net_locked) return "net locked";
-    return numbers.peak_reached ? "" : "still rising";
+    return numbers.peak_reached ? "" : "not yet falling";
 }
 
 std::string status_name(RunStatus status) {

@@ -55,8 +55,7 @@ Equilibrium advance(StepInProgress& p, PlacedState& placed) {
     const double target = p.goal.load_factor;
     Equilibrium found = find_at(p, placed, target, predicted(p, target));
     const bool by_events = p.goal.checks_cracks && p.goal.cracks.update == CrackUpdate::event;
-    const bool may_break = by_events && !p.goal.must_rest && !p.is_at_limit;
-    if (!found.balanced && may_break && !has_shed_its_load(p, placed)) {
+    if (!found.balanced && by_events && !p.goal.must_rest && !p.is_at_limit) {
         p.step.smooth = false;
         if (auto before = find_before_goal(p, placed)) {
             p.is_at_limit = !is_event(p, placed, *before);

@@ -9,12 +9,11 @@ namespace kluft {
 
 namespace {
 
-constexpr double load_step = 0.1;           ///< pseudo-time in which loads move, of that of an ordinary solve, 1/eta
-constexpr double load_step_of_loose = 10.0; ///< of the first step, where the body carries nothing
-constexpr double least_load_step = 1e-4;    ///< of the first step
-constexpr double load_step_cut = 0.1;       ///< of a pseudo-time step in which loads move
-constexpr double most_load_parts = 64.0;    ///< in which loads are applied
-constexpr double far_from_platen = 2.0;     ///< times the motion of the platen: not the way of the motion
+constexpr double load_step = 0.1;        ///< pseudo-time in which loads move, of that of an ordinary solve, 1/eta
+constexpr double least_load_step = 1e-4; ///< of the first step
+constexpr double load_step_cut = 0.1;    ///< of a pseudo-time step in which loads move
+constexpr double most_load_parts = 64.0; ///< in which loads are applied
+constexpr double far_from_platen = 2.0;  ///< times the motion of the platen: not the way of the motion
 
 /// The relative motion that platens ask for.
 double platen_motion(const StepInProgress& p, const LoadsAt& at) {
@@ -31,8 +30,7 @@ bool moves_platens(const LoadsAt& at) {
 /// its platen; one that is not solved where there is none.
 PseudoStep solve_load_step(StepInProgress& p, const PlacedState& placed, Motion& motion) {
     const double expected = motion.control.elastic_motion + far_from_platen * platen_motion(p, motion.at);
-    motion.step = has_shed_its_load(p, placed) ? load_step_of_loose * motion.first
-                                               : std::max(motion.first, load_step * motion.ordinary);
+    motion.step = std::max(motion.first, load_step * motion.ordinary);
     for (;;) {
         PseudoStep next = solve_step(p, placed, motion, p.displacement());
         const bool shortest = motion.step < least_load_step * motion.first;

@@ -130,12 +130,6 @@ Eigen::VectorXd predicted(const StepInProgress& p, double load_factor) {
     return p.displacement() + (load_factor - p.load_factor()) * rate;
 }
 
-bool has_shed_its_load(const StepInProgress& p, const PlacedState& placed) {
-    const LoadsAt at = p.loads_at(p.load_factor());
-    const LoadedBody body = loaded_body(p.bench.model, placed.placement, at);
-    return body.carried_stress > 0.0 && own_forces(body, p.displacement()).has_shed_its_load;
-}
-
 Equilibrium find_at(StepInProgress& p, const PlacedState& placed, double load_factor, Eigen::VectorXd guess) {
     const auto& [model, cracks, solver, loads, search, journal, stop] = p.bench;
     if (stop) throw Interrupted{};

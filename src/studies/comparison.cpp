@@ -221,7 +221,7 @@ void note_peak(const FinishedRun& run, std::vector<std::string>& notes) {
     } else if (run.numbers.net_locked) {
         notes.push_back(run.name + " has no peak: its net locked, its largest stress before is compared");
     } else if (!run.numbers.peak_reached) {
-        notes.push_back(run.name + " has no peak: its stress was still rising, its largest one is compared");
+        notes.push_back(run.name + " has no peak: its stress was not yet falling, its largest one is compared");
     }
 }
 

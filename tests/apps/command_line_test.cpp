@@ -1651,12 +1651,18 @@ TEST_F(CommandLine, EnvelopeFitsThePeaksOfRuns) {
                                 "0.06 MPa", "-o", "mixed.svg"});
     EXPECT_EQ(mixed.code, 0) << mixed.err;
     EXPECT_THAT(mixed.out, AllOf(HasSubstr("4 points"), HasSubstr("tensile strength 0.0500 +- 0.0100 MPa"),
-                                 HasSubstr("1 bound, left out of the fit: f2 (still rising)"),
+                                 HasSubstr("1 bound, left out of the fit: f2 (not yet falling)"),
                                  HasSubstr("the fit is contradicted: it lies below what was carried by f2")));
     const auto json = nlohmann::json::parse(content_of(path("mixed.json")));
     EXPECT_EQ(json["n_points"], 4);
     EXPECT_EQ(json["n_bounds"], 1);
     EXPECT_GT(json["cohesion_error"], 0.0);
+}
+
+// As of `-o "$results"` with a variable that is not set: the default would be another place than the one meant.
+TEST_F(CommandLine, AnEmptyNameOfTheResultsIsNotTheDefault) {
+    for (const char* const command : {"run", "draw", "compare", "envelope", "study", "export"})
+        expect_refused({command, "a", "b", "-o", ""}, HasSubstr("--output: expected a name, found none"));
 }
 
 TEST_F(CommandLine, EnvelopeRefusesBadTables) {
@@ -1666,7 +1672,7 @@ TEST_F(CommandLine, EnvelopeRefusesBadTables) {
     expect_refused({"envelope", "good.csv", "bad.csv"},
                    HasSubstr("bad.csv:3:5: sigma_1: expected a number, found 'high'"));
     expect_refused({"envelope", "absent.csv"}, HasSubstr("absent.csv: expected a table of tests, found no such file"));
-    expect_refused({"envelope", "rising.csv"}, HasSubstr("rising 2: still rising"));
+    expect_refused({"envelope", "rising.csv"}, HasSubstr("rising 2: not yet falling"));
     expect_refused({"envelope", "good.csv", "--tension", "low"}, HasSubstr("--tension: expected a tensile strength"));
     expect_refused({"envelope", "good.csv", "--tension", "-1 MPa"}, HasSubstr("above zero"));
     expect_refused({"envelope", "good.csv", "-o", "good.png"}, HasSubstr("good.csv is one of the tests"));

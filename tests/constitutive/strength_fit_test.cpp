@@ -184,7 +184,7 @@ TEST(Envelope, LeavesBoundsAndTensionTestsOut) {
     EXPECT_FALSE(contradicts(points[4], fit));
     EXPECT_FALSE(contradicts(points[5], fit));
     EXPECT_FALSE(contradicts({.run = "s", .sigma_3 = 0.5e6, .sigma_1 = 9e6}, fit));
-    EXPECT_EQ(bound_reason(points[3]), "still rising");
+    EXPECT_EQ(bound_reason(points[3]), "not yet falling");
     EXPECT_EQ(bound_reason(points[4]), "unbalanced");
     EXPECT_EQ(bound_reason(points[5]), "net locked");
     EXPECT_EQ(bound_reason(points[6]), "");
@@ -193,7 +193,7 @@ TEST(Envelope, LeavesBoundsAndTensionTestsOut) {
 TEST(Envelope, SaysWhatIsMissingWhereTheRestAreBounds) {
     EXPECT_THAT(message_of({strength_at(0.0, 1e6), {"rising", 0.5e6, 9e6, false}, {"pulled", -0.1e6, 0.0}}),
                 AllOf(HasSubstr("at least two runs with different lateral stresses that reached their peaks"),
-                      HasSubstr("found 1"), HasSubstr("rising: still rising"), HasSubstr("pulled: in tension")));
+                      HasSubstr("found 1"), HasSubstr("rising: not yet falling"), HasSubstr("pulled: in tension")));
     EXPECT_THAT(message_of({strength_at(0.0, 1e6)}), Not(HasSubstr("found")));
 }
 

@@ -63,7 +63,7 @@ TEST(CurvePicture, SaysThatACurveIsStillRising) {
     history.resize(60); // before the peak
     const auto plot = stress_strain_plot("t", {{"a", history, {}, 1}});
     EXPECT_FALSE(plot.curves[0].peak_reached);
-    EXPECT_EQ(plot.curves[0].peak_text.back(), "still rising");
+    EXPECT_EQ(plot.curves[0].peak_text.back(), "not yet falling");
 }
 
 TEST(CurvePicture, MarksThePeakBeforeTheNetLocked) {
@@ -87,7 +87,7 @@ TEST(CurvePicture, ListsThePeaksOfSeveralRunsInTheLegend) {
         "t", {{"a", synthetic_history(1.4e6), {}, 1}, {"b", rising, {}, 1}, {"c", unbalanced, {}, 1}},
         {{"published peak", {}, 1.205, 0}, {"level", {}, 2.0}, {"point", 1.0, 1.0, 1}});
     EXPECT_EQ(plot.curves[0].label, "a: differential 1.20 MPa at 1.20 %");
-    EXPECT_EQ(plot.curves[1].label, "b: still rising");
+    EXPECT_EQ(plot.curves[1].label, "b: not yet falling");
     EXPECT_TRUE(plot.curves[0].peak_text.empty());
     plot.y_limit = 3.0; // the third curve leaves the plot
     const std::string alone = draw_curves(stress_strain_plot("t", {{"a", rising, {}, 1}}), PictureFormat::svg);

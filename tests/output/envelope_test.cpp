@@ -97,7 +97,7 @@ TEST(EnvelopeText, TellsErrorsTensionBoundsAndWhatContradicts) {
     EXPECT_THAT(text, HasSubstr("4 points, R^2 0.9680"));
     EXPECT_THAT(text, HasSubstr("tensile strength 0.1000 +- 0.0100 MPa (mean of 2 tests), c/sigma_t 3.562"));
     EXPECT_THAT(text, ContainsRegex("Hoek-Brown: sigma_ci 1.1927 \\+- 0.[0-9]* MPa, m_i 8.173 \\+- "));
-    EXPECT_THAT(text, HasSubstr("2 bounds, left out of the fit: rising (still rising), locked (net locked)"));
+    EXPECT_THAT(text, HasSubstr("2 bounds, left out of the fit: rising (not yet falling), locked (net locked)"));
     EXPECT_THAT(text, HasSubstr("the fit is contradicted: it lies below what was carried by rising\n"));
 }
 

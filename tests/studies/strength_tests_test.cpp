@@ -174,7 +174,7 @@ TEST_F(PeakOfRun, OfAPulledRunIsATensileStrength) {
     EXPECT_EQ(point.sigma_1, 0.0);
     EXPECT_EQ(use_of(point), PeakUse::tension);
     write_run(-1.0, -0.1e6, -0.1e6, RunStatus::done);
-    EXPECT_EQ(bound_reason(read_peak(directory_.path(), "pulled")), "still rising");
+    EXPECT_EQ(bound_reason(read_peak(directory_.path(), "pulled")), "not yet falling");
 }
 
 TEST_F(PeakOfRun, IsABoundWhereTheSummarySaysUnbalancedOrLocked) {

@@ -16,7 +16,7 @@ struct PeakPoint {
     std::string run;
     double sigma_3 = 0.0;     ///< smaller principal stress at the peak; of a compression test the lateral stress
     double sigma_1 = 0.0;     ///< larger principal stress at the peak; of a compression test the axial stress
-    bool peak_reached = true; ///< false: the stress was still rising
+    bool peak_reached = true; ///< false: the stress was not yet falling
     bool balanced = true;     ///< false: the run ended out of balance
     bool net_locked = false;  ///< loose blocks of the net of potential cracks carried the load, as masonry does
 };
@@ -25,11 +25,11 @@ struct PeakPoint {
 enum class PeakUse {
     strength, ///< a point of the compressive strength, sigma_3 >= 0
     tension,  ///< a tensile strength, sigma_3 = -sigma_t < 0
-    bound     ///< no strength: still rising, out of balance or locked
+    bound     ///< no strength: not yet falling, out of balance or locked
 };
 
 [[nodiscard]] PeakUse use_of(const PeakPoint& point);
-/// "still rising", "unbalanced", "net locked", or "" for a strength.
+/// "not yet falling", "unbalanced", "net locked", or "" for a strength.
 [[nodiscard]] std::string bound_reason(const PeakPoint& point);
 
 /// A number from measurements with its standard error, which is unknown where nothing is left over to tell the scatter.

@@ -22,12 +22,12 @@ struct PlottedCurve {
     std::vector<PlottedPoint> points;
     std::vector<Vec2> fine; ///< drawn faintly underneath: every balanced equilibrium
     std::optional<Vec2> peak;
-    std::vector<std::string> peak_text;     ///< lines beside the peak
-    bool peak_reached = true;               ///< otherwise drawn dashed: the curve was still rising, or the net locked
-    bool dashed = false;                    ///< so that a curve that it covers is seen
-    bool joined = true;                     ///< by lines; otherwise larger markers only
-    bool thin = false;                      ///< a faint line without markers
-    std::optional<std::size_t> colour = {}; ///< number of its colour; otherwise its place among the curves
+    std::vector<std::string> peak_text; ///< lines beside the peak
+    bool peak_reached = true;           ///< otherwise drawn dashed: the curve was not yet falling, or the net locked
+    bool dashed = false;                ///< so that a curve that it covers is seen
+    bool joined = true;                 ///< by lines; otherwise larger markers only
+    bool thin = false;                  ///< a faint line without markers
+    std::optional<std::size_t> colour = {};    ///< number of its colour; otherwise its place among the curves
     std::vector<std::string> point_texts = {}; ///< beside its points, in their order; may be empty or shorter
 };
 

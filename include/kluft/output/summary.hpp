@@ -66,7 +66,7 @@ inline constexpr double locking_share = 0.7;
                                          const std::vector<StepRecord>& history, std::optional<int> platen_stage,
                                          Plane plane);
 
-/// What is to be said beside a peak that is not reached: "still rising" or "net locked"; "" beside one that is.
+/// What is to be said beside a peak that is not reached: "not yet falling" or "net locked"; "" beside one that is.
 [[nodiscard]] std::string peak_remark(const CurveNumbers& numbers);
 
 /// The name of a status in summary.json.

@@ -88,10 +88,6 @@ void renew(const StepInProgress& in_progress, PlacedState& placed);
 /// The displacements at a load factor if the last smooth step goes on.
 [[nodiscard]] Eigen::VectorXd predicted(const StepInProgress& in_progress, double load_factor);
 
-/// Whether a body that only moved platens load carries nothing where the step stands (27c): no force is left that could break a
-/// bond on the way, nor that an equilibrium near by would rest on.
-[[nodiscard]] bool has_shed_its_load(const StepInProgress& in_progress, const PlacedState& placed);
-
 /// Searches the equilibrium at a load factor from the state that the step stands at.
 [[nodiscard]] Equilibrium find_at(StepInProgress& in_progress, const PlacedState& placed, double load_factor,
                                   Eigen::VectorXd guess);
