@@ -63,73 +63,121 @@ std::vector<std::string> coarse_openings(const GeometrySpec& geometry) {
 
 /// A fracture, or a side of the body or of a hole.
 struct Line {
-    std::vector<Vec2> points;
+    std::vector<Vec2> points; ///< none of a fracture that is left out
     std::string name;
+    double graded = 0.0; ///< side of triangles along it, 0 where the scene gives none (m)
     bool is_open = true; ///< not a potential crack
 };
 
-/// Two lines that are nearer to each other than what the net resolves are one.
-bool are_joined(const Line& a, const Line& b, double resolution) {
-    for (std::size_t i = 0; i + 1 < a.points.size(); ++i) {
-        const auto [from, to] = std::pair(a.points[i], a.points[i + 1]);
-        for (std::size_t j = 0; j + 1 < b.points.size(); ++j) {
-            const auto [c, d] = std::pair(b.points[j], b.points[j + 1]);
-            const double away = std::min({distance_to_segment(from, c, d), distance_to_segment(to, c, d),
-                                          distance_to_segment(c, from, to), distance_to_segment(d, from, to)});
-            if (away <= resolution || segments_meet(from, to, c, d)) return true;
-        }
-    }
-    return false;
-}
-
-std::vector<Line> sides_of(const Polygon& polygon, const std::string& name) {
-    std::vector<Line> sides;
+void add_sides(const Polygon& polygon, const std::string& name, double graded, std::vector<Line>& lines) {
     for (std::size_t i = 0; i < polygon.size(); ++i)
-        sides.push_back({{polygon[i], polygon[(i + 1) % polygon.size()]}, name});
-    return sides;
+        lines.push_back({{polygon[i], polygon[(i + 1) % polygon.size()]}, name, graded});
 }
 
 /// Fractures first, in their order; then all sides.
-std::vector<Line> lines_of(const GeometrySpec& geometry, const std::vector<InterfaceType>& types) {
+std::vector<Line> lines_of(const GeometrySpec& geometry, const CutReport& report,
+                           const std::vector<InterfaceType>& types) {
+    const TriangleGrading grading = grading_of(geometry);
     std::vector<Line> lines;
     for (const FractureTrace& trace : geometry.fractures) {
         const InterfaceKind kind = types[static_cast<std::size_t>(trace.interface_type)].kind;
-        lines.push_back({trace.points, trace.name, kind == InterfaceKind::fracture});
+        lines.push_back({trace.points, trace.name, grading.fractures, kind == InterfaceKind::fracture});
     }
-    std::ranges::move(sides_of(geometry.domain, "the outline of the body"), std::back_inserter(lines));
+    for (const LostFracture& lost : report.lost)
+        if (lost.cause != LostFracture::Cause::in_part) lines[static_cast<std::size_t>(lost.fracture)].points.clear();
+    add_sides(geometry.domain, "the outline of the body", 0.0, lines);
     for (std::size_t k = 0; k < geometry.holes.size(); ++k)
-        std::ranges::move(sides_of(geometry.holes[k], fmt::format("hole {}", k)), std::back_inserter(lines));
+        add_sides(geometry.holes[k], fmt::format("hole {}", k), grading.openings, lines);
     return lines;
 }
 
-/// The lines with a grid of their segments.
+Vec2 nearest_point(const Vec2& p, const SegmentGrid::Segment& segment) {
+    const Vec2 along = segment.second - segment.first;
+    const double length = along.squaredNorm();
+    const double t = length > 0.0 ? std::clamp((p - segment.first).dot(along) / length, 0.0, 1.0) : 0.0;
+    return segment.first + t * along;
+}
+
+/// Of two segments that meet; of two that overlap an end of theirs.
+Vec2 meeting_point(const SegmentGrid::Segment& a, const SegmentGrid::Segment& b) {
+    const Vec2 u = a.second - a.first;
+    const Vec2 v = b.second - b.first;
+    const double cross = u.x() * v.y() - u.y() * v.x();
+    if (cross == 0.0) return nearest_point(b.first, a);
+    const Vec2 between = b.first - a.first;
+    return a.first + (between.x() * v.y() - between.y() * v.x()) / cross * u;
+}
+
+/// Rock between the end of an open fracture and another line.
+struct RockBridge {
+    int line = -1; ///< at the end of the bridge
+    double length = std::numeric_limits<double>::infinity();
+};
+
+/// The lines with a grid of their segments. Lines that are nearer to each other than the resolution (m) are joined there.
 class LineSearch {
 public:
-    explicit LineSearch(std::vector<Line> lines) : lines_(std::move(lines)), grid_(segments()) {}
+    LineSearch(std::vector<Line> lines, double resolution)
+        : lines_(std::move(lines)), resolution_(resolution), grid_(segments()) {}
 
     [[nodiscard]] const Line& line(int i) const { return lines_[static_cast<std::size_t>(i)]; }
 
-    /// The nearest open one to a point of the line `own` that this is not joined to, and its distance (m), where that is below a
-    /// limit; none where the point lies on another line.
-    [[nodiscard]] std::optional<std::pair<int, double>> nearest_other(const Vec2& p, int own, double limit,
-                                                                      double resolution) const {
-        std::vector<std::pair<double, int>> found;
-        const Vec2 reach = Vec2::Constant(limit);
-        for (const int i : grid_.near({p - reach, p + reach})) {
-            const double away = distance_to_segment(p, grid_.segment(i).first, grid_.segment(i).second);
-            const int line = line_of_[static_cast<std::size_t>(i)];
-            if (line == own || away >= limit) continue;
-            if (away <= resolution) return std::nullopt;
-            if (lines_[static_cast<std::size_t>(line)].is_open) found.emplace_back(away, line);
+    /// The shortest one from an end of the line `own` that is shorter than a limit (m); none where the end lies on another line.
+    [[nodiscard]] std::optional<RockBridge> bridge_at(const Vec2& end, int own, double limit) const {
+        const std::vector<Vec2> junctions = junctions_of(own, end, longest_detour * limit);
+        for (double reach = limit / 64.0;; reach = std::min(limit, 4.0 * reach)) { // most often the nearest is near
+            for (const auto& [away, i] : nearest(end, own, reach)) {
+                if (away <= resolution_) return std::nullopt;
+                const int other = line_of_[static_cast<std::size_t>(i)];
+                const Vec2 at = nearest_point(end, grid_.segment(i));
+                const bool is_joined = std::ranges::any_of(junctions, [&](const Vec2& junction) {
+                    return (end - junction).norm() + (junction - at).norm() <= longest_detour * away;
+                });
+                if (!is_joined && line(other).is_open) return RockBridge{other, away};
+            }
+            if (reach == limit) return std::nullopt;
         }
-        std::ranges::sort(found);
-        const auto other = std::ranges::find_if(
-            found, [&](const auto& each) { return !are_joined(line(own), line(each.second), resolution); });
-        if (other == found.end()) return std::nullopt;
-        return std::pair(other->second, other->first);
     }
 
 private:
+    static constexpr double longest_detour = 3.0; ///< over the bridge: rock that the lines themselves go round is none
+
+    /// Segments of other lines nearer than `reach` with their distances, ascending.
+    [[nodiscard]] std::vector<std::pair<double, int>> nearest(const Vec2& p, int own, double reach) const {
+        std::vector<std::pair<double, int>> found;
+        for (const int i : grid_.near({p - Vec2::Constant(reach), p + Vec2::Constant(reach)})) {
+            const double away = distance_to_segment(p, grid_.segment(i).first, grid_.segment(i).second);
+            if (line_of_[static_cast<std::size_t>(i)] != own && away < reach) found.emplace_back(away, i);
+        }
+        std::ranges::sort(found);
+        return found;
+    }
+
+    /// Where a line meets others, not farther from p than `reach`.
+    [[nodiscard]] std::vector<Vec2> junctions_of(int own, const Vec2& p, double reach) const {
+        std::vector<Vec2> junctions;
+        const auto note = [&](const Vec2& at) {
+            if ((at - p).norm() <= reach) junctions.push_back(at);
+        };
+        const std::vector<Vec2>& points = line(own).points;
+        for (std::size_t k = 0; k + 1 < points.size(); ++k) {
+            const SegmentGrid::Segment part{points[k], points[k + 1]};
+            if (distance_to_segment(p, part.first, part.second) > reach) continue;
+            const Box box = bounding_box({part.first, part.second});
+            const Vec2 margin = Vec2::Constant(resolution_);
+            for (const int i : grid_.near({box.lower - margin, box.upper + margin})) {
+                if (line_of_[static_cast<std::size_t>(i)] == own) continue;
+                const auto& [a, b] = grid_.segment(i);
+                for (const Vec2& end : {part.first, part.second})
+                    if (distance_to_segment(end, a, b) <= resolution_) note(end);
+                for (const Vec2& end : {a, b})
+                    if (distance_to_segment(end, part.first, part.second) <= resolution_) note(end);
+                if (segments_meet(part.first, part.second, a, b)) note(meeting_point(part, grid_.segment(i)));
+            }
+        }
+        return junctions;
+    }
+
     std::vector<SegmentGrid::Segment> segments() {
         std::vector<SegmentGrid::Segment> all;
         for (std::size_t k = 0; k < lines_.size(); ++k) {
@@ -144,16 +192,8 @@ private:
 
     std::vector<Line> lines_;
     std::vector<int> line_of_; ///< of each segment
+    double resolution_ = 0.0;
     SegmentGrid grid_;
-};
-
-/// Rock between the end of an open fracture and another line.
-struct RockBridge {
-    const FractureTrace* trace = nullptr;
-    Vec2 end = Vec2::Zero();
-    std::string other;
-    double length = 0.0;                                      ///< m
-    double n_cells = std::numeric_limits<double>::infinity(); ///< along it
 };
 
 bool is_in_net(const Vec2& p, const GeometrySpec& geometry) {
@@ -161,6 +201,23 @@ bool is_in_net(const Vec2& p, const GeometrySpec& geometry) {
     return contains(geometry.domain, p) && (!region || contains(*region, p)) &&
            std::ranges::none_of(geometry.holes, [&p](const Polygon& hole) { return contains(hole, p); });
 }
+
+/// Cells of the net along a bridge: sides grow from both of its ends until they are the spacing.
+double cells_along(const Vec2& end, const Line& other, double length, const GeometrySpec& geometry) {
+    constexpr int n_parts = 64;
+    const TriangleGrading grading = grading_of(geometry);
+    const double widest = spacing_at(end, 0.0, geometry);
+    const double here = spacing_at(end, grading.fractures, geometry);
+    const double there = spacing_at(end, other.graded, geometry);
+    double n = 0.0;
+    for (int i = 0; i < n_parts; ++i) {
+        const double s = (i + 0.5) / n_parts * length;
+        n += length / n_parts / std::min({widest, here + grading.growth * s, there + grading.growth * (length - s)});
+    }
+    return n;
+}
+
+std::string number_of_cells(double n) { return n < 1.0 ? "less than one cell" : fmt::format("{:.2g} cells", n); }
 
 std::string more_of_them(std::size_t n) {
     if (n == 0) return "";
@@ -170,35 +227,35 @@ std::string more_of_them(std::size_t n) {
 /// A narrow place holds as long as the mean stress of the few blocks in it is below their strength.
 std::vector<std::string> coarse_bridges(const GeometrySpec& geometry, const CutReport& report,
                                         const std::vector<InterfaceType>& types) {
-    const LineSearch search(lines_of(geometry, types));
-    RockBridge shortest;
+    const LineSearch search(lines_of(geometry, report, types), report.resolution);
     std::set<std::pair<int, int>> bridges; // of two lines each
+    double fewest = std::numeric_limits<double>::infinity();
+    std::string of_fewest;
     for (int k = 0; k < static_cast<int>(geometry.fractures.size()); ++k) {
-        const bool is_left = std::ranges::none_of(report.lost, [k](const LostFracture& lost) {
-            return lost.fracture == k && lost.cause != LostFracture::Cause::in_part;
-        });
-        if (!is_left || !search.line(k).is_open) continue;
-        const FractureTrace& trace = geometry.fractures[static_cast<std::size_t>(k)];
-        for (const Vec2& end : {trace.points.front(), trace.points.back()}) {
+        const std::vector<Vec2>& points = search.line(k).points;
+        if (!search.line(k).is_open || points.empty()) continue;
+        if ((points.front() - points.back()).norm() <= report.resolution) continue; // closed: it has no end
+        for (const Vec2& end : {points.front(), points.back()}) {
             if (!is_in_net(end, geometry)) continue;
-            const double spacing = spacing_at(end, grading_of(geometry).fractures, geometry);
-            const auto nearest = search.nearest_other(end, k, fewest_in_a_bridge * spacing, report.resolution);
-            if (!nearest) continue;
-            const auto& [other, length] = *nearest;
-            bridges.emplace(std::minmax(k, other));
-            if (length / spacing < shortest.n_cells * (1.0 - rounding))
-                shortest = {&trace, end, search.line(other).name, length, length / spacing};
+            const auto bridge = search.bridge_at(end, k, fewest_in_a_bridge * spacing_at(end, 0.0, geometry));
+            if (!bridge) continue;
+            const double n = cells_along(end, search.line(bridge->line), bridge->length, geometry);
+            if (n >= fewest_in_a_bridge) continue;
+            bridges.emplace(std::minmax(k, bridge->line));
+            if (n >= fewest * (1.0 - rounding)) continue;
+            fewest = n;
+            const FractureTrace& trace = geometry.fractures[static_cast<std::size_t>(k)];
+            of_fewest = fmt::format("{}: {} ends at {}, {:.3g} m before {}", trace.place, trace.name, place_text(end),
+                                    bridge->length, search.line(bridge->line).name);
         }
     }
     if (bridges.empty()) return {};
-    const bool of_triangles = geometry.tessellation->triangles.has_value();
     return {fmt::format(
-        "{}: {} ends at {}, {:.3g} m before {}, with {:.2g} cells of the net along this rock bridge{}: bridges of so "
-        "few "
-        "are too strong, of triangles by 64 % with one, 38 % with two and 13 % with four; {} makes the net finer there",
-        shortest.trace->place, shortest.trace->name, place_text(shortest.end), shortest.length, shortest.other,
-        shortest.n_cells, more_of_them(bridges.size() - 1),
-        of_triangles ? "geometry.tessellation.triangles.grading.fractures" : "a smaller spacing")};
+        "{}, with {} of the net along this rock bridge{}: bridges of so few are too strong, of triangles by 64 % with "
+        "one, 38 % with two and 13 % with four; {} makes the net finer there",
+        of_fewest, number_of_cells(fewest), more_of_them(bridges.size() - 1),
+        geometry.tessellation->triangles ? "geometry.tessellation.triangles.grading.fractures (or a smaller spacing)"
+                                         : "a smaller spacing")};
 }
 
 } // namespace

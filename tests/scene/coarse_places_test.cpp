@@ -65,7 +65,7 @@ TEST_P(RockBridges, OfFewCellsAreWarnedOf) {
     EXPECT_THAT(gap(0.8),
                 ElementsAre(AllOf(HasSubstr("scene.yaml:9:5: left ends at "), HasSubstr("0.8 m before right, "),
                                   HasSubstr("with 1.6 cells of the net along this rock bridge: "),
-                                  HasSubstr("grading.fractures makes the net finer there"))));
+                                  HasSubstr("grading.fractures (or a smaller spacing) makes the net finer there"))));
     EXPECT_THAT(gap(1.9), ElementsAre(HasSubstr("3.8 cells")));
     EXPECT_THAT(gap(2.1), IsEmpty());
 }
@@ -108,10 +108,55 @@ TEST_P(RockBridges, AreNotWhereFracturesAreJoined) {
         << "the bridge is a mapped crack, with a strength of its own";
 }
 
+// What a short way along the lines leads round is a wedge or a piece of the same fracture, not a bridge.
+TEST_P(RockBridges, AreNotWhereLinesGoRound) {
+    EXPECT_THAT(warnings_beside(body.with({joint("a", {-6, 0}, {0, 0}), joint("b", {0, 0}, {1, 0.2}),
+                                           joint("c", {1, 0.2}, {1.5, 0.7}), joint("d", {0, 0}, {0.5, 1})})),
+                IsEmpty());
+    EXPECT_THAT(warnings_beside(body.with({joint("ring", {-1, -1}, {1, -1}), joint("far", {-9, 4}, {-9, 0})})),
+                ElementsAre(HasSubstr("far ends at ")));
+    FractureTrace closed = joint("closed", {-1, -1}, {1, -1});
+    closed.points.insert(closed.points.end(), {Vec2(0, 1), Vec2(-1, -1)});
+    EXPECT_THAT(warnings_beside(body.with({closed, joint("near", {-6, -1.5}, {6, -1.5})})), IsEmpty())
+        << "it has no end";
+    GeometrySpec notch = body.with({joint("notch", {0, 3}, {0, 4})});
+    notch.holes.emplace_back();
+    for (int k = 0; k < 32; ++k) {
+        const double angle = 2.0 * std::numbers::pi * k / 32;
+        notch.holes.front().push_back(body.turned({3.0 * std::sin(angle), 3.0 * std::cos(angle)}));
+    }
+    notch.tessellation->triangles->grading.openings = 0.4;
+    EXPECT_THAT(warnings_beside(notch), IsEmpty());
+}
+
+// Two lines that are joined 8 m away and end 1 m apart.
+TEST_P(RockBridges, AreWhereLinesAreJoinedFarAway) {
+    EXPECT_THAT(warnings_beside(body.with(
+                    {joint("a", {-8, 0}, {0, 0}), joint("b", {-8, 0}, {-8, 1}), joint("c", {-8, 1}, {6, 1})})),
+                ElementsAre(AllOf(HasSubstr("a ends at "), HasSubstr("1 m before c, "))));
+}
+
+// Sides from 0.2 m on that grow by 0.3 m a metre from both ends: 2 ln(1 + 0.3 x 0.75/0.2)/0.3 = 5.0 along 1.5 m, and from
+// one end to a side of the body, up to 0.5 m behind 1 m: ln(1 + 0.3/0.2)/0.3 = 3.05 and 0.5/0.5 = 1, 4.05 in all.
+TEST_P(RockBridges, HaveCellsThatGrowFromTheirEnds) {
+    const auto cells = [this](double growth, const FractureTrace& a, const FractureTrace& b) {
+        GeometrySpec geometry = body.with({a, b});
+        geometry.tessellation->triangles->grading.fractures = 0.2;
+        geometry.tessellation->triangles->grading.growth = growth;
+        return warnings_beside(geometry);
+    };
+    const FractureTrace left = joint("left", {-6, 0}, {-1, 0});
+    EXPECT_THAT(cells(0.3, left, joint("right", {0.5, 0}, {6, 0})), IsEmpty());
+    EXPECT_THAT(cells(1.0, left, joint("right", {0.4, 0}, {6, 0})),
+                ElementsAre(HasSubstr("3.4 cells"))); // 2 (ln(2.5) + 0.4/0.5)
+    EXPECT_THAT(cells(0.3, left, joint("out", {6, 5}, {8.5, 5})), IsEmpty());
+    EXPECT_THAT(cells(0.3, left, joint("out", {6, 5}, {8.6, 5})), ElementsAre(HasSubstr("3.9 cells")));
+}
+
 TEST_P(RockBridges, AreMeasuredInCellsOfTheNetThere) {
     GeometrySpec geometry = body.with({joint("left", {-6, 0}, {-1, 0}), joint("right", {0, 0}, {6, 0})});
     TriangleGrading& grading = geometry.tessellation->triangles->grading;
-    grading.fractures = 0.2;
+    grading.fractures = 0.1;
     EXPECT_THAT(warnings_beside(geometry), IsEmpty());
     grading.fractures = 0.0;
     grading.region = {body.turned({-2, -2}), body.turned({2, -2}), body.turned({2, 2}), body.turned({-2, 2})};
