@@ -130,10 +130,7 @@ public:
                 if (away <= resolution_) return std::nullopt;
                 const int other = line_of_[static_cast<std::size_t>(i)];
                 const Vec2 at = nearest_point(end, grid_.segment(i));
-                const bool is_joined = std::ranges::any_of(junctions, [&](const Vec2& junction) {
-                    return (end - junction).norm() + (junction - at).norm() <= longest_detour * away;
-                });
-                if (!is_joined && line(other).is_open) return RockBridge{other, away};
+                if (line(other).is_open && !is_round(end, at, junctions)) return RockBridge{other, away};
             }
             if (reach == limit) return std::nullopt;
         }
@@ -141,6 +138,13 @@ public:
 
 private:
     static constexpr double longest_detour = 3.0; ///< over the bridge: rock that the lines themselves go round is none
+
+    /// Whether a line leads from the end by one of its junctions to the other end of the bridge without a long way round.
+    [[nodiscard]] static bool is_round(const Vec2& end, const Vec2& at, const std::vector<Vec2>& junctions) {
+        return std::ranges::any_of(junctions, [&](const Vec2& junction) {
+            return (end - junction).norm() + (junction - at).norm() <= longest_detour * (end - at).norm();
+        });
+    }
 
     /// Segments of other lines nearer than `reach` with their distances, ascending.
     [[nodiscard]] std::vector<std::pair<double, int>> nearest(const Vec2& p, int own, double reach) const {
