@@ -49,11 +49,6 @@ EdgeSearch living_edges(const PlanarMap& map) {
     return search;
 }
 
-Vec2 nearest_point(const Vec2& p, const Vec2& a, const Vec2& b) {
-    const Vec2 along = b - a;
-    return a + std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0) * along;
-}
-
 /// The half-edge from the same start that leads to `place`: an edge that was cut keeps its number up to the first cut.
 int part_at(const PlanarMap& map, int h, const Vec2& place) {
     const auto beyond = [&](int part) {

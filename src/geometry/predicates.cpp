@@ -91,6 +91,13 @@ bool segments_meet(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
     return true;
 }
 
+Vec2 nearest_point(const Vec2& p, const Vec2& a, const Vec2& b) {
+    const Vec2 along = b - a;
+    const double length_squared = along.squaredNorm();
+    if (length_squared == 0.0) return a;
+    return a + std::clamp((p - a).dot(along) / length_squared, 0.0, 1.0) * along;
+}
+
 double distance_to_segment(const Vec2& p, const Vec2& a, const Vec2& b) {
     const Vec2 along = b - a;
     const double length_squared = along.squaredNorm();

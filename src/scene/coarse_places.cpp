@@ -91,19 +91,12 @@ std::vector<Line> lines_of(const GeometrySpec& geometry, const CutReport& report
     return lines;
 }
 
-Vec2 nearest_point(const Vec2& p, const SegmentGrid::Segment& segment) {
-    const Vec2 along = segment.second - segment.first;
-    const double length = along.squaredNorm();
-    const double t = length > 0.0 ? std::clamp((p - segment.first).dot(along) / length, 0.0, 1.0) : 0.0;
-    return segment.first + t * along;
-}
-
 /// Of two segments that meet; of two that overlap an end of theirs.
 Vec2 meeting_point(const SegmentGrid::Segment& a, const SegmentGrid::Segment& b) {
     const Vec2 u = a.second - a.first;
     const Vec2 v = b.second - b.first;
     const double cross = u.x() * v.y() - u.y() * v.x();
-    if (cross == 0.0) return nearest_point(b.first, a);
+    if (cross == 0.0) return nearest_point(b.first, a.first, a.second);
     const Vec2 between = b.first - a.first;
     return a.first + (between.x() * v.y() - between.y() * v.x()) / cross * u;
 }
@@ -129,7 +122,7 @@ public:
             for (const auto& [away, i] : nearest(end, own, reach)) {
                 if (away <= resolution_) return std::nullopt;
                 const int other = line_of_[static_cast<std::size_t>(i)];
-                const Vec2 at = nearest_point(end, grid_.segment(i));
+                const Vec2 at = nearest_point(end, grid_.segment(i).first, grid_.segment(i).second);
                 if (line(other).is_open && !is_round(end, at, junctions)) return RockBridge{other, away};
             }
             if (reach == limit) return std::nullopt;

@@ -15,6 +15,9 @@ namespace kluft {
 /// Whether p lies on the closed segment ab. Exact as `orientation`.
 [[nodiscard]] bool on_segment(const Vec2& p, const Vec2& a, const Vec2& b);
 
+/// The point of the closed segment ab that is nearest to p.
+[[nodiscard]] Vec2 nearest_point(const Vec2& p, const Vec2& a, const Vec2& b);
+
 /// Distance of p from the closed segment ab (m).
 [[nodiscard]] double distance_to_segment(const Vec2& p, const Vec2& a, const Vec2& b);
 
