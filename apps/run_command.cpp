@@ -1,6 +1,4 @@
 // kluft run SCENE
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <new>
@@ -42,7 +40,7 @@ namespace fs = std::filesystem;
 /// Passes everything on to the files and keeps the terminal informed.
 class RunObserver : public StepObserver {
 public:
-    RunObserver(RunWriter& writer, bool quiet) : writer_(writer) {
+    RunObserver(const Model& model, RunWriter& writer, bool quiet) : writer_(writer), contacts_(model) {
         if (!quiet) line_ = std::make_unique<ProgressLine>(ProgressLine::on_standard_error());
     }
     void equilibrium(const StepRecord& record) override { writer_.equilibrium(record); }
@@ -50,9 +48,8 @@ public:
     void jump(const JumpRecord& jump) override { writer_.jump(jump); }
     void step(const StepRecord& record, const State& state, const std::function<FieldRecord()>& fields,
               bool last_of_stage) override {
-        for (const double stress : {record.axial_stress, record.lateral_stress})
-            largest_stress_ = std::max(largest_stress_, std::abs(stress));
         writer_.step(record, state, fields, last_of_stage);
+        contacts_.step(record, state);
     }
     void progress(const Progress& progress) override {
         if (line_) line_->update(progress);
@@ -61,12 +58,11 @@ public:
         if (line_) line_->clear();
     }
 
-    /// Measured on the boundaries (Pa).
-    [[nodiscard]] double largest_stress() const { return largest_stress_; }
+    [[nodiscard]] const ContactWatch& contacts() const { return contacts_; }
 
 private:
     RunWriter& writer_;
-    double largest_stress_ = 0.0;
+    ContactWatch contacts_;
     std::unique_ptr<ProgressLine> line_;
 };
 
@@ -105,10 +101,10 @@ void write_report(const SceneModel& built, const Scene& scene, const RunWriter& 
 ExitCode simulate(const SceneModel& built, const Scene& scene, State& state, RunWriter& writer, RunLog& log,
                   const fs::path& directory, double earlier_cpu, bool quiet) {
     const Model& model = built.model;
-    RunObserver observer(writer, quiet);
+    RunObserver observer(model, writer, quiet);
     RunReport report = run_stages(model, scene, state, observer, stop_requested);
     observer.clear();
-    warn_of_contacts(model, state, observer.largest_stress(), report);
+    warn_of_contacts(model, state, observer.contacts(), report);
     for (const auto& warning : report.warnings) {
         log.warning(warning);
         if (!quiet) tell("warning: {}\n", warning);

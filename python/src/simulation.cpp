@@ -1,9 +1,7 @@
 // A run whose load steps are taken one at a time. The run itself stands in a thread of its own, which waits after each load
 // step; it never touches Python, and Python's threads go on while it computes.
-#include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <cmath>
 #include <condition_variable>
 #include <cstdint>
 #include <exception>
@@ -332,7 +330,7 @@ private:
     }
 
     void finish() {
-        warn_of_contacts(model(), state_, largest_stress_, report_);
+        warn_of_contacts(model(), state_, contacts_, report_);
         if (output_) {
             for (const std::string& warning : report_.warnings) output_->log->warning(warning);
             if (!report_.diagnosis.empty()) output_->log->error(report_.diagnosis);
@@ -362,9 +360,8 @@ private:
     }
     void step(const StepRecord& record, const State& state, const std::function<FieldRecord()>& fields,
               bool last_of_stage) override {
-        for (const double stress : {record.axial_stress, record.lateral_stress})
-            largest_stress_ = std::max(largest_stress_, std::abs(stress));
         if (output_) output_->writer->step(record, state, fields, last_of_stage);
+        contacts_.step(record, state);
         row_ = table_row(record);
         wait_for_turn();
     }
@@ -399,7 +396,7 @@ private:
     std::optional<Progress> progress_; ///< guarded by turn_
 
     std::string row_;
-    double largest_stress_ = 0.0;
+    ContactWatch contacts_{model()};
     RunReport report_;
     std::string closing_;
     std::shared_ptr<const BodyState> snapshot_;

@@ -1,5 +1,7 @@
 #include "kluft/studies/scene_run.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <new>
 #include <vector>
 
@@ -107,11 +109,18 @@ RunReport run_stages(const Model& model, const Scene& scene, State& state, StepO
     return run_simulation(model, scene.cracks, scene.solver, state, observer, stop);
 }
 
-void warn_of_contacts(const Model& model, const State& state, double largest_stress, RunReport& report) {
+void ContactWatch::step(const StepRecord& record, const State& state) {
+    for (const double stress : {record.axial_stress, record.lateral_stress})
+        largest_stress_ = std::max(largest_stress_, std::abs(stress));
+    corners_.step(record, state);
+}
+
+void warn_of_contacts(const Model& model, const State& state, const ContactWatch& watch, RunReport& report) {
     if (report.status == RunStatus::out_of_resources || report.status == RunStatus::interrupted) return;
     try {
-        for (const std::string& warning : {contact_pressure_warning(model, state, largest_stress),
-                                           corner_contact_warning(model, state), bond_bending_warning(model, state)})
+        for (const std::string& warning :
+             {contact_pressure_warning(model, state, watch.largest_stress()), corner_contact_warning(model, state),
+              watch.corners().warning(), bond_bending_warning(model, state)})
             if (!warning.empty()) report.warnings.push_back(warning);
     } catch (const std::bad_alloc&) {
         return;

@@ -98,7 +98,7 @@ TEST_P(ReleasedEnergy, IsNoMoreThanThePlatenHasPutIn) {
     EXPECT_GT(largest, 0.1 * work) << "the collapse releases much of what was stored";
 }
 
-INSTANTIATE_TEST_SUITE_P(Steps, ReleasedEnergy, testing::Values(3, 6));
+INSTANTIATE_TEST_SUITE_P(SlowSteps, ReleasedEnergy, testing::Values(3, 6));
 
 } // namespace
 } // namespace kluft

@@ -153,7 +153,7 @@ TEST(Resuming, RunThatEndedAtAFactorOfSafetyEndsTheSame) {
 }
 
 // A pile of hexagons that loses half of its stress in one load step; a stage comes after it.
-TEST(Resuming, RunThatStoppedAfterADropEndsTheSameAndGoesOnWithoutIt) {
+TEST(SlowResuming, RunThatStoppedAfterADropEndsTheSameAndGoesOnWithoutIt) {
     const std::string scene = R"(
 kluft: 1
 materials: {r: {density: 2500, youngs_modulus: 1 GPa, poissons_ratio: 0.2, cohesion: 0.1 MPa, friction_angle: 30,

@@ -74,11 +74,11 @@ TEST_P(ShedLoad, PiecesThatCarryNothingComeToStand) {
     EXPECT_LT(n_solves, 400 * static_cast<int>(loose.size()));
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, ShedLoad, testing::Values(1));
+INSTANTIATE_TEST_SUITE_P(SlowSeeds, ShedLoad, testing::Values(1));
 
 // Rough platens hold the ends of the body, which goes on carrying a third of its peak, and pieces have come off its sides. With friction
 // on these the run took 3 600 linear solves.
-TEST(ShedLoad, PiecesBesideWhatCarriesDoNotRub) {
+TEST(SlowShedLoad, PiecesBesideWhatCarriesDoNotRub) {
     const Collapse run(read_scene_text(loose_triangles(1, "rough")));
     ASSERT_EQ(run.report.status, RunStatus::done) << run.report.diagnosis;
     EXPECT_EQ(run.report.unbalanced_steps, 0);
@@ -89,7 +89,7 @@ TEST(ShedLoad, PiecesBesideWhatCarriesDoNotRub) {
 
 // A body whose platen has left it carries nothing either, but it is whole: no load step may take it for one that has fallen apart.
 // Where such steps were not searched for events, and loads applied in short pseudo-time steps, this one broke at 14.3 MPa.
-TEST(ShedLoad, AWholeBodyThatIsLoadedAgainHasItsStrength) {
+TEST(SlowShedLoad, AWholeBodyThatIsLoadedAgainHasItsStrength) {
     const std::string body = R"(
 kluft: 1
 analysis: {plane: strain}
@@ -118,7 +118,7 @@ boundaries: {bottom: {support: pinned}}
 
 // What the pieces of the column are doing must not take the friction from the stack, whose stress at 33 mm is 2.154 MPa in a run of the
 // explicit program. Without friction where nothing is carried yet it slid apart and carried nothing.
-TEST(ShedLoad, WhatIsHeldByFrictionTakesUpLoad) {
+TEST(SlowShedLoad, WhatIsHeldByFrictionTakesUpLoad) {
     const Collapse run(read_scene(KLUFT_SOURCE_DIR "/tests/support/column_beside_a_stack.yaml"));
     ASSERT_EQ(run.report.status, RunStatus::done) << run.report.diagnosis;
     EXPECT_NEAR(run.told.rows.back().axial_stress, 2.154e6, 0.01 * 2.154e6);

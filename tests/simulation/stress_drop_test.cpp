@@ -107,7 +107,7 @@ void expect_same_rows(const std::vector<StepRecord>& rows, const std::vector<Ste
 }
 
 // What the whole run has up to there, and nothing more.
-TEST(StressDrop, RunEndsAtTheFirstBalancedLoadStepBelow) {
+TEST(SlowStressDrop, RunEndsAtTheFirstBalancedLoadStepBelow) {
     for (const std::string integrator : {"implicit", "explicit"}) {
         const std::string by = "analysis.integrator=" + integrator;
         const SceneRun whole = run_scene(collapsing_body, {by});

@@ -9,6 +9,7 @@
 #include "kluft/output/summary.hpp"
 #include "kluft/scene/scene.hpp"
 #include "kluft/simulation/model.hpp"
+#include "kluft/simulation/overloaded_corners.hpp"
 #include "kluft/simulation/run_report.hpp"
 #include "kluft/simulation/state.hpp"
 #include "kluft/simulation/step_observer.hpp"
@@ -34,9 +35,26 @@ namespace kluft {
 RunReport run_stages(const Model& model, const Scene& scene, State& state, StepObserver& observer,
                      const std::atomic<bool>& stop);
 
-/// Adds a warning of contacts that are pressed far more than the loads apply; `largest_stress` was measured on the boundaries
-/// during the run (Pa). Where memory has run out, what was run is all that counts.
-void warn_of_contacts(const Model& model, const State& state, double largest_stress, RunReport& report);
+/// What the warnings at the end of a run need to know of its load steps. The model must outlive it.
+class ContactWatch {
+public:
+    explicit ContactWatch(const Model& model) : corners_(model) {}
+
+    /// A committed load step.
+    void step(const StepRecord& record, const State& state);
+
+    /// Measured on the boundaries (Pa).
+    [[nodiscard]] double largest_stress() const { return largest_stress_; }
+    [[nodiscard]] const CornerWatch& corners() const { return corners_; }
+
+private:
+    CornerWatch corners_;
+    double largest_stress_ = 0.0;
+};
+
+/// Adds warnings of contacts that are pressed far more than the loads apply or than rock bears. Where memory has run out, what was run
+/// is all that counts.
+void warn_of_contacts(const Model& model, const State& state, const ContactWatch& watch, RunReport& report);
 
 /// Puts the warnings of the scene and of its body before those of the run, as the summary has them.
 void add_earlier_warnings(const Scene& scene, const Model& model, RunReport& report);

@@ -1,0 +1,127 @@
+#include "kluft/simulation/overloaded_corners.hpp"
+
+#include <atomic>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <string>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kluft/scene/scene_model.hpp"
+#include "kluft/scene/scene_reader.hpp"
+#include "kluft/simulation/simulation.hpp"
+
+namespace kluft {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+constexpr double one_degree = std::numbers::pi / 180.0;
+
+/// A specimen of 10 cm by 24 cm under 1 MPa with two fractures of 60 degrees, one each way, that cross in its middle; rock of so
+/// much cohesion, and so much friction along the second fracture.
+Scene crossing_fractures(const std::string& cohesion, double friction_of_second) {
+    const double rise = 0.05 * std::tan(60.0 * one_degree);
+    return read_scene_text(fmt::format(R"(kluft: 1
+materials:
+  rock: {{density: 2300, youngs_modulus: 5 GPa, poissons_ratio: 0.25, cohesion: {0}, friction_angle: 40, tensile_strength: 2 MPa}}
+interfaces:
+  first: {{kind: fracture, normal_stiffness: 500 GPa/m, shear_stiffness: 250 GPa/m, friction_angle: 30}}
+  second: {{kind: fracture, normal_stiffness: 500 GPa/m, shear_stiffness: 250 GPa/m, friction_angle: {1}}}
+  bond: {{kind: potential_crack, fails_to: crack}}
+  crack: {{kind: fracture, friction_angle: 35}}
+geometry:
+  domain: {{rectangle: {{width: 0.1, height: 0.24}}}}
+  fractures:
+    - {{name: up, trace: [[0, {2:.12g}], [0.1, {3:.12g}]], interface: first}}
+    - {{name: down, trace: [[0, {3:.12g}], [0.1, {2:.12g}]], interface: second}}
+  tessellation: {{triangles: {{spacing: 2 cm}}, interface: bond}}
+boundaries: {{bottom: {{support: smooth}}}}
+stages:
+  - {{pressure: {{left: 1 MPa, right: 1 MPa, top: 1 MPa}}}}
+  - {{strain: {{boundary: top, value: 0.5 %}}, steps: 25}}
+)",
+                                       cohesion, friction_of_second, 0.12 - rise, 0.12 + rise),
+                           {}, "crossing.yaml");
+}
+
+struct Specimen {
+    Model model;
+    State state;
+    StepRecord last;
+    std::string warning;
+};
+
+class WatchingObserver : public StepObserver {
+public:
+    explicit WatchingObserver(Specimen& specimen) : specimen_(specimen), watch_(specimen.model) {}
+    void step(const StepRecord& record, const State& state, const std::function<FieldRecord()>& /*fields*/,
+              bool /*last_of_stage*/) override {
+        specimen_.last = record;
+        watch_.step(record, state);
+    }
+    [[nodiscard]] std::string warning() const { return watch_.warning(); }
+
+private:
+    Specimen& specimen_;
+    CornerWatch watch_;
+};
+
+Specimen pressed(const Scene& scene) {
+    Specimen specimen;
+    specimen.model = build_scene_model(scene).model;
+    specimen.state = initial_state(specimen.model);
+    WatchingObserver observer(specimen);
+    const std::atomic<bool> stop{false};
+    const RunReport report = run_simulation(specimen.model, scene.cracks, scene.solver, specimen.state, observer, stop);
+    EXPECT_EQ(report.status, RunStatus::done);
+    specimen.warning = observer.warning();
+    return specimen;
+}
+
+/// What the warning says of the largest stress before (Pa).
+double stress_before(const std::string& warning) {
+    const std::string words = "the axial stress was ";
+    const std::size_t place = warning.find(words);
+    return place == std::string::npos ? 0.0 : 1e6 * std::stod(warning.substr(place + words.size()));
+}
+
+// Jaeger's plane of weakness has 1 MPa tan 60/tan(60 - 30) = 3 MPa.
+TEST(OverloadedCorners, OfFracturesThatCrossExactlyAreWarnedOf) {
+    const Specimen specimen = pressed(crossing_fractures("5 MPa", 30.0));
+    EXPECT_GT(specimen.last.axial_stress, 1.5 * 3e6);
+    const OverloadedCorners corners = overloaded_corners(specimen.model, specimen.state);
+    EXPECT_EQ(corners.n, 1);
+    EXPECT_GT(corners.share, 0.2);
+    EXPECT_GT(corners.traction, 3.0 * corners.strength);
+    EXPECT_NEAR(corners.strength, 2.0 * 5e6 * std::tan(65.0 * one_degree), 1.0); // 2 c tan(45 + phi/2)
+    EXPECT_NEAR(corners.place.x(), 0.05, 0.001);
+    EXPECT_NEAR(corners.place.y(), 0.12, 0.002);
+    EXPECT_THAT(specimen.warning,
+                AllOf(HasSubstr("corners between mapped fractures bear more than rock does: 1 under more than 3 times"),
+                      HasSubstr("rock of 21.4 MPa")));
+    EXPECT_GT(stress_before(specimen.warning), 3e6);
+    EXPECT_LT(stress_before(specimen.warning), 1.15 * 3e6);
+}
+
+// Slip along the weaker one carries its tip away from that of the other wedge: 1 MPa tan 60/tan(60 - 27) = 2.667 MPa.
+TEST(OverloadedCorners, OfFracturesOfDifferentFrictionDoNotMeet) {
+    const Specimen specimen = pressed(crossing_fractures("5 MPa", 27.0));
+    EXPECT_NEAR(specimen.last.axial_stress, 1e6 * std::tan(60.0 * one_degree) / std::tan(33.0 * one_degree), 0.02e6);
+    EXPECT_THAT(specimen.warning, IsEmpty());
+}
+
+TEST(OverloadedCorners, StrongRockBearsThem) {
+    const Specimen specimen = pressed(crossing_fractures("100 MPa", 30.0));
+    EXPECT_GT(specimen.last.axial_stress, 1.5 * 3e6);
+    EXPECT_EQ(overloaded_corners(specimen.model, specimen.state).n, 0);
+    EXPECT_THAT(specimen.warning, IsEmpty());
+}
+
+} // namespace
+} // namespace kluft
