@@ -19,9 +19,9 @@ namespace kluft {
 
 namespace {
 
-/// Of the uniaxial compressive strength: what a wedge of 60 degrees bears on its blunted tip, 2.8 with phi = 40 degrees
-/// (docs/theory.md, (32c)).
-constexpr double overload = 3.0;
+/// Of the compressive strength: what a wedge of 60 degrees bears on its blunted tip, 2.1 with phi = 25 degrees and no confining
+/// stress (docs/theory.md, (32c)).
+constexpr double overload = 2.0;
 constexpr double large_share = 0.05; ///< of what goes across mapped fractures
 
 /// Sums over the contact points of two blocks along mapped fractures.
@@ -36,12 +36,18 @@ bool is_on_mapped_fracture(const BlockSystem& system, int block, int edge) {
     return interface >= 0 && system.interfaces[interface].fracture >= 0;
 }
 
+/// docs/theory.md, (36).
+double compressive_strength(const Strength& strength, double confining_stress) {
+    const double sine = std::sin(strength.friction_angle);
+    return uniaxial_compressive_strength(strength) + (1.0 + sine) / (1.0 - sine) * confining_stress;
+}
+
 /// Of the potential cracks around a block, also of those that have failed: the largest; 0 without any (Pa).
-double rock_strength(const Model& model, int block) {
+double rock_strength(const Model& model, int block, double confining_stress) {
     double strength = 0.0;
     for (const Edge& edge : model.system.blocks[block].edges) {
         if (edge.interface < 0 || !model.bonds[law_of(model.system.interfaces[edge.interface])]) continue;
-        strength = std::max(strength, uniaxial_compressive_strength(model.strengths[edge.interface]));
+        strength = std::max(strength, compressive_strength(model.strengths[edge.interface], confining_stress));
     }
     return strength;
 }
@@ -66,7 +72,7 @@ TouchingPairs pressed_along_fractures(const LoadedBody& body, const Eigen::Vecto
 
 } // namespace
 
-OverloadedCorners overloaded_corners(const Model& model, const State& state) {
+OverloadedCorners overloaded_corners(const Model& model, const State& state, double confining_stress) {
     OverloadedCorners corners;
     if (!model.has_potential_cracks) return corners;
     TouchingPairs pairs;
@@ -77,7 +83,8 @@ OverloadedCorners overloaded_corners(const Model& model, const State& state) {
     double largest = 0.0;
     for (const auto& [blocks, touching] : pairs) {
         all += touching.force;
-        const double strength = std::min(rock_strength(model, blocks.first), rock_strength(model, blocks.second));
+        const double strength = std::min(rock_strength(model, blocks.first, confining_stress),
+                                         rock_strength(model, blocks.second, confining_stress));
         const double traction = touching.force / touching.length;
         if (strength <= 0.0 || traction <= overload * strength) continue;
         ++corners.n;
@@ -105,15 +112,14 @@ void CornerWatch::step(const StepRecord& record, const State& state) {
     const double stress = std::abs(record.axial_stress);
     if (!record.balanced || stress < largest_stress_) return;
     largest_stress_ = stress;
-    corners_ = overloaded_corners(model_, state);
+    corners_ = overloaded_corners(model_, state, std::max(0.0, std::min(record.axial_stress, record.lateral_stress)));
     if (corners_.share <= large_share) stress_before_ = stress;
 }
 
 std::string CornerWatch::warning() const {
     if (corners_.share <= large_share) return {};
     std::string text = fmt::format(
-        "corners between mapped fractures bear more than rock does: {} under more than {} times its uniaxial "
-        "compressive "
+        "corners between mapped fractures bear more than rock does: {} under more than {} times its compressive "
         "strength carry {:.2g} % of what goes across the fractures (blocks {} and {} at about {} press each other with "
         "{:.3g} MPa, rock of {:.3g} MPa), since corners smaller than a cell of the net cannot break off. ",
         corners_.n, overload, 100.0 * corners_.share, block_label(model_.system, corners_.block_a),

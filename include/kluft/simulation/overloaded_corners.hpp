@@ -11,23 +11,24 @@
 
 namespace kluft {
 
-/// Pairs of blocks that touch along mapped fractures under a mean normal traction of more than three times the uniaxial
-/// compressive strength of the rock beside them, which is that of the potential cracks of the two blocks.
+/// Pairs of blocks that touch along mapped fractures under a mean normal traction of more than twice the compressive
+/// strength of the rock beside them, (36), which is that of the potential cracks of the two blocks.
 struct OverloadedCorners {
     int n = 0;
     double share = 0.0; ///< of the normal forces across mapped fractures, 0 to 1
     int block_a = -1;   ///< of the pair with the largest force
     int block_b = -1;
     double traction = 0.0;     ///< of that pair: mean normal traction (Pa, positive in compression)
-    double strength = 0.0;     ///< of that pair: uniaxial compressive strength (Pa)
+    double strength = 0.0;     ///< of that pair: compressive strength (Pa)
     Vec2 place = Vec2::Zero(); ///< of that pair, in the moved body, scene coordinates (m)
 };
 
-/// Of a committed state. No corner is overloaded in a body without potential cracks, whose rock has no strength.
-[[nodiscard]] OverloadedCorners overloaded_corners(const Model& model, const State& state);
+/// Of a committed state, with the strength that rock has under a confining stress (Pa, positive in compression). No corner is
+/// overloaded in a body without potential cracks, whose rock has no strength.
+[[nodiscard]] OverloadedCorners overloaded_corners(const Model& model, const State& state, double confining_stress);
 
 /// Follows a run up to its largest axial stress (where no gauge measures one: up to its end), to say what it owes to
-/// overloaded corners. Stages of strength_reduction do not count. Costs nothing where the body has no mapped fracture or no
+/// overloaded corners; the smaller of axial and lateral stress confines the rock. Stages of strength_reduction do not count. Costs nothing where the body has no mapped fracture or no
 /// potential crack. `model` must outlive it.
 class CornerWatch {
 public:
