@@ -13,7 +13,7 @@
 #include "kluft/core/place_text.hpp"
 #include "kluft/kinematics/affine.hpp"
 #include "kluft/loading/loaded_body.hpp"
-#include "kluft/simulation/state_fields.hpp"
+#include "kluft/simulation/placement.hpp"
 
 namespace kluft {
 
@@ -54,13 +54,14 @@ double rock_strength(const Model& model, int block, double confining_stress) {
 
 using TouchingPairs = std::map<std::pair<int, int>, Touching>;
 
-TouchingPairs pressed_along_fractures(const LoadedBody& body, const Eigen::VectorXd& q) {
+TouchingPairs pressed_along_fractures(const Model& model, const BodyState& state) {
+    const Eigen::VectorXd& q = state.displacement;
     TouchingPairs pairs;
-    for (const ContactPoint& point : body.placement->contacts) {
-        if (!is_on_mapped_fracture(*body.system, point.key.block_a, point.key.edge_a)) continue;
-        const double pressure = -contact_traction(*body.laws, point, q).normal;
+    for (const ContactPoint& point : detected_contacts(model, state).points) {
+        if (!is_on_mapped_fracture(model.system, point.key.block_a, point.key.edge_a)) continue;
+        const double pressure = -contact_traction(model.laws, point, q).normal;
         if (pressure <= 0.0) continue;
-        const Block& block = body.system->blocks[point.block_a];
+        const Block& block = model.system.blocks[point.block_a];
         Touching& touching = pairs[std::minmax(point.block_a, point.block_b)];
         touching.force += point.weight * pressure;
         touching.length += point.weight;
@@ -75,9 +76,7 @@ TouchingPairs pressed_along_fractures(const LoadedBody& body, const Eigen::Vecto
 OverloadedCorners overloaded_corners(const Model& model, const State& state, double confining_stress) {
     OverloadedCorners corners;
     if (!model.has_potential_cracks) return corners;
-    TouchingPairs pairs;
-    with_body_of_state(model, state,
-                       [&](const LoadedBody& body) { pairs = pressed_along_fractures(body, state.body.displacement); });
+    const TouchingPairs pairs = pressed_along_fractures(model, state.body);
     double all = 0.0;
     double overloaded = 0.0;
     double largest = 0.0;
