@@ -109,10 +109,11 @@ class Scene(MutableMapping[str, Any]):
     # ---- a mapping ---------------------------------------------------------------------------------------------------
 
     def __getitem__(self, key: str) -> Any:
+        _require_text(key)
         value: Any = self.to_dict()
         for place, word in enumerate(key.split(".")):
             try:
-                value = value[int(word)] if isinstance(value, list) else value[word]
+                value = value[_index(word)] if isinstance(value, list) else value[word]
             except (KeyError, IndexError, TypeError, ValueError):
                 near = get_close_matches(word, value, 1) if isinstance(value, dict) else []
                 hint = f"; did you mean '{'.'.join([*key.split('.')[:place], *near])}'?" if near else ""
@@ -278,9 +279,20 @@ class Scene(MutableMapping[str, Any]):
                 raise together(problems) from None
 
 
-def _require_key(key: object) -> None:
+def _require_text(key: object) -> None:
     if not isinstance(key, str):
         raise TypeError(f"a key of a scene is a text, as in 'stages.1.steps', not {type(key).__name__}")
+
+
+def _index(word: str) -> int:
+    """Of an item of a list, counted from 0. Throws ValueError for anything else."""
+    if not word.isdecimal():
+        raise ValueError(word)
+    return int(word)
+
+
+def _require_key(key: str) -> None:
+    _require_text(key)
     if "=" in key:
         raise InputError(f"{key}: expected a key, found one with '='", path=key)
 

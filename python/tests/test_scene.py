@@ -109,6 +109,10 @@ def test_a_missing_key_is_a_key_error_with_a_hint(scene):
     with pytest.raises(KeyError, match="materials.sandstone.cohesion"):
         scene["materials.sandstone.cohesin"]
     assert scene.get("materials.granite") is None
+    with pytest.raises(KeyError, match="stages.-1.steps"):
+        scene["stages.-1.steps"]
+    with pytest.raises(TypeError, match="a key of a scene is a text"):
+        scene[5]
 
 
 def test_a_mapping_is_a_scene_and_all_its_errors_come_at_once(scene):

@@ -187,7 +187,7 @@ void add_curves(const StrengthFit& fit, const std::vector<NamedEnvelope>& others
 
 std::string circle_label(const PeakPoint& point) {
     const std::string reason = bound_reason(point);
-    return fmt::format("{}: \u03c3\u2083 = {:.2f}, \u03c3\u2081 = {:#.3g} MPa{}", point.run, point.sigma_3 / mega,
+    return fmt::format("{}: \u03c3\u2083 = {:.2f} MPa, \u03c3\u2081 = {:#.3g} MPa{}", point.run, point.sigma_3 / mega,
                        point.sigma_1 / mega, reason.empty() ? "" : ", " + reason);
 }
 

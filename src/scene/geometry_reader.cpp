@@ -16,6 +16,7 @@
 #include "kluft/blocks/hexagon_lattice.hpp"
 #include "kluft/blocks/triangle_net.hpp"
 #include "kluft/core/diagnostics.hpp"
+#include "kluft/core/nearest_name.hpp"
 #include "kluft/core/place_text.hpp"
 #include "kluft/geometry/polygon.hpp"
 #include "kluft/geometry/predicates.hpp"
@@ -96,12 +97,17 @@ std::string box_text(const std::vector<Vec2>& points) {
     return fmt::format("from {} to {}", place_text(box.lower), place_text(box.upper));
 }
 
-/// "expected one of a, b, found both"; counts how many of the keys are given.
-bool gives_one_of(const SceneSection& section, const std::vector<std::string_view>& keys, ReadingContext& context) {
+/// "expected one of a, b, found both"; counts how many of the keys are given. A misspelt one is told as a key that is not known,
+/// and no second time here.
+bool gives_one_of(const SceneSection& section, const std::vector<std::string>& keys, ReadingContext& context) {
     std::vector<std::string> given;
-    for (const auto key : keys)
-        if (section.has(key)) given.emplace_back(key);
+    for (const auto& key : keys)
+        if (section.has(key)) given.push_back(key);
     if (given.size() == 1) return true;
+    const auto is_misspelt = [&](const std::string& key) {
+        return std::ranges::find(keys, key) == keys.end() && !nearest_name(key, keys).empty();
+    };
+    if (given.empty() && std::ranges::any_of(section.names(), is_misspelt)) return false;
     context.fail(section, {},
                  fmt::format("expected one of {}, found {}", fmt::join(keys, ", "),
                              given.empty() ? "none of them" : fmt::format("{}", fmt::join(given, " and "))));

@@ -454,6 +454,8 @@ TEST(SceneErrors, TheDomainIsOneOfThreeThings) {
                 ElementsAre(HasSubstr("geometry.fractures.0: expected one of trace, file, found trace and file")));
     EXPECT_THAT(errors_with({"geometry.fractures.0.trace=null"}),
                 ElementsAre(HasSubstr("geometry.fractures.0: expected one of trace, file, found none of them")));
+    EXPECT_THAT(errors_with({"geometry.fractures.0.trace=null", "geometry.fractures.0.trase=[[0, 0], [1, 1]]"}),
+                ElementsAre(HasSubstr("found 'trase'; did you mean 'trace'?")));
 }
 
 TEST(SceneErrors, AMissingGeometryFileIsReportedWhereItIsNamed) {
