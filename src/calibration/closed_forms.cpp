@@ -65,8 +65,7 @@ double lateral_pressure(const Scene& scene, std::size_t platen_stage) {
 std::optional<double> expected_peak(const Scene& scene, const Strength& strength) {
     const auto stage = first_platen_stage(scene);
     if (!stage || !(scene.loads.stages[*stage].motion->value > 0.0)) return std::nullopt;
-    const double sine = std::sin(strength.friction_angle);
-    return uniaxial_compressive_strength(strength) + lateral_pressure(scene, *stage) * (1.0 + sine) / (1.0 - sine);
+    return compressive_strength(strength, lateral_pressure(scene, *stage));
 }
 
 /// The residual of a target at x; nothing where theory knows none.

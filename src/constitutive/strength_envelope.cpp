@@ -49,9 +49,12 @@ FailureIndex failure_index_traction(double normal_traction, double shear_tractio
                     load_over_strength(normal_traction, capped(strength).strength.tensile_strength));
 }
 
-double uniaxial_compressive_strength(const Strength& strength) {
-    return 2.0 * strength.cohesion * std::cos(strength.friction_angle) / (1.0 - std::sin(strength.friction_angle));
+double compressive_strength(const Strength& strength, double sigma_3) {
+    const double sine = std::sin(strength.friction_angle);
+    return (2.0 * strength.cohesion * std::cos(strength.friction_angle) + sigma_3 * (1.0 + sine)) / (1.0 - sine);
 }
+
+double uniaxial_compressive_strength(const Strength& strength) { return compressive_strength(strength, 0.0); }
 
 const Strength& weaker(const Strength& a, const Strength& b) {
     const double of_a = uniaxial_compressive_strength(a);

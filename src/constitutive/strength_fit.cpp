@@ -6,6 +6,7 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <fmt/format.h>
 
+#include "kluft/constitutive/strength_envelope.hpp"
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/core/units.hpp"
 
@@ -138,8 +139,7 @@ std::string bound_reason(const PeakPoint& point) {
 }
 
 double Envelope::sigma_1(double sigma_3) const {
-    const double sine = std::sin(friction_angle);
-    return (2.0 * cohesion * std::cos(friction_angle) + sigma_3 * (1.0 + sine)) / (1.0 - sine);
+    return compressive_strength({.cohesion = cohesion, .friction_angle = friction_angle}, sigma_3);
 }
 
 double Envelope::shear_strength(double sigma) const { return cohesion + sigma * std::tan(friction_angle); }

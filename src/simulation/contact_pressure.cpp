@@ -36,11 +36,9 @@ PressedContact largest_contact_pressure(const Model& model, const State& state) 
         for (std::size_t i = 0; i < points.size(); ++i) {
             const ContactPoint& point = points[i];
             PressedPair& pair = pairs[std::minmax(point.block_a, point.block_b)];
-            const Block& block = model.system.blocks[point.block_a];
             pair.force -= point.weight * contact_traction(body, static_cast<int>(i), q).normal;
             pair.length += point.weight;
-            pair.moment += point.weight *
-                           (block.centroid + block.size * point.xi_a + displacement_at(q, point.block_a, point.xi_a));
+            pair.moment += point.weight * current_position(model.system, q, point.block_a, point.xi_a);
         }
     });
     PressedContact largest;

@@ -46,12 +46,11 @@ Overlaps pressed_overlaps(const LoadedBody& body, const Eigen::VectorXd& q) {
     for (const ContactPoint& point : body.placement->contacts) {
         const PointTraction traction = contact_traction(*body.laws, point, q);
         if (traction.normal >= 0.0) continue;
-        const Block& block = body.system->blocks[point.block_a];
         Touching& touching = overlaps[{point.block_a, point.block_b, point.normal.x(), point.normal.y()}];
         touching.length += point.weight;
         touching.pressing -= point.weight * traction.normal;
         touching.acting += point.weight * Vec2(traction.normal, traction.shear).norm();
-        touching.place = block.centroid + block.size * point.xi_a + displacement_at(q, point.block_a, point.xi_a);
+        touching.place = current_position(*body.system, q, point.block_a, point.xi_a);
     }
     return overlaps;
 }

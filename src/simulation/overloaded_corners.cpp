@@ -40,12 +40,6 @@ bool is_on_mapped_fracture(const BlockSystem& system, int block, int edge) {
     return interface >= 0 && system.interfaces[interface].fracture >= 0;
 }
 
-/// docs/theory.md, (36).
-double compressive_strength(const Strength& strength, double confining_stress) {
-    const double sine = std::sin(strength.friction_angle);
-    return uniaxial_compressive_strength(strength) + (1.0 + sine) / (1.0 - sine) * confining_stress;
-}
-
 /// Of each block: the largest of the potential cracks around it, also of those that have failed; of a block without any the largest in
 /// the body (Pa).
 std::vector<double> rock_strengths(const Model& model, double confining_stress) {
@@ -71,14 +65,12 @@ TouchingPairs pressed_along_fractures(const Model& model, const BodyState& state
         if (!is_on_mapped_fracture(model.system, point.key.block_a, point.key.edge_a)) continue;
         const PointTraction traction = contact_traction(model.laws, point, q);
         if (traction.normal >= 0.0) continue;
-        const Block& block = model.system.blocks[point.block_a];
         const double sign = point.block_a < point.block_b ? 1.0 : -1.0;
         Touching& touching = pairs[std::minmax(point.block_a, point.block_b)];
         touching.pressing -= point.weight * traction.normal;
         touching.length += point.weight;
         touching.force += sign * point.weight * (traction.normal * point.normal + traction.shear * point.tangent);
-        touching.moment +=
-            point.weight * (block.centroid + block.size * point.xi_a + displacement_at(q, point.block_a, point.xi_a));
+        touching.moment += point.weight * current_position(model.system, q, point.block_a, point.xi_a);
     }
     return pairs;
 }

@@ -46,6 +46,9 @@ struct CappedStrength {
 /// 2 c cos(phi)/(1 - sin(phi)) (Pa).
 [[nodiscard]] double uniaxial_compressive_strength(const Strength& strength);
 
+/// (2 c cos(phi) + sigma_3 (1 + sin(phi)))/(1 - sin(phi)) (Pa), Mohr-Coulomb's largest stress beside the confining one; docs/theory.md, (36).
+[[nodiscard]] double compressive_strength(const Strength& strength, double sigma_3);
+
 /// The strength with the smaller uniaxial compressive strength, on a tie that with the smaller tensile strength.
 [[nodiscard]] const Strength& weaker(const Strength& a, const Strength& b);
 

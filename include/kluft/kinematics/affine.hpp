@@ -86,4 +86,10 @@ inline void add_force(Eigen::VectorXd& forces, int b, const Vec2& xi, const Vec2
     return x + displacement_at(q, b, block_coordinates(system.blocks[b], x));
 }
 
+/// The same of the point of a block that has the block coordinates xi.
+[[nodiscard]] inline Vec2 current_position(const BlockSystem& system, const Eigen::VectorXd& q, int b, const Vec2& xi) {
+    const Block& block = system.blocks[b];
+    return block.centroid + block.size * xi + displacement_at(q, b, xi);
+}
+
 } // namespace kluft

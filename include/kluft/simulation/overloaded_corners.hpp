@@ -17,9 +17,8 @@ namespace kluft {
 /// potential cracks around the two blocks, of all in the body where there are none, under the smaller of axial and lateral stress.
 struct OverloadedCorners {
     int n = 0;
-    double share =
-        0.0;          ///< of the axial force on the body: what they carry in that tenth of its length where it is most
-    int block_a = -1; ///< of the pair with the largest axial force
+    double share = 0.0; ///< of the axial force, in that tenth of the body's length where they carry most
+    int block_a = -1;   ///< of the pair with the largest axial force
     int block_b = -1;
     double traction = 0.0;     ///< of that pair: mean normal traction (Pa, positive in compression)
     double strength = 0.0;     ///< of that pair: compressive strength (Pa)
