@@ -64,8 +64,13 @@ struct DrawArguments {
 
 [[nodiscard]] ExitCode draw(const DrawArguments& arguments);
 
-/// Writes report.html into directories of results.
-[[nodiscard]] ExitCode report(const std::vector<std::string>& directories);
+struct ReportArguments {
+    std::vector<std::string> directories;
+    std::string output; ///< .html, of a single directory; empty: report.html in each
+};
+
+/// Writes the pages of runs.
+[[nodiscard]] ExitCode report(const ReportArguments& arguments);
 
 struct ExportArguments {
     std::string directory;

@@ -215,14 +215,18 @@ void add_draw_command(CLI::App& app, Command& command) {
 }
 
 void add_report_command(CLI::App& app, Command& command) {
-    auto directories = std::make_shared<std::vector<std::string>>();
+    auto arguments = std::make_shared<kluft::ReportArguments>();
     CLI::App* sub = app.add_subcommand(
         "report", "Write report.html: the answer of a run, its curve and its body in one page to be handed on");
-    sub->add_option("directory", *directories, "Directories of results")->required();
+    sub->add_option("directory", arguments->directories, "Directories of results")->required();
+    sub->add_option("-o,--output", arguments->output, "The page of a single run, .html (default: DIR/report.html)")
+        ->check(flaw_of_name);
     sub->footer("kluft run writes it too, unless the scene says output.report: false. The page needs no network and no "
                 "other file.\n"
-                "Example: kluft report results/quickstart");
-    sub->callback([directories, &command] { command = [directories] { return kluft::report(*directories); }; });
+                "Examples:\n"
+                "  kluft report results/quickstart\n"
+                "  kluft report results/quickstart -o quickstart.html");
+    sub->callback([arguments, &command] { command = [arguments] { return kluft::report(*arguments); }; });
 }
 
 void add_export_command(CLI::App& app, Command& command) {

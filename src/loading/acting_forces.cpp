@@ -21,7 +21,7 @@ MeetingState meeting_state(ContactState state) {
     case ContactState::sliding:
         return MeetingState::sliding;
     case ContactState::locked:
-        return MeetingState::sticking;
+        return MeetingState::locked;
     }
     return MeetingState::open;
 }

@@ -15,8 +15,8 @@ std::string_view word_of(MeetingState state) {
     switch (state) {
     case MeetingState::bonded:
         return "bonded";
-    case MeetingState::sticking:
-        return "sticking";
+    case MeetingState::locked:
+        return "locked";
     case MeetingState::sliding:
         return "sliding";
     case MeetingState::open:

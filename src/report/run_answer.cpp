@@ -149,7 +149,7 @@ std::string moving_in_words(const std::vector<FallingBlock>& falling) {
     if (falling.size() > n_named) names += fmt::format(" and {} more", falling.size() - n_named);
     double share = 0.0;
     for (const FallingBlock& each : falling) share += each.share_of_body;
-    if (share > 0.0) names += fmt::format(", {:.2g} % of the body,", percent * share);
+    if (share > 0.0) names += fmt::format(", {:.3g} % of the body,", percent * share);
     return fmt::format("{} {} {} where the run has ended (stage {}, load factor {:.4g}).",
                        falling.size() == 1 ? "Block" : "Blocks", names, falling.size() == 1 ? "moves" : "move",
                        falling.front().stage, falling.front().load_factor);

@@ -14,7 +14,7 @@ namespace kluft {
 [[nodiscard]] PackedArrays shape_arrays(const BlockSystem& system);
 
 /// A state. `ux`, `uy` of the vertices (m); `xx`, `yy`, `xy` of the blocks (Pa, positive in compression); of the interfaces
-/// `flags` (0 open, 1 sliding, 2 sticking; + 4 bonded; + 8 failed in tension, + 16 in shear), `normal_traction` (Pa, positive in
+/// `flags` (0 open, 1 sliding, 2 locked; + 4 bonded; + 8 failed in tension, + 16 in shear), `normal_traction` (Pa, positive in
 /// compression), `shear_traction` (Pa), `gap`, `slip` (m).
 [[nodiscard]] PackedArrays state_arrays(const BlockSystem& system, const FieldRecord& fields);
 

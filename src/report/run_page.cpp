@@ -290,10 +290,9 @@ void write_run_page(const fs::path& directory, const Scene& scene, const Model& 
     write_file(directory / "report.html", run_page(directory, scene, model, cut));
 }
 
-fs::path write_run_page(const fs::path& directory) {
+void write_run_page(const fs::path& directory, const fs::path& file) {
     const RunOfResults run = run_of_results(directory);
-    write_run_page(directory, run.scene, run.built.model, run.built.cut);
-    return directory / "report.html";
+    write_file(file, run_page(directory, run.scene, run.built.model, run.built.cut));
 }
 
 } // namespace kluft

@@ -1523,6 +1523,12 @@ TEST_F(CommandLine, ReportIsWrittenByARunUnlessTheSceneSaysNotAndByItsOwnCommand
     EXPECT_EQ(result.code, 0) << result.err;
     EXPECT_EQ(result.out, "without/report.html\n");
     EXPECT_TRUE(fs::exists(path("without/report.html")));
+    const Result named = kluft({"report", "without", "-o", "page.html"});
+    EXPECT_EQ(named.out, "page.html\n") << named.err;
+    EXPECT_THAT(content_of(path("page.html")), HasSubstr("aria-label=\"Answer\""));
+    expect_refused({"report", "without", "-o", "page.txt"}, HasSubstr("--output: expected a name that ends in .html"));
+    expect_refused({"report", "without", "r", "-o", "page.html"},
+                   HasSubstr("expected one directory of results beside it"));
 }
 
 TEST_F(CommandLine, ReportRefusesWhatIsNoRunAndDamagedFiles) {

@@ -60,7 +60,7 @@ TEST(ActingForces, CarryAStackToItsSupport) {
     EXPECT_NEAR(sums.at(SupportKind::support).y(), 130e3, 1.0);
     EXPECT_EQ(sums.size(), 3U);
     for (const ContactForce& at : fields.contacts) {
-        EXPECT_EQ(at.state, MeetingState::sticking);
+        EXPECT_EQ(at.state, MeetingState::locked);
         EXPECT_NEAR((at.place_a - at.place_b).norm(), 0.0, 1e-5);
     }
 }

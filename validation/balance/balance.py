@@ -21,7 +21,7 @@ import numpy as np
 
 NUMBERS = {"contacts": ["block_a", "block_b", "x", "y", "length", "normal_x", "normal_y", "normal_traction", "shear_traction", "x_b", "y_b"],
            "supports": ["block", "fx", "fy", "x", "y"]}
-STATES = {"bonded", "sticking", "sliding", "open"}
+STATES = {"bonded", "locked", "sliding", "open"}
 LOADS = {"weight", "pressure", "force"}
 REACTIONS = {"platen", "support", "fixed"}
 HARMLESS = 0.1  # of the tolerance times the forces around: what may be left over on a block without loads

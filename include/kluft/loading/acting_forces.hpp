@@ -12,7 +12,7 @@ namespace kluft {
 struct LoadedBody;
 
 /// What holds two blocks together at a point, or does not.
-enum class MeetingState { bonded, sticking, sliding, open };
+enum class MeetingState { bonded, locked, sliding, open };
 
 /// A point where two blocks meet. It stands for a piece of the interface over which the traction is taken as even: the force on
 /// block a is length (normal_traction normal + shear_traction tangent), with the tangent = normal turned by +90 degrees, at

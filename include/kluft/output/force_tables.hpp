@@ -13,7 +13,7 @@ namespace kluft {
 /// One row per point where blocks meet, `block_a, block_b, x, y, length, normal_x, normal_y, normal_traction, shear_traction,
 /// state, law, x_b, y_b`: the current place of block a's point and of block b's (scene coordinates, m), the length that the
 /// point stands for (m), the normal from a to b, the tractions (Pa; normal positive in compression, shear positive where b
-/// has moved against a along the normal turned by +90 degrees), `bonded, sticking, sliding` or `open`, and the name of the
+/// has moved against a along the normal turned by +90 degrees), `bonded, locked, sliding` or `open`, and the name of the
 /// interface. Force on a: length (-normal_traction normal + shear_traction tangent) at (x, y); on b the opposite at (x_b, y_b).
 /// `law_names`: one per law. Numbers are read back exactly. Puts the table part by part: of a million blocks it has 1.2 GB.
 void put_contacts_csv(const BlockSystem& system, const std::vector<ContactForce>& contacts,

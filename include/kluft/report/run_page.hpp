@@ -26,7 +26,7 @@ struct RunPageOptions {
 void write_run_page(const std::filesystem::path& directory, const Scene& scene, const Model& model,
                     const CutReport& cut);
 
-/// The same of a run of which there is its directory only: the scene is that saved with its last state. Returns the file.
-std::filesystem::path write_run_page(const std::filesystem::path& directory);
+/// The page of a run of which there is its directory only, into a file: the scene is that saved with its last state.
+void write_run_page(const std::filesystem::path& directory, const std::filesystem::path& file);
 
 } // namespace kluft

@@ -444,7 +444,7 @@ class BodyView {
   describeJoint(i) {
     const { flags, normal_traction, shear_traction, gap, slip } = this.state;
     const { names } = this.run;
-    const motion = ["open", "sliding", "sticking"][flags[i] & 3];
+    const motion = ["open", "sliding", "locked"][flags[i] & 3];
     const failed = ["", ", failed in tension", ", failed in shear"][flags[i] >> 3] ?? "";
     const fracture = names.fractures[this.shape.fracture[i]];
     return [`Joint ${i}${fracture ? ` of ${fracture}` : ""}`, [

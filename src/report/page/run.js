@@ -7,7 +7,7 @@ const columnNames = {
   lateral_stress: ["lateral stress", 1e-6, "MPa"], axial_strain: ["axial strain", percent, "%"],
   lateral_strain: ["lateral strain", percent, "%"], volumetric_strain: ["volumetric strain", percent, "%"],
   strength_factor: ["strengths divided by", 1, ""], cracks_tension: ["cracks in tension", 1, ""], cracks_shear: ["cracks in shear", 1, ""],
-  open: ["open joints", 1, ""], sliding: ["sliding joints", 1, ""], locked: ["sticking joints", 1, ""],
+  open: ["open joints", 1, ""], sliding: ["sliding joints", 1, ""], locked: ["locked joints", 1, ""],
   net_broken: ["net that has failed", percent, "%"], open_close_iterations: ["linear solves", 1, ""], balance_error: ["balance error", 1, ""],
   unbalanced_ratio: ["unbalanced ratio", 1, ""], jumps: ["jumps", 1, ""], kinetic_ratio: ["kinetic over strain energy", 1, ""],
   energy_error: ["energy error", percent, "%"], load: ["stage + load factor", 1, ""], step: ["load step", 1, ""],
