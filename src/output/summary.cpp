@@ -141,17 +141,19 @@ Rows rows_up_to(const Rows& rows, double limit, double sense) {
     return elastic;
 }
 
-/// The rows up to the peak until more than 1 % of what is closed slides.
-Rows rows_without_sliding(const Rows& rows, double sense) {
+/// The rows up to the peak until a bond fails or more than 1 % of what is closed slides.
+Rows rows_before_failure(const Rows& rows, double sense) {
+    const auto n_cracks = [](const StepRecord& row) { return row.cracks_tension + row.cracks_shear; };
     const auto peak =
         std::ranges::max_element(rows, {}, [&](const StepRecord& row) { return sense * row.differential_stress; });
-    return {rows.begin(), std::find_if(rows.begin(), peak + 1, [](const StepRecord& row) {
-                return row.sliding > sliding_share * (row.sliding + row.locked);
+    return {rows.begin(), std::find_if(rows.begin(), peak + 1, [&](const StepRecord& row) {
+                return n_cracks(row) > n_cracks(rows.front()) ||
+                       row.sliding > sliding_share * (row.sliding + row.locked);
             })};
 }
 
 Rows elastic_rows(const Rows& equilibria, const Rows& rows, int platen_stage, double sense) {
-    Rows elastic = rows_without_sliding(rows, sense);
+    Rows elastic = rows_before_failure(rows, sense);
     if (elastic.size() >= least_elastic_rows) return elastic;
     double peak = -std::numeric_limits<double>::infinity();
     for (const StepRecord& row : balanced_rows(platen_rows(equilibria, platen_stage)))

@@ -176,6 +176,20 @@ TEST(Summary, ElasticConstantsEndWhereMoreThanAHundredthOfWhatIsClosedSlides) {
     EXPECT_NEAR(*curve_numbers(rows, rows, 1, Plane::stress).poissons_ratio, 0.3, 1e-12);
 }
 
+// Loose cells behind the first crack: a body that presses its sides out by more than it is pressed together.
+TEST(Summary, ElasticConstantsEndWhereTheFirstBondFails) {
+    Rows rows = triangle(100e6, 0.3);
+    for (auto& each : rows) {
+        each.cracks_tension = 2; // from before the platen moved
+        if (each.axial_strain <= 0.005) continue;
+        each.cracks_shear = 1;
+        each.lateral_strain = -1.5 * each.axial_strain;
+    }
+    const auto numbers = curve_numbers(rows, rows, 1, Plane::stress);
+    EXPECT_NEAR(*numbers.poissons_ratio, 0.3, 1e-12);
+    EXPECT_NEAR(*numbers.youngs_modulus, 100e6, 1e-3);
+}
+
 TEST(Summary, HasNoYoungsModulusWherePoissonsRatioIsImpossible) {
     const Rows rows = triangle(100e6, 0.7);
     const auto numbers = curve_numbers(rows, rows, 1, Plane::stress);
