@@ -65,7 +65,7 @@ bool given_times_spacing(const InterfaceType& type) {
 }
 
 [[noreturn]] void reject(const InterfaceType& type, const std::string& reason) {
-    throw InputError(fmt::format("interfaces/{}: {}", type.name, reason));
+    throw InputError(fmt::format("interfaces.{}: {}", type.name, reason));
 }
 
 void require_one_way(const InterfaceType& type) {

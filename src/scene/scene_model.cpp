@@ -138,6 +138,15 @@ void blame_coarse_net(const GeometrySpec& geometry, const InputError& error) {
                     geometry.places.spacing, spacing, width, error.what()));
 }
 
+/// The blocks of the scene's body.
+CutBody cut_body(const Scene& scene) {
+    try {
+        return cut_blocks(scene.geometry);
+    } catch (const InputError& error) {
+        throw located(error, scene.places);
+    }
+}
+
 } // namespace
 
 ModelInput model_input(const Scene& scene) {
@@ -156,13 +165,13 @@ ModelInput model_input(const Scene& scene) {
 }
 
 SceneModel build_scene_model(const Scene& scene) {
-    CutBody body = cut_blocks(scene.geometry);
+    CutBody body = cut_body(scene);
     SceneModel built;
     try {
         built.model = build_model(std::move(body.system), model_input(scene));
     } catch (const InputError& error) {
         blame_coarse_net(scene.geometry, error);
-        throw;
+        throw located(error, scene.places);
     }
     built.cut = std::move(body.report);
     for (const auto& warnings : {lost_fractures(scene.geometry, built.cut), fine_details(scene.geometry, built.cut),

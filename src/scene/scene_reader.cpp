@@ -258,6 +258,7 @@ Scene read_scene_text(std::string_view text, const std::vector<std::string>& ove
     errors.throw_if_any();
     scene.name = file.stem().string();
     scene.warnings = std::move(context.warnings);
+    scene.places = key_places(root, sources);
     scene.text = write_scene_tree(root, sources);
     require_memory();
     return scene;

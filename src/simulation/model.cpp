@@ -68,11 +68,30 @@ InterfaceLaw resolve_law(const InterfaceType& type, const InterfaceStiffness& st
     return law;
 }
 
+/// The key of a point force in the first stage that has it.
+std::string key_of_force(const LoadProgram& loads, int force) {
+    const auto stage =
+        std::ranges::find_if(loads.stages, [&](const Stage& each) { return each.forces.contains(force); });
+    return fmt::format("stages.{}.forces.{}", stage - loads.stages.begin(),
+                       loads.forces[static_cast<std::size_t>(force)].name);
+}
+
 std::vector<MaterialPoint> points_of_forces(const BlockSystem& system, const LoadProgram& loads) {
     std::vector<MaterialPoint> points;
-    for (const PointForce& force : loads.forces)
-        points.push_back(material_point(system, force.block, force.point, "stages: the force '" + force.name + "'"));
+    for (const PointForce& force : loads.forces) {
+        const std::string key = key_of_force(loads, static_cast<int>(points.size()));
+        points.push_back(material_point(system, force.block, force.point, key));
+    }
     return points;
+}
+
+/// Does what refuses values of a section of the scene by their keys alone.
+template <class Do> auto in_section(const std::string& section, const Do& refuses) {
+    try {
+        return refuses();
+    } catch (const InputError& error) {
+        throw InputError(section + "." + error.what());
+    }
 }
 
 void refuse_moved_fixed_blocks(const BlockSystem& system, const LoadProgram& loads) {
@@ -129,8 +148,10 @@ ElasticModuli moduli_of_blocks(const Material& material, const ModelInput& input
         if (stiffness_from_ratio(net)) {
             const double ratio = net.stiffness_ratio.value_or(default_stiffness_ratio(body_net.kind));
             const double own_ratio = ratio * youngs_modulus_of_ratio(input) / material.youngs_modulus;
-            return block_moduli(material.youngs_modulus, material.poissons_ratio, input.plane, own_ratio,
-                                net.shear_ratio.value_or(default_shear_ratio), body_net);
+            return in_section("interfaces." + net.name, [&] {
+                return block_moduli(material.youngs_modulus, material.poissons_ratio, input.plane, own_ratio,
+                                    net.shear_ratio.value_or(default_shear_ratio), body_net);
+            });
         }
     }
     return plane_moduli(material.youngs_modulus, material.poissons_ratio, input.plane);
@@ -144,14 +165,12 @@ bool has_rigid_net(const ModelInput& input) {
 InterfaceStiffness net_of_rigid_blocks(const InterfaceStiffness& given, const BlockSystem& system,
                                        const ModelInput& input, const Net& net) {
     const Material& rock = rock_of_rigid_net(system, input);
-    try {
+    return in_section("materials." + rock.name, [&] {
         if (stiffness_from_ratio(input.interface_types[input.tessellation_type]))
             return rigid_lattice_stiffness(rock.youngs_modulus, rock.poissons_ratio, input.plane, net);
         return with_compliance_of_blocks(given, plane_moduli(rock.youngs_modulus, rock.poissons_ratio, input.plane),
                                          input.plane, net);
-    } catch (const InputError& error) {
-        throw InputError("materials." + rock.name + "." + error.what());
-    }
+    });
 }
 
 /// The stiffness of an interface type in the body, which is the one that the scene gives but in a net of rigid blocks.
@@ -162,8 +181,10 @@ InterfaceStiffness stiffness_in_body(int type, const InterfaceStiffness& given, 
     if (!has_rigid_net(input)) return given;
     if (type == input.tessellation_type) return net_of_rigid_blocks(given, system, input, net);
     if (net.kind != NetKind::triangles) return given;
-    return with_compliance_of_blocks(given, moduli_of_blocks(rock_of_rigid_net(system, input), input, net), input.plane,
-                                     net);
+    const Material& rock = rock_of_rigid_net(system, input);
+    const ElasticModuli blocks = moduli_of_blocks(rock, input, net);
+    return in_section("materials." + rock.name,
+                      [&] { return with_compliance_of_blocks(given, blocks, input.plane, net); });
 }
 
 /// What all laws of a model have in common.
@@ -217,7 +238,7 @@ void add_law_of_broken_net(const LawBench& bench, Model& model) {
         model.fracture_law[input.tessellation_type] = add_law(broken, given, stiffness, bench, model);
     } catch (const InputError& error) {
         throw InputError("interfaces." + input.interface_types[broken].name +
-                         ", broken edges of the tessellation: " + error.what());
+                         ": broken edges of the tessellation: " + error.what());
     }
 }
 

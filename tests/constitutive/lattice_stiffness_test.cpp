@@ -247,7 +247,7 @@ TEST(ResolveStiffness, RejectsWhatIsMissingOrContradictory) {
     };
     EXPECT_THAT(error({.stiffness_ratio = 10.0}, 0.0, 1e9), testing::HasSubstr("reference_spacing"));
     EXPECT_THAT(error({.stiffness_ratio = 10.0}, 0.05, 0.0), testing::HasSubstr("youngs_modulus"));
-    EXPECT_THAT(error({.normal_stiffness_times_spacing = 1e6}, 0.0, 1e9), testing::HasSubstr("interfaces/joint"));
+    EXPECT_THAT(error({.normal_stiffness_times_spacing = 1e6}, 0.0, 1e9), testing::HasSubstr("interfaces.joint"));
     EXPECT_THAT(error({.normal_stiffness = 1e9, .stiffness_ratio = 10.0}, 0.05, 1e9), testing::HasSubstr("several"));
     EXPECT_THAT(error({.shear_stiffness = 1e9}, 0.05, 1e9), testing::HasSubstr("needs normal_stiffness"));
     EXPECT_THAT(error({.normal_stiffness = 1e9, .shear_stiffness = 1e9, .shear_ratio = 0.5}, 0.05, 1e9),

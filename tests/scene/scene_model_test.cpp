@@ -40,6 +40,31 @@ std::string refusal_of(const std::vector<std::string>& overrides) {
     return messages.empty() ? "" : messages.front();
 }
 
+// What only the body shows to be wrong has its place in the scene, too: that of the key, of the mapping that lacks it, or the override.
+TEST(SceneModel, WhatTheBodyShowsToBeWrongHasItsPlace) {
+    EXPECT_THAT(
+        refusal_of({"interfaces.bond.stiffness_ratio=0.5"}),
+        HasSubstr("--set interfaces.bond.stiffness_ratio=0.5: interfaces.bond.stiffness_ratio: 0.5 is too small"));
+    EXPECT_THAT(refusal_of({"stages.0.forces={pull: {point: [5, 5], force: [1, 0]}}"}),
+                HasSubstr("stages.0.forces.pull: expected a point in a block, found (5, 5)"));
+    const std::vector<std::string> rigid{"analysis.kinematics=rigid", "geometry.tessellation.triangles=null",
+                                         "geometry.tessellation.hexagons={spacing: 0.2}"};
+    EXPECT_THAT(refusal_of(rigid), AllOf(HasSubstr("scene.yaml:2:59: materials.rock.poissons_ratio: 0.25 is too large"),
+                                         HasSubstr("\n  materials: {rock: {youngs_modulus: 5 GPa")));
+    try {
+        (void)build_scene_model(read_scene_text(body_of_triangles, rigid, "scene.yaml"));
+        FAIL() << "accepted";
+    } catch (const InputError& error) {
+        ASSERT_EQ(error.problems().size(), 1);
+        const InputProblem& problem = error.problems().front();
+        EXPECT_EQ(problem.path, "materials.rock.poissons_ratio");
+        EXPECT_EQ(problem.file, "scene.yaml");
+        EXPECT_EQ(problem.line, 2);
+        EXPECT_EQ(problem.column, 59);
+        EXPECT_THAT(problem.what, testing::StartsWith("0.25 is too large"));
+    }
+}
+
 TEST(SceneModel, WarnsOfFracturesThatAreNotLeft) {
     EXPECT_THAT(warnings_of({}), IsEmpty());
     EXPECT_THAT(warnings_of({"geometry.fractures.0.trace=[[0.3, 1], [0.306, 1]]"}),

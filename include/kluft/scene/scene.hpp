@@ -8,6 +8,7 @@
 #include "kluft/constitutive/material.hpp"
 #include "kluft/kinematics/rigid.hpp"
 #include "kluft/loading/load_program.hpp"
+#include "kluft/scene/key_places.hpp"
 #include "kluft/simulation/histories.hpp"
 #include "kluft/simulation/simulation_options.hpp"
 
@@ -42,6 +43,7 @@ struct Scene {
     ExplicitOptions explicit_options; ///< of use for the explicit integrator only
     OutputOptions output;
     std::vector<std::string> warnings; ///< what the reader noticed and accepted
+    std::vector<KeyPlace> places;      ///< of its keys, for messages
     std::string text; ///< YAML with all overrides and extended scenes in it; reading it gives the same scene
 };
 
