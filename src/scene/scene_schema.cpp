@@ -64,11 +64,12 @@ std::vector<KeyRule> analysis_rules() {
          .doc =
              "How a block moves and deforms: `affine` is six unknowns with a uniform strain, `rigid` three (two "
              "displacements and a rotation of any size). In a tessellated body the interfaces of the tessellation take "
-             "over the compliance of rigid blocks, so that the body has the same E and nu with both kinds: 1/k_n' = "
-             "1/k_n + d/2K, 1/(k_n' + k_s') = 1/(k_n + k_s) + d/4G. Where k_s' would not be positive (`poissons_ratio` "
+             "over the compliance of rigid blocks, so that the body has the same E and nu with both kinds, of "
+             "triangles within 1 to 5 % (docs/theory.md, section 5); of hexagons 1/k_n' = 1/k_n + d/2K, 1/(k_n' + "
+             "k_s') = 1/(k_n + k_s) + d/4G. Where k_s' would not be positive (of hexagons with `poissons_ratio` "
              "of 1/4 or more in plane strain, 1/3 in plane stress, or of more than that on soft interfaces) the "
-             "scene is refused, as are blocks of different moduli. Mapped fractures and given blocks keep their "
-             "stiffness. Block stresses, also "
+             "scene is refused, as are blocks of different moduli. Of hexagons mapped fractures keep their stiffness, "
+             "as given blocks do. Block stresses, also "
              "for the potential cracks, follow from the forces on the block. For `integrator: implicit` only."},
         {.path = "analysis.gravity",
          .type = KeyType::gravity,

@@ -58,6 +58,13 @@ std::string push_in_words(const Model& model, const Loads& loads, const Vec3& mo
         direction_in_words(along), 1e-3 * std::abs(force), pressures_in_words(model, loads));
 }
 
+/// Of loads that balance but for what the edges of a side do not quite join.
+std::string unheld_in_words(const Vec3& motion) {
+    return fmt::format("nothing holds the body along {}, and what little its loads differ by there is more than "
+                       "solver.balance: a support that is `pinned` holds it",
+                       direction_in_words(motion));
+}
+
 bool moves_as_a_whole(const BlockSystem& system, const std::vector<MovingBlock>& moving) {
     std::set<int> blocks;
     for (const MovingBlock& each : moving) blocks.insert(each.block);
@@ -112,7 +119,7 @@ std::vector<std::string> likely_causes(const Model& model, const LoadsAt& at, co
             causes.push_back(push_in_words(model, loads, motion, force));
         else if (as_a_whole)
             causes.push_back(is_turn(motion) ? std::string("nothing holds the body against a turn")
-                                             : "nothing holds the body along " + direction_in_words(motion));
+                                             : unheld_in_words(motion));
     }
     if (const auto soft = soft_body(model, loads, body)) causes.push_back(*soft);
     return causes;

@@ -95,7 +95,7 @@ std::string description(const Model& model, const CornerContact& corner) {
     const int other = corner.held == corner.block_a ? corner.block_b : corner.block_a;
     return fmt::format(
         "a corner holds block {}: its contact with block {}, {:.2g} mm long at about {}, carries {:.3g} kN/m, "
-        "{:.2g} % of what acts on it",
+        "{:.3g} % of what acts on it",
         block_label(model.system, corner.held), block_label(model.system, other), 1e3 * corner.length,
         place_text(corner.place), 1e-3 * corner.force, 100.0 * corner.share);
 }

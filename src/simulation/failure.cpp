@@ -88,7 +88,7 @@ std::string description(const Model& model, const std::vector<MovingBlock>& movi
     if (all.size() > 1) text += fmt::format(", and {} more", all.size() - 1);
     double area = 0.0;
     for (const int b : all) area += model.system.blocks[b].area;
-    return text + fmt::format(", {:.2g} % of the body", 100.0 * area / area_of(model.system));
+    return text + fmt::format(", {:.3g} % of the body", 100.0 * area / area_of(model.system));
 }
 
 std::string description(const Model& model, const Failure& failure) {
