@@ -314,6 +314,21 @@ private:
         });
     }
 
+    /// Whether two neighbours have an interface and no overlap along any: one has turned about a common vertex, or has gone past the
+    /// other. Nothing but this vertex may then keep them apart.
+    [[nodiscard]] bool faces_are_apart(int owner, int target, bool swapped) const {
+        const std::vector<Edge>& edges = system_.blocks[owner].edges;
+        const auto is_shared = [&](const Edge& edge) {
+            if (edge.interface < 0) return false;
+            const Interface& interface = system_.interfaces[edge.interface];
+            return interface.block_a == target || interface.block_b == target;
+        };
+        const auto overlaps = [&](const std::pair<int, int>& pair) {
+            return is_shared(edges[swapped ? pair.second : pair.first]);
+        };
+        return std::ranges::any_of(edges, is_shared) && std::ranges::none_of(overlapping_, overlaps);
+    }
+
     /// Vertices of `owner` (the start of each of its edges) against the edges of `target`; `swapped` if the owner is the
     /// higher block.
     void append_vertices(int owner, std::span<const CurrentEdge> leaving_edges, int target,
@@ -336,7 +351,8 @@ private:
         if (is_carried_around_corner(leaving, edge, edges, swapped)) return;
         const Edge& target_edge = reference(target, edge.edge);
         const int vertex = reference(owner, leaving.edge).start;
-        if (vertex == target_edge.start || vertex == target_edge.end) return;
+        const bool is_common = vertex == target_edge.start || vertex == target_edge.end;
+        if (is_common && !faces_are_apart(owner, target, swapped)) return;
         if (overlap_covers(leaving.edge, edge.edge, swapped) || overlap_covers(leaving.arriving, edge.edge, swapped))
             return;
         ContactPoint point = point_between(owner, leaving, 0.0, target, edge, s);

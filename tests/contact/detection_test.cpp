@@ -105,6 +105,23 @@ TEST(ContactDetection, TiltedBlocksTouchAlongTheBisectorOfTheirEdges) {
                   {-std::sin(half), std::cos(half)});
 }
 
+// A wedge of 60 degrees, 1, rolls on a floor, 0, about its tip, which is a vertex of both as they were cut; a third block lies beyond it.
+// At 30 degrees its face still faces the floor. At 60 degrees neither of its faces does, and the tip alone keeps it above the floor, into
+// which it has sunk by 0.02 m.
+TEST(ContactDetection, ATipThatTheFloorHasTooIsKeptAboveItWhereNoFacesFaceEachOther) {
+    CutRectangle body(3.0, 2.0, {{{-1, 1}, {4, 1}}, {{2, 1}, Vec2(2, 1) + 3.0 * Vec2(-0.5, std::sqrt(0.75))}});
+    ASSERT_EQ(body.system.n_blocks(), 3);
+    ASSERT_LT(body.system.blocks[0].centroid.y(), 1.0);
+    ASSERT_LT(body.system.blocks[1].centroid.x(), body.system.blocks[2].centroid.x());
+    body.move(2, {5, 5});
+    body.move(1, {-0.05, -0.02}, -std::numbers::pi / 6.0, {2, 1});
+    EXPECT_EQ(body.points().size(), 3);
+    body.move(1, {-0.05, -0.02}, -std::numbers::pi / 3.0, {2, 1});
+    expect_points(body, {{1.95, 0.98}}, {0.2 * std::min(2.0, body.system.blocks[1].size)}, {-0.02}, {0, -1});
+    body.move(1, {-0.05, 0.2}, -std::numbers::pi / 3.0, {2, 1});
+    EXPECT_TRUE(body.points().empty());
+}
+
 TEST(ContactDetection, PointsAreKeptUpToTheReachAndNoFurther) {
     auto body = two_blocks();
     body.move(1, {0, 0.999 * reach});
