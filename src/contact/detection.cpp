@@ -19,8 +19,6 @@ const double facing_cosine = -std::sqrt(0.5);
 constexpr double shortest_overlap = 1e-6;
 /// Deeper than this part of it, they are in contact only if what overlaps is inside one of the blocks.
 constexpr double doubtful_penetration = 0.01;
-/// A corner this part of the smaller block away from a vertex that it shared has left it: more than blocks displace elastically.
-constexpr double left_vertex = 1e-3;
 /// Two points of a fracture that were nearer than this part of its edge were one point; what is between is round-off.
 constexpr double same_point = 1e-12;
 /// Deeper than this part of the smaller block, edges that were no neighbours are not in contact ...
@@ -34,9 +32,8 @@ constexpr double vertex_weight = 0.2;
 /// An edge that can touch another block, in its current position.
 struct CurrentEdge {
     int edge = 0;
-    int arriving = 0;      ///< the edge before it in its loop
-    bool is_loose = false; ///< neither this edge nor the one before it is bonded
-    Vec2 before;           ///< where that one starts
+    int arriving = 0; ///< the edge before it in its loop
+    Vec2 before;      ///< where that one starts
     Vec2 start, end;
     Vec2 direction;
     double length = 0.0;
@@ -66,9 +63,8 @@ bool is_bonded(const ContactSurfaces& surfaces, const Edge& edge) {
     return edge.interface >= 0 && surfaces.bonded[edge.interface];
 }
 
-CurrentEdge current_edge(int edge, int arriving, bool is_loose, const Vec2& before, const Vec2& start,
-                         const Vec2& end) {
-    CurrentEdge current{edge, arriving, is_loose, before, start, end, Vec2::Zero(), (end - start).norm()};
+CurrentEdge current_edge(int edge, int arriving, const Vec2& before, const Vec2& start, const Vec2& end) {
+    CurrentEdge current{edge, arriving, before, start, end, Vec2::Zero(), (end - start).norm()};
     current.direction = (end - start) / current.length;
     return current;
 }
@@ -91,8 +87,7 @@ void append_surface(const BlockSystem& system, const ContactSurfaces& contact_su
             surface.separated = surface.separated || block.edges[e].interface >= 0;
             const int before = e > first ? e - 1 : last - 1;
             const int after = e + 1 < last ? e + 1 : first;
-            const bool is_loose = touches(block.edges[before]);
-            surfaces.edges.push_back(current_edge(e, before, is_loose, corners[before], corners[e], corners[after]));
+            surfaces.edges.push_back(current_edge(e, before, corners[before], corners[e], corners[after]));
         }
     }
     surface.last = surfaces.edges.size();
@@ -138,7 +133,6 @@ public:
         deepest_ = -deepest_contact(system_, a, b, false);
         deepest_own_ = -deepest_contact(system_, a, b, true);
         doubtful_ = -doubtful_penetration * smaller;
-        left_ = left_vertex * smaller;
         overlapping_.clear();
         for (const auto& edge_a : edges_a) {
             for (const auto& edge_b : edges_b) append_overlap(a, edge_a, b, edge_b);
@@ -320,23 +314,19 @@ private:
         });
     }
 
-    /// Whether a corner may touch an edge that ended in the same vertex of the body as cut, which is now at `end`. Of neighbours, where
-    /// their faces do not overlap any more: nothing but this corner may then keep them apart. Of others, which had a block between
-    /// them, where the corner is loose and has left that end: what was between may have been squeezed out.
-    [[nodiscard]] bool may_meet(int owner, const CurrentEdge& leaving, int target, const Vec2& end,
-                                bool swapped) const {
+    /// Whether two neighbours have an interface and no overlap along any: one has turned about a common vertex, or has gone past the
+    /// other. Nothing but this vertex may then keep them apart.
+    [[nodiscard]] bool faces_are_apart(int owner, int target, bool swapped) const {
         const std::vector<Edge>& edges = system_.blocks[owner].edges;
         const auto is_shared = [&](const Edge& edge) {
             if (edge.interface < 0) return false;
             const Interface& interface = system_.interfaces[edge.interface];
             return interface.block_a == target || interface.block_b == target;
         };
-        if (std::ranges::any_of(edges, is_shared)) {
-            return std::ranges::none_of(overlapping_, [&](const std::pair<int, int>& pair) {
-                return is_shared(edges[swapped ? pair.second : pair.first]);
-            });
-        }
-        return leaving.is_loose && (leaving.start - end).norm() > left_;
+        const auto overlaps = [&](const std::pair<int, int>& pair) {
+            return is_shared(edges[swapped ? pair.second : pair.first]);
+        };
+        return std::ranges::any_of(edges, is_shared) && std::ranges::none_of(overlapping_, overlaps);
     }
 
     /// Vertices of `owner` (the start of each of its edges) against the edges of `target`; `swapped` if the owner is the
@@ -361,9 +351,8 @@ private:
         if (is_carried_around_corner(leaving, edge, edges, swapped)) return;
         const Edge& target_edge = reference(target, edge.edge);
         const int vertex = reference(owner, leaving.edge).start;
-        const bool starts_there = vertex == target_edge.start;
-        const bool is_common = starts_there || vertex == target_edge.end;
-        if (is_common && !may_meet(owner, leaving, target, starts_there ? edge.start : edge.end, swapped)) return;
+        const bool is_common = vertex == target_edge.start || vertex == target_edge.end;
+        if (is_common && !faces_are_apart(owner, target, swapped)) return;
         if (overlap_covers(leaving.edge, edge.edge, swapped) || overlap_covers(leaving.arriving, edge.edge, swapped))
             return;
         ContactPoint point = point_between(owner, leaving, 0.0, target, edge, s);
@@ -382,7 +371,6 @@ private:
     double deepest_ = 0.0;
     double deepest_own_ = 0.0; ///< of the two faces of an interface
     double doubtful_ = 0.0;
-    double left_ = 0.0;                            ///< how far a corner that has left a common vertex is from it
     std::vector<std::pair<int, int>> overlapping_; ///< (edge of a, edge of b) of the present pair
 };
 

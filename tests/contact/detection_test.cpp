@@ -122,60 +122,6 @@ TEST(ContactDetection, ATipThatTheFloorHasTooIsKeptAboveItWhereNoFacesFaceEachOt
     EXPECT_TRUE(body.points().empty());
 }
 
-/// A floor, 0, under a wedge between two other blocks, whose tip is a vertex of all four as they were cut.
-struct WedgeOnAVertex : CutRectangle {
-    WedgeOnAVertex() : CutRectangle(3.0, 2.0, {{{-1, 1}, {4, 1}}, {{0.9, 2.1}, {1.5, 1}, {2.1, 2.1}}}) {
-        for (int b = 1; b < system.n_blocks(); ++b) {
-            if (std::abs(system.blocks[b].centroid.x() - 1.5) < 0.1)
-                wedge = b;
-            else
-                beside.push_back(b);
-        }
-    }
-    [[nodiscard]] std::vector<ContactPoint> points_on_floor() const {
-        auto all = points();
-        std::erase_if(
-            all, [&](const ContactPoint& p) { return std::minmax(p.block_a, p.block_b) != std::minmax(0, wedge); });
-        return all;
-    }
-    int wedge = -1;
-    std::vector<int> beside;
-};
-
-// The blocks beside the tip have been squeezed out: it comes down on the floor, into which it has sunk by 0.02 m.
-TEST(ContactDetection, ALooseTipThatHasLeftTheVertexOfTheFloorTouchesIt) {
-    WedgeOnAVertex body;
-    ASSERT_EQ(body.beside.size(), 2);
-    EXPECT_TRUE(body.points_on_floor().empty()); // as cut
-    for (const int b : body.beside) body.move(b, {100.0 * b, 0.0});
-    EXPECT_TRUE(body.points_on_floor().empty());
-    body.move(body.wedge, {0.0, -5e-4 * body.system.blocks[body.wedge].size}); // as blocks displace elastically
-    EXPECT_TRUE(body.points_on_floor().empty());
-    body.move(body.wedge, {0.05, -0.02});
-    const auto points = body.points_on_floor();
-    ASSERT_EQ(points.size(), 1);
-    EXPECT_NEAR(body.gap(points[0]), -0.02, 1e-12);
-    EXPECT_LT((points[0].normal - Vec2(0, -1)).norm(), 1e-12);
-    EXPECT_LT((body.place_on_a(points[0]) - Vec2(1.55, 0.98)).norm(), 1e-12);
-}
-
-// A tip that is bonded to what lies beside it, on either side, is carried by that.
-TEST(ContactDetection, ABondedTipThatHasLeftAVertexIsNoContact) {
-    for (const int side : {0, 1}) {
-        WedgeOnAVertex body;
-        const int kept = body.beside[side];
-        const auto& interfaces = body.system.interfaces;
-        for (std::size_t i = 0; i < interfaces.size(); ++i) {
-            const auto pair = std::minmax(interfaces[i].block_a, interfaces[i].block_b);
-            if (pair == std::minmax(body.wedge, kept)) body.surfaces.bonded[i] = 1;
-        }
-        body.move(body.beside[1 - side], {100.0, 0.0});
-        body.move(kept, {0.05, -0.02});
-        body.move(body.wedge, {0.05, -0.02});
-        EXPECT_TRUE(body.points_on_floor().empty()) << side;
-    }
-}
-
 TEST(ContactDetection, PointsAreKeptUpToTheReachAndNoFurther) {
     auto body = two_blocks();
     body.move(1, {0, 0.999 * reach});
