@@ -161,11 +161,16 @@ public:
 private:
     [[nodiscard]] const Edge& reference(int block, int edge) const { return system_.blocks[block].edges[edge]; }
 
+    /// Whether an edge of another block is one side of an interface with this block.
+    [[nodiscard]] bool is_shared_with(int block, const Edge& edge) const {
+        if (edge.interface < 0) return false;
+        const Interface& interface = system_.interfaces[edge.interface];
+        return interface.block_a == block || interface.block_b == block;
+    }
+
     [[nodiscard]] bool bonded(int a, int b) const {
         return std::ranges::any_of(system_.blocks[a].edges, [&](const Edge& edge) {
-            if (!is_bonded(surfaces_, edge)) return false;
-            const Interface& interface = system_.interfaces[edge.interface];
-            return interface.block_a == b || interface.block_b == b;
+            return is_bonded(surfaces_, edge) && is_shared_with(b, edge);
         });
     }
 
@@ -318,11 +323,7 @@ private:
     /// other. Nothing but this vertex may then keep them apart.
     [[nodiscard]] bool faces_are_apart(int owner, int target, bool swapped) const {
         const std::vector<Edge>& edges = system_.blocks[owner].edges;
-        const auto is_shared = [&](const Edge& edge) {
-            if (edge.interface < 0) return false;
-            const Interface& interface = system_.interfaces[edge.interface];
-            return interface.block_a == target || interface.block_b == target;
-        };
+        const auto is_shared = [&](const Edge& edge) { return is_shared_with(target, edge); };
         const auto overlaps = [&](const std::pair<int, int>& pair) {
             return is_shared(edges[swapped ? pair.second : pair.first]);
         };

@@ -129,11 +129,9 @@ std::string CornerWatch::warning() const {
     if (corners_.share <= large_share) return {};
     std::string text = fmt::format(
         "corners between mapped fractures bear more than rock does, since what is smaller than a cell of the net "
-        "cannot break off: "
-        "at {} under more than {} times the rock's compressive strength they carry {:.0f} % of the axial force (blocks "
-        "{} "
-        "and {} at "
-        "about {} press each other with {:.4g} MPa, rock of {:.3g} MPa). The largest axial stress is too high by that",
+        "cannot break off: at {} under more than {} times the rock's compressive strength they carry {:.0f} % of the "
+        "axial force (blocks {} and {} at about {} press each other with {:.4g} MPa, rock of {:.3g} MPa). The largest "
+        "axial stress is too high by that",
         corners_.n == 1 ? "one contact" : fmt::format("{} contacts", corners_.n), overload, 100.0 * corners_.share,
         block_label(model_.system, corners_.block_a), block_label(model_.system, corners_.block_b),
         place_text(corners_.place), 1e-6 * corners_.traction, 1e-6 * corners_.strength);
