@@ -5,9 +5,8 @@
 #include <limits>
 #include <utility>
 
-#include <Eigen/SVD>
-
 #include "kluft/blocks/block_cutter.hpp"
+#include "kluft/core/dense_decompositions.hpp"
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/scene/scene_model.hpp"
 #include "kluft/scene/scene_reader.hpp"
@@ -208,8 +207,8 @@ ElasticFit fit_elastic(const Calibration& calibration, ElasticTargets& targets, 
     fit.evaluations = 1 + result.evaluations;
     if (influencing.empty() || static_cast<Eigen::Index>(influencing.size()) > n_targets) return fit;
     const Eigen::MatrixXd jacobian = result.residuals.jacobian.topRows(n_targets);
-    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(Eigen::MatrixXd(jacobian(Eigen::all, influencing)));
-    fit.is_determined = svd.singularValues().minCoeff() > least_singular * svd.singularValues().maxCoeff();
+    const Eigen::VectorXd singular = singular_values(jacobian(Eigen::all, influencing)).values;
+    fit.is_determined = singular.minCoeff() > least_singular * singular.maxCoeff();
     return fit;
 }
 

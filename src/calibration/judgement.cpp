@@ -2,8 +2,7 @@
 
 #include <cmath>
 
-#include <Eigen/SVD>
-
+#include "kluft/core/dense_decompositions.hpp"
 #include "kluft/studies/ensemble.hpp"
 
 namespace kluft {
@@ -30,11 +29,11 @@ std::vector<char> determined(const Eigen::MatrixXd& jacobian) {
     if (n == 0) return result;
     Eigen::MatrixXd square = Eigen::MatrixXd::Zero(std::max(n, jacobian.rows()), n);
     square.topRows(jacobian.rows()) = jacobian;
-    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(square, Eigen::ComputeFullV);
+    const SingularValues singular = singular_values(square);
     for (Eigen::Index i = 0; i < n; ++i) {
-        if (svd.singularValues()[i] > indifferent * svd.singularValues()[0]) continue;
+        if (singular.values[i] > indifferent * singular.values[0]) continue;
         for (Eigen::Index p = 0; p < n; ++p)
-            if (std::abs(svd.matrixV()(p, i)) > much) result[static_cast<std::size_t>(p)] = 0;
+            if (std::abs(singular.v(p, i)) > much) result[static_cast<std::size_t>(p)] = 0;
     }
     return result;
 }
@@ -44,14 +43,14 @@ std::vector<std::optional<double>> confidence_of(const Eigen::MatrixXd& jacobian
                                                  const std::vector<RowGroup>& groups) {
     if (copies.size() < 2) return {};
     const Eigen::VectorXd weights = root_weights(groups, jacobian.rows());
-    Eigen::JacobiSVD<Eigen::MatrixXd> svd(weights.asDiagonal() * jacobian, Eigen::ComputeThinU | Eigen::ComputeThinV);
-    svd.setThreshold(indifferent);
+    const SingularValues singular = singular_values(weights.asDiagonal() * jacobian);
+    const Eigen::MatrixXd inverse = pseudo_inverse(singular, singular.rank(indifferent));
     const auto n_copies = static_cast<int>(copies.size());
     Eigen::VectorXd mean = Eigen::VectorXd::Zero(jacobian.rows());
     for (const Eigen::VectorXd& each : copies) mean += each / n_copies;
     Eigen::VectorXd squares = Eigen::VectorXd::Zero(jacobian.cols());
     for (const Eigen::VectorXd& each : copies) {
-        const Eigen::VectorXd step = svd.solve(weights.cwiseProduct(each - mean));
+        const Eigen::VectorXd step = inverse * weights.cwiseProduct(each - mean);
         squares += step.cwiseProduct(step);
     }
     const auto known = determined(jacobian);

@@ -6,7 +6,8 @@
 #include <utility>
 
 #include <Eigen/Cholesky>
-#include <Eigen/SVD>
+
+#include "kluft/core/dense_decompositions.hpp"
 
 namespace kluft {
 
@@ -203,12 +204,12 @@ private:
         Eigen::MatrixXd moves = Eigen::MatrixXd::Zero(std::max(n, static_cast<Eigen::Index>(chosen.size())), n);
         for (std::size_t i = 0; i < chosen.size(); ++i)
             moves.row(static_cast<Eigen::Index>(i)) = (chosen[i].x - best_x())(moving_).transpose() / radius_;
-        const Eigen::JacobiSVD<Eigen::MatrixXd> svd(moves, Eigen::ComputeFullV);
+        const SingularValues spread = singular_values(moves);
         std::vector<Eigen::VectorXd> places;
         for (Eigen::Index i = 0; i < n && static_cast<int>(places.size()) < n_left(); ++i) {
-            if (svd.singularValues()[i] >= spread_wanted) continue;
-            const Eigen::VectorXd there = inside(svd.matrixV().col(i));
-            const Eigen::VectorXd back = inside(-svd.matrixV().col(i));
+            if (spread.values[i] >= spread_wanted) continue;
+            const Eigen::VectorXd there = inside(spread.v.col(i));
+            const Eigen::VectorXd back = inside(-spread.v.col(i));
             const bool is_there_longer = (there - best_x()).norm() >= (back - best_x()).norm();
             const Eigen::VectorXd& longer = is_there_longer ? there : back;
             const Eigen::VectorXd& shorter = is_there_longer ? back : there;

@@ -7,9 +7,9 @@
 #include <span>
 #include <utility>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
+#include "kluft/core/dense_decompositions.hpp"
 #include "kluft/core/disjoint_sets.hpp"
 
 namespace kluft {
@@ -322,11 +322,11 @@ std::vector<FreeTranslation> free_translations(const LoadedBody& body, const Eig
     Mat2 resistance = Mat2::Zero();
     for (const PrescribedDisplacement& row : body.loads->constraints.rows())
         resistance += row.direction * row.direction.transpose();
-    const Eigen::SelfAdjointEigenSolver<Mat2> eigen(resistance);
+    const SymmetricEigen eigen = symmetric_eigen(resistance);
     std::vector<FreeTranslation> free;
     for (int i = 0; i < 2; ++i) {
-        if (eigen.eigenvalues()[i] > not_held * eigen.eigenvalues()[1]) continue;
-        const Vec2 direction = eigen.eigenvectors().col(i);
+        if (eigen.values[i] > not_held * eigen.values[1]) continue;
+        const Vec2 direction = eigen.vectors.col(i);
         free.push_back({direction, loads_along(body, q, direction)});
     }
     return free;

@@ -4,8 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include <Eigen/SVD>
-
+#include "kluft/core/dense_decompositions.hpp"
 #include "kluft/kinematics/affine.hpp"
 
 namespace kluft {
@@ -23,13 +22,12 @@ constexpr double fading_cosine = 0.17364817766693036;
 template <int n>
 void decompose(const Eigen::MatrixXd& matrix, Eigen::Matrix<double, n, n>& projector,
                Eigen::Matrix<double, n, Eigen::Dynamic>& inverse) {
-    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(matrix, Eigen::ComputeThinU | Eigen::ComputeFullV);
-    const auto& singular = svd.singularValues();
-    const auto rank = (singular.array() > rank_tolerance * singular[0]).count();
-    const Eigen::MatrixXd range = svd.matrixV().leftCols(rank);
+    const SingularValues singular = singular_values(matrix);
+    const Eigen::Index rank = singular.rank(rank_tolerance);
+    const Eigen::MatrixXd range = singular.v.leftCols(rank);
     projector.setZero(); // exactly, where nothing is left free
     if (rank < n) projector = Eigen::Matrix<double, n, n>::Identity() - range * range.transpose();
-    inverse = range * singular.head(rank).cwiseInverse().asDiagonal() * svd.matrixU().leftCols(rank).transpose();
+    inverse = pseudo_inverse(singular, rank);
 }
 
 } // namespace

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 
 #include "kluft/contact/bonds.hpp"
+#include "kluft/core/dense_decompositions.hpp"
 
 namespace kluft {
 
@@ -31,8 +31,7 @@ double largest_eigenvalue(const Eigen::MatrixXd& stiffness, const Eigen::MatrixX
     const auto lower = factor.matrixL();
     const Eigen::MatrixXd half = lower.solve(stiffness);
     const Eigen::MatrixXd reduced = lower.solve(half.transpose());
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(reduced, Eigen::EigenvaluesOnly);
-    return std::max(0.0, eigen.eigenvalues().maxCoeff());
+    return std::max(0.0, symmetric_eigenvalues(reduced).maxCoeff());
 }
 
 double density_of(const Model& model, const Block& block) { return model.densities[block.material]; }

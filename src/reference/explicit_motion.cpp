@@ -4,9 +4,9 @@
 #include <cmath>
 #include <utility>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
+#include "kluft/core/dense_decompositions.hpp"
 #include "kluft/loading/stored_energy.hpp"
 #include "kluft/reference/block_inertia.hpp"
 
@@ -17,14 +17,13 @@ namespace {
 /// Pseudo-inverse of P M P, whose eigenvalues in free directions are no less than the smallest of M.
 Mat6 free_mobility(const Mat6& projector, const Mat6& mass) {
     const Mat6 reduced = projector * mass * projector;
-    const Eigen::SelfAdjointEigenSolver<Mat6> eigen(0.5 * (reduced + reduced.transpose()));
-    const double least =
-        0.5 * Eigen::SelfAdjointEigenSolver<Mat6>(mass, Eigen::EigenvaluesOnly).eigenvalues().minCoeff();
+    const SymmetricEigen eigen = symmetric_eigen(0.5 * (reduced + reduced.transpose()));
+    const double least = 0.5 * symmetric_eigenvalues(mass).minCoeff();
     Mat6 mobility = Mat6::Zero();
     for (int i = 0; i < 6; ++i) {
-        const double inertia = eigen.eigenvalues()[i];
+        const double inertia = eigen.values[i];
         if (inertia <= least) continue;
-        mobility += eigen.eigenvectors().col(i) * eigen.eigenvectors().col(i).transpose() / inertia;
+        mobility += eigen.vectors.col(i) * eigen.vectors.col(i).transpose() / inertia;
     }
     return mobility;
 }

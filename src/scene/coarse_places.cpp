@@ -21,7 +21,7 @@ namespace kluft {
 
 namespace {
 
-constexpr std::size_t most_told = 3;       ///< holes
+constexpr std::size_t most_holes_told = 3; ///< holes
 constexpr double of_radius = 0.15;         ///< of a circle as large: 13 % too late with triangles (docs/accuracy.md)
 constexpr double rounding = 1e-9;          ///< of a length: of two that are as short the first is told
 constexpr double fewest_in_a_bridge = 4.0; ///< cells: 13 % too strong with triangles (docs/accuracy.md)
@@ -47,7 +47,7 @@ std::vector<std::string> coarse_openings(const GeometrySpec& geometry) {
         const double radius = std::sqrt(std::abs(signed_area(geometry.holes[k])) / std::numbers::pi);
         const double spacing = spacing_at(geometry.holes[k].front(), grading_of(geometry).openings, geometry);
         if (spacing <= of_radius * radius) continue;
-        if (warnings.size() == most_told) {
+        if (warnings.size() == most_holes_told) {
             warnings.push_back(fmt::format("{}: and more holes like this", geometry.places.domain));
             break;
         }

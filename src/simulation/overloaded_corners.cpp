@@ -23,12 +23,12 @@ namespace {
 /// Of the compressive strength: what a wedge of 60 degrees bears on its blunted tip, 2.1 with phi = 25 degrees and no confining
 /// stress (docs/theory.md, (32c)).
 constexpr double overload = 2.0;
-constexpr double large_share = 0.05;  ///< of the axial force
-constexpr double short_contact = 0.5; ///< of the spacing of a hexagon as large as the smaller block
-constexpr int n_sections = 10;        ///< along the body, in each of which the axial forces of corners are summed
+constexpr double large_axial_share = 0.05; ///< of the axial force
+constexpr double short_corner = 0.5;       ///< of the spacing of a hexagon as large as the smaller block
+constexpr int n_sections = 10;             ///< along the body, in each of which the axial forces of corners are summed
 
 /// Sums over the contact points of two blocks along mapped fractures.
-struct Touching {
+struct MappedTouching {
     double pressing = 0.0;      ///< N/m, in compression
     double length = 0.0;        ///< of what is pressed (m)
     Vec2 force = Vec2::Zero();  ///< on the second block (N/m)
@@ -56,7 +56,7 @@ std::vector<double> rock_strengths(const Model& model, double confining_stress) 
     return strengths;
 }
 
-using TouchingPairs = std::map<std::pair<int, int>, Touching>;
+using TouchingPairs = std::map<std::pair<int, int>, MappedTouching>;
 
 TouchingPairs pressed_along_fractures(const Model& model, const BodyState& state) {
     const Eigen::VectorXd& q = state.displacement;
@@ -66,7 +66,7 @@ TouchingPairs pressed_along_fractures(const Model& model, const BodyState& state
         const PointTraction traction = contact_traction(model.laws, point, q);
         if (traction.normal >= 0.0) continue;
         const double sign = point.block_a < point.block_b ? 1.0 : -1.0;
-        Touching& touching = pairs[std::minmax(point.block_a, point.block_b)];
+        MappedTouching& touching = pairs[std::minmax(point.block_a, point.block_b)];
         touching.pressing -= point.weight * traction.normal;
         touching.length += point.weight;
         touching.force += sign * point.weight * (traction.normal * point.normal + traction.shear * point.tangent);
@@ -91,7 +91,7 @@ OverloadedCorners overloaded_corners(const Model& model, const Gauges& gauges, c
         const double strength = std::min(strengths[a], strengths[b]);
         const double traction = touching.pressing / touching.length;
         const double size = std::min(spacing_of(system.blocks[a]), spacing_of(system.blocks[b]));
-        if (traction <= overload * strength || touching.length > short_contact * size) continue;
+        if (traction <= overload * strength || touching.length > short_corner * size) continue;
         ++corners.n;
         const Vec2 place = touching.moment / touching.length;
         const double force = std::abs(gauges.axial_normal.dot(touching.force));
@@ -122,11 +122,11 @@ void CornerWatch::step(const StepRecord& record, const State& state) {
     if (!record.balanced || stress < largest_stress_ || model_.loads.stages[record.stage].strength_reduction) return;
     largest_stress_ = stress;
     corners_ = overloaded_corners(model_, gauges_, record, state);
-    if (corners_.share <= large_share) stress_before_ = stress;
+    if (corners_.share <= large_axial_share) stress_before_ = stress;
 }
 
 std::string CornerWatch::warning() const {
-    if (corners_.share <= large_share) return {};
+    if (corners_.share <= large_axial_share) return {};
     std::string text = fmt::format(
         "corners between mapped fractures bear more than rock does, since what is smaller than a cell of the net "
         "cannot break off: at {} under more than {} times the rock's compressive strength they carry {:.0f} % of the "

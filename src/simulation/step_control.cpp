@@ -8,7 +8,7 @@ namespace kluft {
 namespace {
 
 constexpr double safety = 0.9;
-constexpr double largest_growth = 2.0;
+constexpr double largest_step_growth = 2.0;
 constexpr double least_growth = 0.2;
 
 } // namespace
@@ -18,7 +18,7 @@ bool is_accurate(double size, const StepError& error, double accuracy) {
 }
 
 double next_step_size(double size, const StepError& error, double accuracy) {
-    double growth = largest_growth;
+    double growth = largest_step_growth;
     if (error.path > 0.0) growth = std::min(growth, safety * accuracy * size / error.path);
     if (error.chord > 0.0) growth = std::min(growth, safety * std::sqrt(accuracy / error.chord));
     return size * std::max(growth, least_growth);

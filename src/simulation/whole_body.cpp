@@ -1,6 +1,6 @@
 #include "kluft/simulation/whole_body.hpp"
 
-#include <Eigen/Eigenvalues>
+#include "kluft/core/dense_decompositions.hpp"
 
 namespace kluft {
 
@@ -34,11 +34,10 @@ Mat3 resistance(const BlockSystem& system, const Constraints& constraints) {
 }
 
 std::vector<Vec3> free_motions(const Mat3& resistance) {
-    const Eigen::SelfAdjointEigenSolver<Mat3> eigen(resistance);
+    const SymmetricEigen eigen = symmetric_eigen(resistance);
     std::vector<Vec3> motions;
     for (int i = 0; i < 3; ++i) {
-        if (eigen.eigenvalues()[i] <= not_held * eigen.eigenvalues().maxCoeff())
-            motions.emplace_back(eigen.eigenvectors().col(i));
+        if (eigen.values[i] <= not_held * eigen.values.maxCoeff()) motions.emplace_back(eigen.vectors.col(i));
     }
     return motions;
 }

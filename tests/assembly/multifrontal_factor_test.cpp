@@ -13,7 +13,6 @@
 #include <limits>
 #include <random>
 
-#include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/wait.h>

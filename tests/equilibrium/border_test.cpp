@@ -1,8 +1,8 @@
 #include "kluft/equilibrium/border.hpp"
 
-#include <Eigen/LU>
 #include <gtest/gtest.h>
 
+#include "support/dense_solution.hpp"
 #include "support/pressed_body.hpp"
 
 namespace kluft {
@@ -92,7 +92,7 @@ TEST(Border, EliminationSolvesTheDenseBorderedSystem) {
         Eigen::VectorXd right = Eigen::VectorXd::Zero(n + m + 1);
         right.head(n) = b;
         right[n + m] = missing;
-        const Eigen::VectorXd expected = Eigen::FullPivLU<Eigen::MatrixXd>(system).solve(right).head(n);
+        const Eigen::VectorXd expected = dense_solution(system, right).head(n);
 
         Eigen::MatrixXd projector(n, n);
         for (Eigen::Index i = 0; i < n; ++i) {
@@ -102,9 +102,8 @@ TEST(Border, EliminationSolvesTheDenseBorderedSystem) {
         }
         const Eigen::MatrixXd free = projector * dense(tangent) * projector +
                                      dense(tangent).norm() * (Eigen::MatrixXd::Identity(n, n) - projector);
-        const Eigen::PartialPivLU<Eigen::MatrixXd> factor(free);
-        const Eigen::VectorXd response = factor.solve(border.column);
-        Eigen::VectorXd increment = factor.solve(projector * b);
+        const Eigen::VectorXd response = dense_solution(free, border.column);
+        Eigen::VectorXd increment = dense_solution(free, projector * b);
         border.add_to(missing, response, increment);
         EXPECT_LT((increment - expected).norm(), 1e-8 * expected.norm());
     }

@@ -2,10 +2,9 @@
 
 #include <algorithm>
 
-#include <Eigen/LU>
-#include <Eigen/QR>
 #include <gtest/gtest.h>
 
+#include "support/dense_solution.hpp"
 #include "support/pressed_body.hpp"
 
 namespace kluft {
@@ -59,14 +58,14 @@ Eigen::VectorXd dense_increment(Start& start) {
     system(n + m, n + m) = DenseRows::scale; // without a travelling platen its travel is zero
     if (problem.loads.platen_force) {
         const PlatenForce& platen = *problem.loads.platen_force;
-        const Eigen::VectorXd v = rows.matrix.completeOrthogonalDecomposition().solve(rows.rates);
+        const Eigen::VectorXd v = least_norm_solution(rows.matrix, rows.rates);
         Eigen::VectorXd widening;
         start.evaluator.coordinates().reduce(platen.widening, widening);
         system.block(n + m, 0, 1, n) = v.transpose() * tangent - platen.stress * widening.transpose();
         system(n + m, n + m) = 0.0;
         right[n + m] = platen.at(start.q) - v.dot(start.residual.forces);
     }
-    return Eigen::FullPivLU<Eigen::MatrixXd>(system).solve(right).head(n);
+    return dense_solution(system, right).head(n);
 }
 
 TEST(NewtonIncrement, SolvesTheDenseSystemWithLagrangeMultipliers) {
@@ -193,7 +192,7 @@ TEST(NewtonIncrement, DampingAddsAMassToTheTangent) {
         Eigen::MatrixXd damped = start.tangent();
         for (int b = 0; b < start.body.system.n_blocks(); ++b)
             damped.block<6, 6>(6 * b, 6 * b) += point.damping * mass_matrix(start.body.system.blocks[b], 0.0);
-        const Eigen::VectorXd expected = damped.partialPivLu().solve(-start.residual.forces);
+        const Eigen::VectorXd expected = dense_solution(damped, -start.residual.forces);
         EXPECT_LT((newton.increment() - expected).norm(), 1e-6 * expected.norm()) << reuse;
     }
 }

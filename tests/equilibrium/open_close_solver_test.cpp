@@ -5,12 +5,12 @@
 #include <limits>
 #include <string>
 
-#include <Eigen/LU>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "kluft/equilibrium/left_over.hpp"
 #include "kluft/loading/boundary_geometry.hpp"
+#include "support/dense_solution.hpp"
 #include "support/pressed_body.hpp"
 
 namespace kluft {
@@ -61,7 +61,7 @@ Eigen::VectorXd dense_equilibrium(const OwnedProblem& problem, Eigen::VectorXd q
         } else {
             system(n + m, n + m) = 1.0;
         }
-        const Eigen::VectorXd step = Eigen::PartialPivLU<Eigen::MatrixXd>(system).solve(right);
+        const Eigen::VectorXd step = dense_solution(system, right);
         q += step.head(n);
         multipliers += step.segment(n, m);
         travel += step[n + m];
