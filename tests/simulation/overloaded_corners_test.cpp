@@ -74,7 +74,7 @@ private:
     CornerWatch watch_;
 };
 
-Specimen pressed(const Scene& scene) {
+Specimen pressed_specimen(const Scene& scene) {
     Specimen specimen;
     specimen.model = build_scene_model(scene).model;
     specimen.state = initial_state(specimen.model);
@@ -95,7 +95,7 @@ double stress_before(const std::string& warning) {
 
 // Jaeger's plane of weakness has 1 MPa tan 60/tan(60 - 30) = 3 MPa.
 TEST(OverloadedCorners, OfFracturesThatCrossExactlyAreWarnedOf) {
-    const Specimen specimen = pressed(crossing_fractures("5 MPa", 30.0));
+    const Specimen specimen = pressed_specimen(crossing_fractures("5 MPa", 30.0));
     EXPECT_GT(specimen.last.axial_stress, 1.5 * 3e6);
     const OverloadedCorners corners =
         overloaded_corners(specimen.model, make_gauges(specimen.model), specimen.last, specimen.state);
@@ -116,14 +116,14 @@ TEST(OverloadedCorners, OfFracturesThatCrossExactlyAreWarnedOf) {
 
 // Slip along the weaker one carries its tip away from that of the other wedge: 1 MPa tan 60/tan(60 - 27) = 2.667 MPa.
 TEST(OverloadedCorners, OfFracturesOfDifferentFrictionDoNotMeet) {
-    const Specimen specimen = pressed(crossing_fractures("5 MPa", 27.0));
+    const Specimen specimen = pressed_specimen(crossing_fractures("5 MPa", 27.0));
     EXPECT_NEAR(specimen.last.axial_stress, 1e6 * std::tan(60.0 * one_degree) / std::tan(33.0 * one_degree), 0.02e6);
     EXPECT_THAT(specimen.warning, IsEmpty());
 }
 
 // What the body carried before the platen moved is no strength.
 TEST(OverloadedCorners, AreFoundAfterALargerPressure) {
-    const Specimen specimen = pressed(crossing_fractures(
+    const Specimen specimen = pressed_specimen(crossing_fractures(
         "5 MPa", 30.0,
         {"stages=[{pressure: {left: 10 MPa, right: 10 MPa, top: 10 MPa}}, {pressure: {left: 1 MPa, right: 1 MPa, top: "
          "1 MPa}}, {strain: {boundary: top, value: 0.5 %}, steps: 25}]"}));
@@ -133,7 +133,7 @@ TEST(OverloadedCorners, AreFoundAfterALargerPressure) {
 
 // Outside the region of the net blocks break even less: the rock has the strength of the net's.
 TEST(OverloadedCorners, AreFoundOutsideTheNet) {
-    const Specimen specimen = pressed(
+    const Specimen specimen = pressed_specimen(
         crossing_fractures("5 MPa", 30.0, {"geometry.tessellation.region=[[0, 0], [0.1, 0], [0.1, 0.06], [0, 0.06]]"}));
     EXPECT_GT(specimen.last.axial_stress, 1.5 * 3e6);
     EXPECT_THAT(specimen.warning, HasSubstr("carry"));
@@ -141,13 +141,13 @@ TEST(OverloadedCorners, AreFoundOutsideTheNet) {
 
 // Deep rock is pressed by more than its uniaxial strength, and no platen asks for a strength.
 TEST(OverloadedCorners, AreNotSoughtWithoutAPlaten) {
-    const Specimen specimen =
-        pressed(crossing_fractures("1 kPa", 30.0, {"stages=[{pressure: {left: 1 MPa, right: 1 MPa, top: 1 MPa}}]"}));
+    const Specimen specimen = pressed_specimen(
+        crossing_fractures("1 kPa", 30.0, {"stages=[{pressure: {left: 1 MPa, right: 1 MPa, top: 1 MPa}}]"}));
     EXPECT_THAT(specimen.warning, IsEmpty());
 }
 
 TEST(OverloadedCorners, StrongRockBearsThem) {
-    const Specimen specimen = pressed(crossing_fractures("100 MPa", 30.0));
+    const Specimen specimen = pressed_specimen(crossing_fractures("100 MPa", 30.0));
     EXPECT_GT(specimen.last.axial_stress, 1.5 * 3e6);
     EXPECT_EQ(overloaded_corners(specimen.model, make_gauges(specimen.model), specimen.last, specimen.state).n, 0);
     EXPECT_THAT(specimen.warning, IsEmpty());

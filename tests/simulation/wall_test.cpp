@@ -11,7 +11,7 @@ namespace kluft {
 namespace {
 
 constexpr double density = 2500.0;
-constexpr double gravity = 9.81;
+constexpr double standard_gravity = 9.81;
 
 /// Running bond of bricks of 2 m by 1 m on a fixed base, with half bricks at the ends of every other course; k_n = k_s =
 /// `stiffness` E/m.
@@ -41,8 +41,8 @@ geometry:
   blocks:
 {}stages: [{{name: weight, gravity: [{:.17g}, {:.17g}], steps: {}}}]
 )",
-                       density, stiffness * 1e9, stiffness * 1e9, blocks, gravity * std::sin(angle),
-                       -gravity * std::cos(angle), steps);
+                       density, stiffness * 1e9, stiffness * 1e9, blocks, standard_gravity * std::sin(angle),
+                       -standard_gravity * std::cos(angle), steps);
 }
 
 // An equilibrium lies near by, and is found without following a motion, for joints soft and stiff, a turned wall, and
