@@ -11,11 +11,12 @@ void evaluate(Equations& equations, const Eigen::VectorXd& q, double& seconds, R
 
 void evaluate(Equations& equations, const Eigen::VectorXd& q, double& seconds, Iterate& at) {
     evaluate(equations, q, seconds, at.residual);
-    equations.problem.body.loads->constraints.correction(q, at.prescribed);
+    const double roundoff = equations.evaluator.coordinates().roundoff(q);
+    equations.problem.body.loads->constraints.correction(q, at.prescribed, roundoff);
     at.free_forces = at.residual.forces;
     keep_free_part(equations.problem, equations.border, q, at.free_forces);
     at.norm = at.free_forces.norm();
-    at.held = at.prescribed.lpNorm<Eigen::Infinity>() <= equations.evaluator.coordinates().roundoff(q);
+    at.held = at.prescribed.lpNorm<Eigen::Infinity>() <= roundoff;
     if (at.held) at.prescribed.setZero();
 }
 

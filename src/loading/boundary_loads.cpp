@@ -92,7 +92,7 @@ Constraints::Constraints(std::vector<PrescribedDisplacement> rows, const BlockSy
     }
 }
 
-void Constraints::correction(const Eigen::VectorXd& q, Eigen::VectorXd& dq) const {
+void Constraints::correction(const Eigen::VectorXd& q, Eigen::VectorXd& dq, double roundoff) const {
     const bool rigid = kinematics_ == Kinematics::rigid;
     dq.setZero(rigid ? q.size() / n_block_unknowns * n_rigid_unknowns : q.size());
     const auto missing_at = [&](const PrescribedDisplacement& row) {
@@ -111,6 +111,7 @@ void Constraints::correction(const Eigen::VectorXd& q, Eigen::VectorXd& dq) cons
             const auto& row = rows_[c.rows[i]];
             missing[i] = missing_at(row) + row.rate * travel;
         }
+        if (missing.lpNorm<Eigen::Infinity>() <= roundoff) continue;
         if (rigid) {
             dq.segment<n_rigid_unknowns>(n_rigid_unknowns * c.block) = c.rigid_inverse * missing;
         } else {

@@ -185,6 +185,30 @@ void append_beyond(const BlockSystem& system, const Platen& platen, std::vector<
     }
 }
 
+/// Along the tangent, as cut: where a platen ends because the body goes on in the plane of its face; infinite where it does not.
+struct PlatenEnds {
+    double low = -std::numeric_limits<double>::infinity();
+    double high = std::numeric_limits<double>::infinity();
+};
+
+PlatenEnds ends_of(const BlockSystem& system, const Platen& platen, const std::vector<PlatenPoint>& points) {
+    const auto along = [&](const PlatenPoint& point) { return platen.tangent().dot(system.vertices[point.vertex]); };
+    PlatenEnds laid{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+    for (const PlatenPoint& point : points) {
+        if (point.boundary != platen.boundary || !point.is_laid) continue;
+        laid.low = std::min(laid.low, along(point));
+        laid.high = std::max(laid.high, along(point));
+    }
+    const double distance = in_plane * (system.upper - system.lower).maxCoeff();
+    PlatenEnds ends;
+    for (const PlatenPoint& point : points) {
+        if (point.boundary != platen.boundary || point.contact != PlatenContact::beyond) continue;
+        if (along(point) <= laid.low + distance) ends.low = laid.low + distance;
+        if (along(point) >= laid.high - distance) ends.high = laid.high - distance;
+    }
+    return ends;
+}
+
 } // namespace
 
 std::vector<PlatenPoint> laid_points(const BlockSystem& system, const Platen& platen, const Eigen::VectorXd& q) {
@@ -230,10 +254,13 @@ void add_near_points(const BlockSystem& system, const Eigen::VectorXd& q, double
     const double travel = platen_travel(loads, q);
     for (const Platen& platen : loads.platens) {
         const double face = platen.face + platen.moved + platen.rate * travel;
+        const PlatenEnds ends = ends_of(system, platen, loads.platen_points);
         for (int b = 0; b < system.n_blocks(); ++b) {
             if (system.blocks[b].fixed) continue;
             for (const Edge& edge : system.blocks[b].edges) {
                 const Vec2& x = system.vertices[edge.start];
+                const double along = platen.tangent().dot(x);
+                if (along <= ends.low || along >= ends.high) continue; // of a part of the body that it is not laid on
                 PlatenPoint point{.boundary = platen.boundary,
                                   .block = b,
                                   .vertex = edge.start,

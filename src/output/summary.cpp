@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <limits>
 #include <string>
 #include <utility>
@@ -26,6 +27,7 @@ constexpr double sliding_share = 0.01; // of what is closed: from there on a bod
 constexpr std::size_t least_elastic_rows = 3;
 constexpr double elastic_share = 0.3;       // of the peak differential stress, where there are fewer
 constexpr double ratio_slack = 1e-3;        // of Poisson's ratio, for round-off
+constexpr double same_lateral = 1e-6;       // of the lateral stress: it has not changed
 constexpr double fall_after_peak = 0.01;    // of the peak
 constexpr double fall_out_of_balance = 0.5; // the same, of rows that are not balanced
 constexpr double residual_share = 0.1;      // of the strain
@@ -50,6 +52,14 @@ Rows loaded_rows(const Rows& rows, std::optional<int> platen_stage) {
     return loaded;
 }
 
+/// Of the first stage that moves a platen.
+double first_sense(const Rows& rows, int platen_stage) {
+    const auto last = std::find_if(rows.rbegin(), rows.rend(), [&](const StepRecord& row) {
+        return row.stage == platen_stage && row.axial_strain != 0.0;
+    });
+    return last != rows.rend() && last->axial_strain < 0.0 ? -1.0 : 1.0;
+}
+
 /// Balanced rows up to the first one in which the net may be locked.
 Rows rows_with_bonds(const Rows& balanced) {
     const auto loose =
@@ -63,7 +73,13 @@ std::optional<StepRecord> largest_row(const Rows& rows, double sense) {
     return largest == rows.end() ? std::nullopt : std::optional(*largest);
 }
 
-/// While the platen stays or goes on: a stress that falls because the platen goes back says nothing of a strength. Rows out of balance
+bool has_lateral_stress_of(const StepRecord& row, const StepRecord& other) {
+    const double larger = std::max(std::abs(row.lateral_stress), std::abs(other.lateral_stress));
+    return std::abs(row.lateral_stress - other.lateral_stress) <= same_lateral * larger;
+}
+
+/// While the platen stays or goes on: a stress that falls because the platen goes back says nothing of a strength; nor does what it loses
+/// because the sides are pressed less, of an elastic body nu' <= 1 of it. Rows out of balance
 /// count too: what a splinter leaves over in these, the stress is not known by, but a body that has lost most of it does not carry the
 /// peak.
 bool falls_after_peak(const Rows& rows, const StepRecord& peak, double sense) {
@@ -76,7 +92,9 @@ bool falls_after_peak(const Rows& rows, const StepRecord& peak, double sense) {
         return row.balanced && row.stage >= peak.stage && sense * row.axial_stress >= sense * peak.axial_stress;
     });
     return std::any_of(at, rows.end(), [&](const StepRecord& row) {
-        return sense * row.axial_stress <= (row.balanced ? fallen : collapsed) && sense * row.axial_strain >= gone_back;
+        const double relieved = std::max(0.0, sense * (peak.lateral_stress - row.lateral_stress));
+        return sense * row.axial_stress + relieved <= (row.balanced ? fallen : collapsed) &&
+               sense * row.axial_strain >= gone_back;
     });
 }
 
@@ -152,6 +170,16 @@ Rows rows_before_failure(const Rows& rows, double sense) {
             })};
 }
 
+/// The first rows, while the platen goes on and the sides are pressed as at the start: what follows has other slopes. All rows where the
+/// lateral stress changes from the first one on.
+Rows rows_of_one_path(const Rows& rows, double sense) {
+    auto last = rows.begin() + 1;
+    while (last != rows.end() && has_lateral_stress_of(*last, rows.front()) &&
+           sense * last->axial_strain >= sense * std::prev(last)->axial_strain)
+        ++last;
+    return last == rows.begin() + 1 ? rows : Rows(rows.begin(), last);
+}
+
 Rows elastic_rows(const Rows& equilibria, const Rows& rows, int platen_stage, double sense) {
     Rows elastic = rows_before_failure(rows, sense);
     if (elastic.size() >= least_elastic_rows) return elastic;
@@ -163,10 +191,12 @@ Rows elastic_rows(const Rows& equilibria, const Rows& rows, int platen_stage, do
 
 void add_elastic_constants(const Rows& equilibria, const Rows& history, int platen_stage, Plane plane,
                            CurveNumbers& numbers) {
-    const Rows rows = balanced_rows(platen_rows(history, platen_stage));
-    if (rows.empty() || balanced_rows(platen_rows(equilibria, platen_stage)).empty()) return;
+    const Rows balanced = balanced_rows(platen_rows(history, platen_stage));
+    if (balanced.empty() || balanced_rows(platen_rows(equilibria, platen_stage)).empty()) return;
+    const double sense = first_sense(history, platen_stage);
+    const Rows rows = rows_of_one_path(balanced, sense);
     std::vector<std::pair<double, double>> stress, lateral;
-    for (const StepRecord& row : elastic_rows(equilibria, rows, platen_stage, platen_sense(history, platen_stage))) {
+    for (const StepRecord& row : elastic_rows(equilibria, rows, platen_stage, sense)) {
         stress.emplace_back(row.axial_strain, row.differential_stress);
         lateral.emplace_back(row.axial_strain, -row.lateral_strain);
     }
@@ -289,10 +319,18 @@ std::vector<StepRecord> platen_rows(const std::vector<StepRecord>& rows, int pla
 
 double platen_sense(const std::vector<StepRecord>& rows, std::optional<int> platen_stage) {
     if (!platen_stage) return 1.0;
-    const auto last = std::find_if(rows.rbegin(), rows.rend(), [&](const StepRecord& row) {
-        return row.stage == *platen_stage && row.axial_strain != 0.0;
-    });
-    return last != rows.rend() && last->axial_strain < 0.0 ? -1.0 : 1.0;
+    const Rows loaded = loaded_rows(rows, platen_stage);
+    const auto fails = [&](double sense) {
+        const auto peak = largest_row(rows_with_bonds(loaded), sense);
+        return peak && sense * peak->axial_stress > 0.0 && falls_after_peak(rows, *peak, sense);
+    };
+    const bool fails_in_compression = fails(1.0);
+    if (fails_in_compression != fails(-1.0)) return fails_in_compression ? 1.0 : -1.0;
+    double farthest = 0.0;
+    for (const StepRecord& row : loaded)
+        if (row.axial_stress * row.axial_strain > 0.0 && std::abs(row.axial_strain) > std::abs(farthest))
+            farthest = row.axial_strain;
+    return farthest != 0.0 ? std::copysign(1.0, farthest) : first_sense(rows, *platen_stage);
 }
 
 bool is_net_locked(const std::vector<StepRecord>& rows, std::optional<int> platen_stage) {

@@ -705,7 +705,8 @@ std::vector<KeyRule> loading_rules() {
                 "it touches them, and on those with a "
                 "friction_angle it slides by Coulomb's law. The platen opposite to the moved one is rough where its "
                 "boundary has a `fixed` support, and one vertex near its middle does not move along it if it is smooth "
-                "and has no `smooth` support. Only in a stage that moves a boundary."},
+                "and has no `smooth` support, unless a support holds the body in that direction. Only in a stage that "
+                "moves a boundary."},
         {.path = "stages.#.platens.friction_angle",
          .type = KeyType::number,
          .measure = Measure::angle,

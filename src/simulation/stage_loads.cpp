@@ -1,9 +1,11 @@
 #include "kluft/simulation/stage_loads.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <limits>
 #include <optional>
+#include <ranges>
 #include <set>
 #include <utility>
 
@@ -20,7 +22,8 @@ namespace kluft {
 
 namespace {
 
-constexpr int no_boundary = -1; ///< of the prescribed displacements of a fixed block
+constexpr double holds_along = 0.5; ///< cosine between a row and a direction in which it counts as holding the body
+constexpr int no_boundary = -1;     ///< of the prescribed displacements of a fixed block
 
 /// The gravity at the end of a stage; -1: before the first one.
 Vec2 gravity_after(const Model& model, int stage) {
@@ -113,12 +116,16 @@ void add_support(const BlockSystem& system, Support support, int boundary, const
     }
 }
 
-/// On smooth platens the body would drift: a vertex near the middle of the fixed one does not move along it, unless the
-/// scene says that the boundary has a smooth support.
+/// On smooth platens the body would drift: a vertex near the middle of the fixed one does not move along it, unless another row holds
+/// the body there, or the scene says that the boundary has a smooth support.
 void add_pin(const Model& model, const Platen& platen, const Eigen::VectorXd& start,
              std::vector<PrescribedDisplacement>& rows) {
     const Support support = model.loads.supports[platen.boundary];
     if (platen.tan_friction > 0.0 || support == Support::smooth) return;
+    const auto holds = [&](const PrescribedDisplacement& row) {
+        return std::abs(row.direction.dot(platen.tangent())) > holds_along;
+    };
+    if (std::ranges::any_of(rows, holds)) return;
     const auto pin = middle_vertex(model.system, platen.boundary);
     if (pin) rows.push_back(held(model.system, platen.boundary, pin->first, pin->second, platen.tangent(), start));
 }
@@ -175,7 +182,6 @@ StageLoads::StageLoads(const Model& model, const StageStart& start, const Stage&
             add_support(system, support, boundary, start.displacement, rows);
             continue;
         }
-        if (platen != platens_.begin()) add_pin(model, *platen, start.displacement, rows);
         for (const PlatenPoint& point : laid_points(system, *platen, start.displacement)) {
             append_rows(system, *platen, point, static_cast<int>(platen_points_.size()), rows);
             platen_points_.push_back(point);
@@ -183,6 +189,7 @@ StageLoads::StageLoads(const Model& model, const StageStart& start, const Stage&
     }
     place_platens(system, platen_points_);
     add_fixed_blocks(system, rows);
+    for (const Platen& platen : platens_ | std::views::drop(1)) add_pin(model, platen, start.displacement, rows);
     constraints_ = constraints_of(model, std::move(rows), start);
     for (int boundary = 0; boundary < n; ++boundary) {
         if (start_pressure_[boundary] == 0.0 && end_pressure_[boundary] == 0.0) continue;

@@ -168,6 +168,27 @@ TEST(Constraints, RowsHoldAfterTheCorrectionWhichIsTheShortest) {
     EXPECT_LT(dq.norm(), 1e-15);
 }
 
+// Two points a hundred-thousandth of a block apart, as where a joint meets a support beside a corner: what round-off leaves at them is
+// nothing to correct, though a turn of the block by it would be a hundred thousand times as large.
+TEST(Constraints, RowsNearToEachOtherHoldToRoundoff) {
+    const BlockSystem system = hexagons();
+    const Constraints constraints(
+        {{3, {0.3, 0.4}, Vec2::UnitX(), 2, 1e-3}, {3, {0.3, 0.40001}, Vec2::UnitX(), 2, 1e-3}});
+    Uniform uniform(2);
+    for (int trial = 0; trial < 20; ++trial) {
+        Eigen::VectorXd q = random_motion(system, 1e-2, uniform);
+        const double roundoff = 1e-13 * q.lpNorm<Eigen::Infinity>();
+        Eigen::VectorXd dq;
+        constraints.correction(q, dq, roundoff);
+        EXPECT_GT(dq.norm(), 1e-4);
+        q += dq;
+        constraints.correction(q, dq, roundoff);
+        q += dq; // the first one was large, and so is its round-off
+        constraints.correction(q, dq, 1e-13 * q.lpNorm<Eigen::Infinity>());
+        EXPECT_EQ(dq.norm(), 0.0) << trial;
+    }
+}
+
 // One affine block cannot follow three collinear points to heights 0, 3, 0: least squares takes their mean, 1, and misses
 // by 1, -2, 1 (computed again by a QR factorization).
 TEST(Constraints, ContradictingRowsAreMetInLeastSquares) {

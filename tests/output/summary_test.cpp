@@ -126,6 +126,57 @@ TEST(Summary, IsNotAtItsPeakWhereThePlatenTurnsBack) {
     EXPECT_FALSE(numbers.residual_stress.has_value());
 }
 
+// A seating load, then a pull to failure: the strength is that of the pull. And a little unloading before the body is crushed.
+TEST(Summary, PeakIsWhereTheBodyFailsWhateverThePlatenDidFirst) {
+    Rows pulled{row(0, 0, 0, 0, 0, 0), row(1, 0, 1e-4, 1e6, 0, 0)};
+    for (int i = 1; i <= 8; ++i) pulled.push_back(row(1 + i, 1, 1e-4 - 2e-5 * i, 1e6 - 2e5 * i, 0, 0));
+    for (int i = 9; i <= 20; ++i) pulled.push_back(row(1 + i, 1, 1e-4 - 2e-5 * i, -0.1e6, 0, 0));
+    const auto of_pull = curve_numbers(pulled, pulled, 0, Plane::stress);
+    EXPECT_DOUBLE_EQ(*of_pull.peak_stress, -0.6e6);
+    EXPECT_TRUE(of_pull.peak_reached);
+
+    Rows crushed = triangle(100e6, 0.3);
+    crushed.insert(crushed.begin() + 3, row(3, 1, -1e-5, -1e3));
+    for (std::size_t i = 4; i < crushed.size(); ++i) crushed[i].stage = 2;
+    const auto of_crush = curve_numbers(crushed, crushed, 1, Plane::stress);
+    EXPECT_DOUBLE_EQ(*of_crush.peak_stress, 1.2e6);
+    EXPECT_TRUE(of_crush.peak_reached);
+}
+
+// An intact body between platens that stay loses nu' times what its sides are relieved of.
+TEST(Summary, IsNotAtItsPeakWhereTheSidesAreRelieved) {
+    Rows rows = triangle(100e6, 0.3);
+    rows.resize(3 + 30);
+    for (int i = 1; i <= 10; ++i) {
+        StepRecord relieved = rows[32];
+        relieved.step = 32 + i;
+        relieved.stage = 2;
+        relieved.lateral_stress -= 0.02e6 * i;
+        relieved.axial_stress -= 0.3 * 0.02e6 * i;
+        relieved.differential_stress = relieved.axial_stress - relieved.lateral_stress;
+        relieved.lateral_strain -= 1e-4 * i;
+        rows.push_back(relieved);
+    }
+    const auto numbers = curve_numbers(rows, rows, 1, Plane::stress);
+    EXPECT_FALSE(numbers.peak_reached);
+    EXPECT_NEAR(*numbers.youngs_modulus, 100e6, 1e-3); // of the rows before
+    EXPECT_NEAR(*numbers.poissons_ratio, 0.3, 1e-12);
+    rows.back().axial_stress -= 0.3e6; // it has failed by that: more than the sides were relieved of
+    EXPECT_TRUE(curve_numbers(rows, rows, 1, Plane::stress).peak_reached);
+}
+
+// The platen leaves an elastic body and comes back: rows without a touch have no slope.
+TEST(Summary, ElasticConstantsEndWhereThePlatenTurnsBack) {
+    Rows rows = triangle(100e6, 0.3);
+    rows.resize(3 + 10);
+    const double farthest = rows.back().axial_strain;
+    for (int i = 1; i <= 10; ++i)
+        rows.push_back(row(12 + i, 2, farthest * (1.0 - 0.2 * i), std::max(0.0, 1.0 - 0.2 * i) * 100e6 * farthest));
+    const auto numbers = curve_numbers(rows, rows, 1, Plane::stress);
+    EXPECT_NEAR(*numbers.youngs_modulus, 100e6, 1e-3);
+    EXPECT_NEAR(*numbers.poissons_ratio, 0.3, 1e-12);
+}
+
 TEST(Summary, RunWithoutAPlatenReachesNoPeak) {
     Rows rows = triangle(100e6, 0.3);
     EXPECT_FALSE(curve_numbers(rows, rows, std::nullopt, Plane::stress).peak_reached);

@@ -245,6 +245,59 @@ stages:
     EXPECT_NEAR(force, 1e6 * std::tan(20 * radians_per_degree), 1e-3 * 1e6);
 }
 
+// The same with a bonded joint in the upper block, near the end of the lower one: after 10 mm its vertices come past the end of the platen
+// below, which had them, too (253 MPa for 0.96).
+TEST(Platens, EndForAllThatLiesBeyondTheirEnd) {
+    for (const char* bond : {"[[0.99, 0.3], [0.99, 0.7]]", "[[0.01, -0.1], [0.01, 0.3]]"}) {
+        const SceneRun run = run_scene(fmt::format(R"(
+kluft: 1
+analysis: {{plane: stress}}
+materials: {{rock: {{youngs_modulus: 50 GPa, poissons_ratio: 0.2}}}}
+interfaces:
+  joint: {{kind: fracture, normal_stiffness: 50 GPa/m, shear_stiffness: 25 GPa/m, friction_angle: 30}}
+  bond: {{kind: potential_crack, normal_stiffness: 5e12, shear_stiffness: 2.5e12, cohesion: 1 GPa, friction_angle: 30,
+         tensile_strength: 1 GPa, fails_to: joint}}
+geometry:
+  domain: {{polygon: [[0, 0], [1, 0], [1, 0.3], [1, 0.6], [0, 0.6], [0, 0.3]]}}
+  fractures: [{{trace: [[-0.1, 0.3], [1.1, 0.3]], interface: joint}}, {{trace: {}, interface: bond}}]
+boundaries:
+  bottom: {{sides: [0], support: fixed}}
+  lower_right: {{sides: [1], support: smooth}}
+  top: {{sides: [3]}}
+  slider: {{sides: [4]}}
+stages:
+  - {{pressure: {{top: 1 MPa}}}}
+  - {{displacement: {{boundary: slider, value: 20 mm}}, steps: 20}}
+)",
+                                                   bond));
+        ASSERT_EQ(run.report.status, RunStatus::done) << run.report.diagnosis;
+        double largest = 0.0;
+        for (const StepRecord& row : run.history) largest = std::max(largest, row.axial_stress);
+        const double expected =
+            1e6 * std::tan(30 * radians_per_degree) / 0.6; // over the body's width across the motion
+        EXPECT_NEAR(largest, expected, 2e-3 * expected) << bond;
+    }
+}
+
+// Pressed from the right on a smooth floor, which holds the body as it is: E = 10 GPa and nu = 0.25, no force on the floor. Where a vertex of
+// the fixed platen was held along it as well it was 8 GPa.
+TEST(Platens, DoNotHoldAlongTheirFaceWhatASupportHolds) {
+    for (const char* support : {"smooth", "none"}) {
+        const SceneRun run = run_scene(fmt::format(R"(
+kluft: 1
+analysis: {{plane: stress}}
+materials: {{rock: {{youngs_modulus: 10 GPa, poissons_ratio: 0.25}}}}
+geometry: {{domain: {{polygon: [[0, 0], [1, 0], [1, 1], [1, 2], [0, 2], [0, 1]]}}}}
+boundaries: {{bottom: {{sides: [0], support: {}}}, right: {{sides: [1, 2]}}, top: {{sides: [3]}}, left: {{sides: [4, 5]}}}}
+stages: [{{strain: {{boundary: right, value: 1e-4}}, steps: 4}}]
+)",
+                                                   support));
+        ASSERT_EQ(run.report.status, RunStatus::done) << run.report.diagnosis;
+        EXPECT_NEAR(run.history.back().axial_stress, 1e-4 * 10e9, 1e-3 * 1e6) << support;
+        EXPECT_NEAR(run.history.back().lateral_strain, -0.25e-4, 1e-3 * 1e-4) << support;
+    }
+}
+
 // The strain of a stage is that of the platens, also where nothing touches them any more and in the stages after.
 TEST(Platens, MeasureTheStrain) {
     const SceneRun run = press("[{strain: {boundary: top, value: 0.1 %}, steps: 2}, {strain: {boundary: top, value: "

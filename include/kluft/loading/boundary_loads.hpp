@@ -89,8 +89,10 @@ public:
     void move_to(double load_factor);
 
     /// Least-norm change of q that fulfils the rows (zero where they hold), with the travel that is nearest to q. Where
-    /// rows of a block contradict each other it is the least-squares compromise.
-    void correction(const Eigen::VectorXd& q, Eigen::VectorXd& dq) const;
+    /// rows of a block contradict each other it is the least-squares compromise. Rows that miss their targets by no more than
+    /// `roundoff` (m) hold: where they lie so near to each other that they hardly tell a turn from a shift, their inverse makes
+    /// much of what round-off leaves.
+    void correction(const Eigen::VectorXd& q, Eigen::VectorXd& dq, double roundoff = 0.0) const;
     /// The first row of a block whose rows cannot all change at their velocities; -1 if there is none.
     [[nodiscard]] int contradicting_row() const;
     /// Least-norm motion of the n unknowns for unit travel; zero without a travelling platen.

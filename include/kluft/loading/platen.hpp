@@ -63,7 +63,8 @@ struct PlatenPoint {
 /// Mean displacement along the normal at which the vertices of the platen's boundary touch it at the start of the stage (m).
 [[nodiscard]] double mean_reach(const Platen& platen, const std::vector<PlatenPoint>& points);
 
-/// Adds, without contact, the vertices that are within `distance` (m) of the face of a platen at q and no points yet.
+/// Adds, without contact, the vertices that are within `distance` (m) of the face of a platen at q and no points yet, but not those that
+/// lay beyond an end at which the body goes on in the plane of the face.
 void add_near_points(const BlockSystem& system, const Eigen::VectorXd& q, double distance, Loads& loads);
 
 /// The prescribed displacements of a touching point: along the normal, and along the face where it sticks. `index`: of the

@@ -38,7 +38,9 @@ struct CurveNumbers {
 /// Rows of the stages from `platen_stage` on, and the last row before them (the state in which the platen starts).
 [[nodiscard]] std::vector<StepRecord> platen_rows(const std::vector<StepRecord>& rows, int platen_stage);
 
-/// 1 where the first stage that moves a platen presses the body, -1 where it pulls it; 1 without such a stage.
+/// 1 where platens press the body, -1 where they pull it: the sense in which its stress has fallen behind a peak (a seating load before
+/// a pull is no peak), or in which a platen that is pressed, or pulled, goes farthest; else that of the first stage that moves one; 1
+/// without such a stage.
 [[nodiscard]] double platen_sense(const std::vector<StepRecord>& rows, std::optional<int> platen_stage);
 
 /// Share of the net's bonds in the middle half of the body that have failed, from which on the net may be locked.

@@ -1,0 +1,62 @@
+// The factor of safety of a slope with two sets of joints.
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "support/scene_run.hpp"
+
+namespace kluft {
+namespace {
+
+/// 34 blocks between joints of 38 and -70 degrees, some of which meet the fixed base or the sides close to a corner.
+std::string jointed_slope() {
+    return R"(
+kluft: 1
+analysis: {gravity: 9.81}
+materials: {rock: {density: 2600 kg/m3, youngs_modulus: 20 GPa, poissons_ratio: 0.25}}
+interfaces:
+  joint: {kind: fracture, normal_stiffness: 10 GPa/m, shear_stiffness: 5 GPa/m, friction_angle: 35 deg, cohesion: 40 kPa}
+geometry:
+  domain: {polygon: [[0, 0], [40, 0], [40, 30], [25, 30], [10, 10], [0, 10]]}
+  fractures:
+  - {trace: [[-71.2806, -36.9397], [46.9210, 55.4095]], interface: joint}
+  - {trace: [[-63.2806, -36.9397], [54.9210, 55.4095]], interface: joint}
+  - {trace: [[-55.2806, -36.9397], [62.9210, 55.4095]], interface: joint}
+  - {trace: [[-47.2806, -36.9397], [70.9210, 55.4095]], interface: joint}
+  - {trace: [[-39.2806, -36.9397], [78.9210, 55.4095]], interface: joint}
+  - {trace: [[28.5212, -56.3816], [-22.7818, 84.5723]], interface: joint}
+  - {trace: [[-31.2806, -36.9397], [86.9210, 55.4095]], interface: joint}
+  - {trace: [[36.5212, -56.3816], [-14.7818, 84.5723]], interface: joint}
+  - {trace: [[-23.2806, -36.9397], [94.9210, 55.4095]], interface: joint}
+  - {trace: [[44.5212, -56.3816], [-6.7818, 84.5723]], interface: joint}
+  - {trace: [[52.5212, -56.3816], [1.2182, 84.5723]], interface: joint}
+  - {trace: [[60.5212, -56.3816], [9.2182, 84.5723]], interface: joint}
+boundaries:
+  bottom: {sides: [0], support: fixed}
+  right: {sides: [1], support: smooth}
+  left: {sides: [5], support: smooth}
+stages:
+- {name: weight}
+- {name: strength, strength_reduction: {from: 0.5, to: 4}}
+)";
+}
+
+// Rigid blocks have 2.336, whatever the stage. Supports that held to round-off alone counted as not held where two points of a block lie
+// close together, which ended the search at 1.139 from 1, at 1.156 with 20 load steps.
+TEST(JointedSlope, HasTheFactorOfSafetyOfRigidBlocksWhateverTheStepsOfItsReduction) {
+    constexpr double of_rigid_blocks = 2.336;
+    for (const std::vector<std::string>& settings : {std::vector<std::string>{"analysis.kinematics=rigid"},
+                                                     {},
+                                                     {"stages.1.steps=20"},
+                                                     {"stages.1.strength_reduction.from=1"},
+                                                     {"stages.1.strength_reduction.to=8"}}) {
+        const SceneRun run = run_scene(jointed_slope(), settings);
+        ASSERT_TRUE(run.report.results.factor_of_safety) << run.report.diagnosis;
+        EXPECT_NEAR(*run.report.results.factor_of_safety, of_rigid_blocks, 4e-3 * of_rigid_blocks)
+            << run.report.diagnosis;
+    }
+}
+
+} // namespace
+} // namespace kluft
