@@ -139,7 +139,7 @@ void add_run_command(CLI::App& app, Command& command) {
         ->allow_extra_args(false);
     sub->add_option("--threads", arguments->threads, "Threads of the factorization (bodies of 20 000 unknowns or more)")
         ->check(CLI::Range(1, most_threads));
-    sub->add_flag("--quiet", arguments->quiet, "No progress and no closing line");
+    sub->add_flag("--quiet", arguments->quiet, "No progress, warnings and closing line: run.log has them");
     CLI::Option* resume = sub->add_flag("--resume", arguments->resume, "Go on from the state saved in the directory");
     sub->add_flag("--force", arguments->force, "Replace results of another scene in the directory")->excludes(resume);
     sub->footer(

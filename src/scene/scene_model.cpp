@@ -13,7 +13,6 @@
 #include "kluft/core/memory.hpp"
 #include "kluft/core/place_text.hpp"
 #include "kluft/geometry/polygon.hpp"
-#include "kluft/scene/coarse_places.hpp"
 
 namespace kluft {
 
@@ -98,6 +97,20 @@ std::vector<std::string> bare_net(const GeometrySpec& geometry, const BlockSyste
                 : geometry.places.tessellation + ": the net has no edge in the body: nothing can crack"};
 }
 
+/// A polygon beside the body, or between the middles of its blocks, changes nothing: it is hardly meant so.
+std::vector<std::string> empty_regions(const GeometrySpec& geometry, const BlockSystem& system) {
+    std::vector<std::string> warnings;
+    for (std::size_t i = 0; i < geometry.regions.size(); ++i) {
+        const auto lies_in = [&](const Block& block) {
+            return contains(geometry.regions[i].polygon, system.origin + block.centroid);
+        };
+        if (std::ranges::none_of(system.blocks, lies_in))
+            warnings.push_back(fmt::format(
+                "geometry.regions.{}.polygon: the middle of no block lies in it: no block has its material", i));
+    }
+    return warnings;
+}
+
 std::vector<std::string> fine_details(const GeometrySpec& geometry, const CutReport& report) {
     std::vector<std::string> warnings;
     for (const FineDetail& detail : report.fine_details) {
@@ -176,6 +189,7 @@ SceneModel build_scene_model(const Scene& scene) {
     built.cut = std::move(body.report);
     for (const auto& warnings : {lost_fractures(scene.geometry, built.cut), fine_details(scene.geometry, built.cut),
                                  pruned_pieces(scene.geometry, built.cut), bare_net(scene.geometry, built.model.system),
+                                 empty_regions(scene.geometry, built.model.system),
                                  coarse_places(scene.geometry, built.cut, scene.interface_types)})
         built.model.warnings.insert(built.model.warnings.end(), warnings.begin(), warnings.end());
     require_memory();

@@ -50,7 +50,8 @@ std::optional<Failure> find_initial_equilibrium(const StepBench& bench, State& s
 /// What a load step to a factor has come to.
 struct Trial {
     std::optional<Failure> failure;
-    bool is_far = false; ///< the body has moved farther than blocks displace elastically
+    bool is_open =
+        false; ///< whether it stands there is open: it has moved farther than blocks displace elastically, or failed before
 };
 
 /// Those that have moved by more than a share of their motion_scale, the farthest first.
@@ -88,7 +89,10 @@ Trial try_factor(const StepBench& bench, const TrialGoal& goal, State& state, Ei
                  std::vector<StepRecord>& before) {
     begin_load_step(bench);
     Step step = take_step(bench, state, goal_with_strengths_of(bench, state, goal.load_factor));
-    if (step.failure) return {step.failure, step.failure->kind == FailureKind::falling};
+    if (step.failure) {
+        const bool fails_before = step.failure->load_factor < goal.load_factor;
+        return {step.failure, step.failure->kind == FailureKind::falling || fails_before};
+    }
     const Eigen::VectorXd& start = state.body.displacement;
     if (relative_motion(bench.model.system, step.end.body.displacement - start) > goal.farthest)
         return {failure_by_motion(bench, step, start, goal.farthest), true};
@@ -107,8 +111,10 @@ public:
         : model_(model), start_(start.body.displacement), corners_(corner_contacts(model, start)),
           far_(std::max(jump_motion, relative_motion(model.system, start_))) {}
 
-    void look_at(const State& state, double factor) {
-        said_ = of_corners(state);
+    /// `row`: of the state.
+    void look_at(const State& state, const StepRecord& row, double factor) {
+        said_ = of_net(row);
+        if (said_.empty()) said_ = of_corners(state);
         if (said_.empty()) said_ = of_motion(state);
         if (said_.empty()) without_ = factor;
     }
@@ -121,6 +127,15 @@ public:
     }
 
 private:
+    /// Cells that are loose all around hold each other by their shapes, as rock does not.
+    [[nodiscard]] static std::string of_net(const StepRecord& row) {
+        if (row.net_broken < locking_share) return {};
+        return fmt::format(
+            "the net has locked: {:.0f} % of its bonds in the middle half of the body have failed, and its cells hold "
+            "each other as masonry does",
+            100.0 * row.net_broken);
+    }
+
     /// Blocks that have slid a little catch with their corners, and may stand by these alone.
     [[nodiscard]] std::string of_corners(const State& state) const {
         for (const CornerContact& corner : corner_contacts(model_, state)) {
@@ -163,7 +178,7 @@ StageEnd find_strength_limit(const StepBench& bench, State& state) {
     const int n_steps = bench.stage(state).steps;
     StageEnd end;
     Doubts doubts(bench.model, state);
-    doubts.look_at(state, reduction.factor_at(state.at.load_factor));
+    doubts.look_at(state, bench.journal.last_row(), reduction.factor_at(state.at.load_factor));
     std::vector<StepRecord> before; // equilibria that are not told yet
     if (state.at.load_factor == 0.0) end.failure = find_initial_equilibrium(bench, state, before);
     if (end.failure) return {.failure = end.failure, .step = state.at.step + 1};
@@ -172,7 +187,7 @@ StageEnd find_strength_limit(const StepBench& bench, State& state) {
     };
     constexpr double none = std::numeric_limits<double>::infinity();
     double failing = none;    // the least load factor at which the body was found not to stand
-    double tried_from = none; // where it was only too far from the equilibrium there: maybe it is not from nearer by
+    double tried_from = none; // where that left open whether it stands there from nearer by
     double size = none;       // of a load step in which it does not move too far
     while (state.at.step_in_stage < n_steps) {
         const double from = state.at.load_factor;
@@ -188,7 +203,7 @@ StageEnd find_strength_limit(const StepBench& bench, State& state) {
                              .kind = {.regular = at == next, .last_of_stage = last}};
         const Trial trial = try_factor(bench, goal, state, end.forces, before);
         if (!trial.failure) {
-            doubts.look_at(state, reduction.factor_at(state.at.load_factor));
+            doubts.look_at(state, bench.journal.last_row(), reduction.factor_at(state.at.load_factor));
             size = at == failing ? 2.0 * (at - from) : 2.0 * size;
             if (at == failing) failing = none;
             if (failing == none) end.failure.reset();
@@ -197,7 +212,7 @@ StageEnd find_strength_limit(const StepBench& bench, State& state) {
         end.failure = trial.failure;
         if (end.failure->kind == FailureKind::too_many_solves) break; // whether it stands is not known
         failing = at;
-        tried_from = trial.is_far ? from : none;
+        tried_from = trial.is_open ? from : none;
     }
     if (const std::string said = doubts.warning(); !said.empty()) bench.journal.report().warnings.push_back(said);
     if (!end.failure) {

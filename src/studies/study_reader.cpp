@@ -18,6 +18,7 @@
 #include "kluft/scene/scene_text.hpp"
 #include "kluft/scene/scene_writer.hpp"
 #include "kluft/studies/study.hpp"
+#include "kluft/studies/study_analysis.hpp"
 #include "kluft/studies/study_schema.hpp"
 
 namespace kluft {
@@ -349,6 +350,13 @@ private:
                                    [](const StudySetting& s) { return read_number(s.value).has_value(); });
     }
 
+    static bool refines_solution(const std::string& key) { return parameter_kind(key) == ParameterKind::refinement; }
+
+    /// Other values of a strength, a stiffness or a load make another problem, of which no value is the finest.
+    static bool may_refine_solution(const std::string& key) {
+        return parameter_kind(key) == ParameterKind::method || key.starts_with("geometry.tessellation.");
+    }
+
     void read_along() {
         const auto& parameters = study_.parameters;
         if (const auto key = text("along")) {
@@ -361,8 +369,13 @@ private:
             study_.along = found - parameters.begin();
             return;
         }
-        const auto first = std::ranges::find_if(parameters, is_numeric);
-        if (first != parameters.end()) study_.along = first - parameters.begin();
+        for (const auto& leads : {refines_solution, may_refine_solution}) {
+            const auto first = std::ranges::find_if(parameters, [&](const StudyParameter& parameter) {
+                return is_numeric(parameter) && leads(parameter.key);
+            });
+            if (first != parameters.end()) study_.along = first - parameters.begin();
+            if (study_.along) return;
+        }
     }
 
     void read_reference() {

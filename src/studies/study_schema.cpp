@@ -128,7 +128,8 @@ std::vector<KeyRule> result_rules() {
          .doc = "Results of another run, relative to the study file."},
         {.path = "along",
          .type = KeyType::text,
-         .fallback_note = "the first such key",
+         .fallback_note = "the first such key that refines the solution, or else is a method or a number of the net; "
+                          "no strength, stiffness or load",
          .doc = "The varied key, with numbers as values, that leads to the finest case."},
         {.path = "pictures",
          .type = KeyType::boolean,

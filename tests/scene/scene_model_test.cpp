@@ -116,6 +116,16 @@ TEST(SceneModel, WarnsOfANetWithoutAnEdgeInTheBody) {
                           "expected a polygon that holds a part of the body"));
 }
 
+TEST(SceneModel, WarnsOfARegionInWhichNoBlockLies) {
+    const auto region = [](const std::string& polygon) {
+        return "geometry.regions=[{polygon: " + polygon + ", material: rock}]";
+    };
+    EXPECT_THAT(warnings_of({region("[[50, 50], [60, 50], [60, 60]]")}),
+                testing::Contains(AllOf(HasSubstr("geometry.regions.0"), HasSubstr("no block"))));
+    EXPECT_THAT(warnings_of({region("[[-50, -50], [50, -50], [50, 50], [-50, 50]]")}),
+                Not(testing::Contains(HasSubstr("geometry.regions.0"))));
+}
+
 // A square of 0.4 m has the area of a circle of 0.226 m, 0.15 of which is 0.034 m.
 TEST(SceneModel, WarnsOfANetThatIsCoarseBesideAnOpening) {
     const auto warnings = [](const std::vector<std::string>& overrides) {

@@ -2,6 +2,7 @@
 #include <string>
 #include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "support/scene_run.hpp"
@@ -56,6 +57,33 @@ TEST(JointedSlope, HasTheFactorOfSafetyOfRigidBlocksWhateverTheStepsOfItsReducti
         EXPECT_NEAR(*run.report.results.factor_of_safety, of_rigid_blocks, 4e-3 * of_rigid_blocks)
             << run.report.diagnosis;
     }
+}
+
+// A slope of weak rock that circles of slip give a factor near 1.5, with a coarse net of triangles: its cells come loose at that and then
+// hold each other by their shapes. The factor that they have is no factor of the rock, and the run says from where on.
+TEST(JointedSlope, WhoseNetLocksSaysSo) {
+    const SceneRun run = run_scene(R"(
+kluft: 1
+analysis: {gravity: 9.81}
+materials:
+  rock: {density: 2600 kg/m3, youngs_modulus: 5 GPa, poissons_ratio: 0.3, cohesion: 60 kPa, friction_angle: 30 deg, tensile_strength: 20 kPa}
+interfaces:
+  bond: {kind: potential_crack, fails_to: crack}
+  crack: {kind: fracture, friction_angle: 30 deg, cohesion: 60 kPa}
+geometry:
+  domain: {polygon: [[0, 0], [40, 0], [40, 30], [25, 30], [10, 10], [0, 10]]}
+  tessellation: {triangles: {spacing: 6 m}, interface: bond}
+boundaries:
+  bottom: {sides: [0], support: fixed}
+  right: {sides: [1], support: smooth}
+  left: {sides: [5], support: smooth}
+stages:
+- {name: weight}
+- {name: strength, strength_reduction: {from: 0.5, to: 2.5}, steps: 10}
+)");
+    EXPECT_THAT(run.report.warnings,
+                testing::Contains(testing::AllOf(testing::HasSubstr("the net has locked"),
+                                                 testing::ContainsRegex("; 1\\.[0-9]* is the factor"))));
 }
 
 } // namespace

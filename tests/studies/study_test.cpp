@@ -153,6 +153,15 @@ TEST_F(StudyFile, ReferenceIsTheFinestCaseOfEachGroupUnlessAnotherOneIsNamed) {
     EXPECT_THAT(reference_cases(none.study, none.cases), ::testing::Each(std::nullopt));
 }
 
+// Of strengths, stiffnesses and loads none is the finest: the last one was, and recommended.
+TEST_F(StudyFile, NoStiffnessOfTheRockLeadsToTheFinestCase) {
+    EXPECT_EQ(read("vary: {materials.rock.youngs_modulus: [1e9, 2e9]}\n").study.along, std::nullopt);
+    const std::string both = "vary: {materials.rock.youngs_modulus: [1e9, 2e9], stages.1.steps: [5, 10]}\n";
+    EXPECT_EQ(read(both).study.along, 1U);
+    EXPECT_EQ(read(both + "along: materials.rock.youngs_modulus\n").study.along, 0U); // who asks for it has it
+    EXPECT_EQ(read("vary: {geometry.tessellation.hexagons.spacing: [0.5, 0.3]}\n").study.along, 0U);
+}
+
 TEST_F(StudyFile, OneReferenceServesVariantsThatVaryOtherKeys) {
     const ReadStudy study =
         read("variants:\n"

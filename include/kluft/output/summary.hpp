@@ -43,9 +43,6 @@ struct CurveNumbers {
 /// without such a stage.
 [[nodiscard]] double platen_sense(const std::vector<StepRecord>& rows, std::optional<int> platen_stage);
 
-/// Share of the net's bonds in the middle half of the body that have failed, from which on the net may be locked.
-inline constexpr double locking_share = 0.7;
-
 /// Whether loose cells of the net carry what the rock cannot, as masonry does: 70 % or more of the net's bonds in the middle
 /// half of the body have failed, and a later balanced equilibrium has an axial stress that lies by 5 % or more above all
 /// up to the first one with so many failed, in the sense of the platen. A rise that stays below an earlier peak does not

@@ -30,6 +30,9 @@ struct MotionRecord {
     double energy_error = 0.0;     ///< what is missing in the balance over the largest of its terms
 };
 
+/// Share of the net's bonds in the middle half of the body that have failed, from which on the net may be locked.
+inline constexpr double locking_share = 0.7;
+
 /// A row of history.csv or equilibria.csv; the members up to `elapsed_s` are its columns, in order. Pa and fractions.
 struct StepRecord {
     int step = 0;  ///< through all stages
