@@ -13,6 +13,7 @@
 #include "kluft/core/memory.hpp"
 #include "kluft/core/place_text.hpp"
 #include "kluft/geometry/polygon.hpp"
+#include "kluft/scene/coarse_places.hpp"
 
 namespace kluft {
 

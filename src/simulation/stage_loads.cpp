@@ -5,7 +5,6 @@
 #include <iterator>
 #include <limits>
 #include <optional>
-#include <ranges>
 #include <set>
 #include <utility>
 
@@ -189,7 +188,7 @@ StageLoads::StageLoads(const Model& model, const StageStart& start, const Stage&
     }
     place_platens(system, platen_points_);
     add_fixed_blocks(system, rows);
-    for (const Platen& platen : platens_ | std::views::drop(1)) add_pin(model, platen, start.displacement, rows);
+    for (std::size_t i = 1; i < platens_.size(); ++i) add_pin(model, platens_[i], start.displacement, rows);
     constraints_ = constraints_of(model, std::move(rows), start);
     for (int boundary = 0; boundary < n; ++boundary) {
         if (start_pressure_[boundary] == 0.0 && end_pressure_[boundary] == 0.0) continue;
