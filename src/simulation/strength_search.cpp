@@ -50,8 +50,8 @@ std::optional<Failure> find_initial_equilibrium(const StepBench& bench, State& s
 /// What a load step to a factor has come to.
 struct Trial {
     std::optional<Failure> failure;
-    bool is_open =
-        false; ///< whether it stands there is open: it has moved farther than blocks displace elastically, or failed before
+    /// Whether the body stands there is undecided: it has moved farther than blocks displace elastically, or failed on its way.
+    bool is_undecided = false;
 };
 
 /// Those that have moved by more than a share of their motion_scale, the farthest first.
@@ -212,7 +212,7 @@ StageEnd find_strength_limit(const StepBench& bench, State& state) {
         end.failure = trial.failure;
         if (end.failure->kind == FailureKind::too_many_solves) break; // whether it stands is not known
         failing = at;
-        tried_from = trial.is_open ? from : none;
+        tried_from = trial.is_undecided ? from : none;
     }
     if (const std::string said = doubts.warning(); !said.empty()) bench.journal.report().warnings.push_back(said);
     if (!end.failure) {

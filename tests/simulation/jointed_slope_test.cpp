@@ -10,17 +10,20 @@
 namespace kluft {
 namespace {
 
-/// 34 blocks between joints of 38 and -70 degrees, some of which meet the fixed base or the sides close to a corner.
-std::string jointed_slope() {
-    return R"(
-kluft: 1
+/// A face of 20 m at 53 degrees, on a fixed base between smooth sides.
+const std::string slope = R"(kluft: 1
 analysis: {gravity: 9.81}
-materials: {rock: {density: 2600 kg/m3, youngs_modulus: 20 GPa, poissons_ratio: 0.25}}
-interfaces:
-  joint: {kind: fracture, normal_stiffness: 10 GPa/m, shear_stiffness: 5 GPa/m, friction_angle: 35 deg, cohesion: 40 kPa}
+boundaries:
+  bottom: {sides: [0], support: fixed}
+  right: {sides: [1], support: smooth}
+  left: {sides: [5], support: smooth}
 geometry:
   domain: {polygon: [[0, 0], [40, 0], [40, 30], [25, 30], [10, 10], [0, 10]]}
-  fractures:
+)";
+
+/// 34 blocks between joints of 38 and -70 degrees, some of which meet the fixed base or the sides close to a corner.
+std::string jointed_slope() {
+    return slope + R"(  fractures:
   - {trace: [[-71.2806, -36.9397], [46.9210, 55.4095]], interface: joint}
   - {trace: [[-63.2806, -36.9397], [54.9210, 55.4095]], interface: joint}
   - {trace: [[-55.2806, -36.9397], [62.9210, 55.4095]], interface: joint}
@@ -33,10 +36,9 @@ geometry:
   - {trace: [[44.5212, -56.3816], [-6.7818, 84.5723]], interface: joint}
   - {trace: [[52.5212, -56.3816], [1.2182, 84.5723]], interface: joint}
   - {trace: [[60.5212, -56.3816], [9.2182, 84.5723]], interface: joint}
-boundaries:
-  bottom: {sides: [0], support: fixed}
-  right: {sides: [1], support: smooth}
-  left: {sides: [5], support: smooth}
+materials: {rock: {density: 2600 kg/m3, youngs_modulus: 20 GPa, poissons_ratio: 0.25}}
+interfaces:
+  joint: {kind: fracture, normal_stiffness: 10 GPa/m, shear_stiffness: 5 GPa/m, friction_angle: 35 deg, cohesion: 40 kPa}
 stages:
 - {name: weight}
 - {name: strength, strength_reduction: {from: 0.5, to: 4}}
@@ -62,21 +64,12 @@ TEST(JointedSlope, HasTheFactorOfSafetyOfRigidBlocksWhateverTheStepsOfItsReducti
 // A slope of weak rock that circles of slip give a factor near 1.5, with a coarse net of triangles: its cells come loose at that and then
 // hold each other by their shapes. The factor that they have is no factor of the rock, and the run says from where on.
 TEST(JointedSlope, WhoseNetLocksSaysSo) {
-    const SceneRun run = run_scene(R"(
-kluft: 1
-analysis: {gravity: 9.81}
+    const SceneRun run = run_scene(slope + R"(  tessellation: {triangles: {spacing: 6 m}, interface: bond}
 materials:
   rock: {density: 2600 kg/m3, youngs_modulus: 5 GPa, poissons_ratio: 0.3, cohesion: 60 kPa, friction_angle: 30 deg, tensile_strength: 20 kPa}
 interfaces:
   bond: {kind: potential_crack, fails_to: crack}
   crack: {kind: fracture, friction_angle: 30 deg, cohesion: 60 kPa}
-geometry:
-  domain: {polygon: [[0, 0], [40, 0], [40, 30], [25, 30], [10, 10], [0, 10]]}
-  tessellation: {triangles: {spacing: 6 m}, interface: bond}
-boundaries:
-  bottom: {sides: [0], support: fixed}
-  right: {sides: [1], support: smooth}
-  left: {sides: [5], support: smooth}
 stages:
 - {name: weight}
 - {name: strength, strength_reduction: {from: 0.5, to: 2.5}, steps: 10}

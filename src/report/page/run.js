@@ -139,7 +139,8 @@ function showLegend() {
     bar.className = "bar";
     bar.style.background = `linear-gradient(to right, ${values.colours.filter((_, i) => i % 7 === 0).join(",")})`;
     put(`${digits(values.high / factor, 3)} ${unitName}`, `${name} ${digits(values.low / factor, 3)} `, bar, " ");
-    const [least, largest] = [Math.min(...values.numbers), Math.max(...values.numbers)];
+    const least = values.numbers.reduce((a, b) => Math.min(a, b));
+    const largest = values.numbers.reduce((a, b) => Math.max(a, b));
     if (least < values.low || largest > values.high) // single blocks may lie far beyond what the colours span
       put(`of all blocks: ${digits(least / factor, 3)} to ${digits(largest / factor, 3)} ${unitName}`);
   } else {
