@@ -17,6 +17,7 @@
 #include "commands.hpp"
 #include "completion.hpp"
 #include "failure.hpp"
+#include "kluft/assembly/blas.hpp"
 #include "kluft/core/nearest_name.hpp"
 #include "kluft/core/version.hpp"
 #include "kluft/maps/gdal.hpp"
@@ -474,6 +475,7 @@ int main(int argc, char** argv) {
         kluft::take_termination();
         kluft::open_standard_streams();
         kluft::leave_writing_to_its_result();
+        kluft::end_blas_threads();
         kluft::choose_blas_kernels(argv);
         mp_set_memory_functions(gmp_allocate, gmp_reallocate, nullptr);
         load_unwinder();

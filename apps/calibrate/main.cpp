@@ -9,6 +9,7 @@
 
 #include "commands.hpp"
 #include "failure.hpp"
+#include "kluft/assembly/blas.hpp"
 #include "kluft/calibration/calibrate.hpp"
 #include "kluft/calibration/calibration_report.hpp"
 #include "kluft/core/diagnostics.hpp"
@@ -80,6 +81,7 @@ int main(int argc, char** argv) {
         kluft::take_termination();
         kluft::open_standard_streams();
         kluft::leave_writing_to_its_result();
+        kluft::end_blas_threads();
         const ExitCode code = run({argv, argv + argc});
         const std::string lost = kluft::lost_output();
         if (lost.empty()) return static_cast<int>(code);

@@ -19,6 +19,7 @@ extern "C" {
 void openblas_set_num_threads(int n_threads);
 int openblas_get_num_threads();
 char* openblas_get_corename();
+[[gnu::weak]] int blas_thread_shutdown_(); // a BLAS without threads has none
 void* blas_memory_alloc(int which);
 void blas_memory_free(void* space);
 void omp_set_max_active_levels(int n_levels);
@@ -61,6 +62,12 @@ constexpr int max_own_threads = 32;
 std::mutex own_threads_mutex;
 int n_own_threads = 0;  ///< how many exist
 int threads_before = 1; ///< of the BLAS, before the first of them
+bool has_no_threads = false; ///< of the BLAS itself: they have been ended
+
+/// A BLAS whose threads have been ended would start them again.
+void give_blas(int n_threads) {
+    if (!has_no_threads) openblas_set_num_threads(n_threads);
+}
 
 /// The place of an entry of an n x n matrix that is stored by columns.
 std::size_t place(int n, int row, int column) {
@@ -167,8 +174,8 @@ void prepare_blas() {
 
 OwnThreads::OwnThreads(int n_threads) {
     const std::lock_guard lock(own_threads_mutex);
-    if (n_own_threads++ == 0) threads_before = openblas_get_num_threads();
-    openblas_set_num_threads(1);
+    if (n_own_threads++ == 0 && !has_no_threads) threads_before = openblas_get_num_threads();
+    give_blas(1);
     number_ = std::clamp(n_threads, 1, max_own_threads);
     if (number_ > 1 && !has_room_for_work_spaces(number_)) number_ = 1;
     if (number_ == 1) return;
@@ -179,18 +186,27 @@ OwnThreads::OwnThreads(int n_threads) {
 
 OwnThreads::~OwnThreads() {
     const std::lock_guard lock(own_threads_mutex);
-    if (--n_own_threads == 0) openblas_set_num_threads(threads_before);
+    if (--n_own_threads == 0) give_blas(threads_before);
+}
+
+void end_blas_threads() {
+    const std::lock_guard lock(own_threads_mutex);
+    if (has_no_threads) return;
+    if (n_own_threads == 0) threads_before = openblas_get_num_threads();
+    openblas_set_num_threads(1);
+    if (blas_thread_shutdown_ != nullptr) blas_thread_shutdown_();
+    has_no_threads = true;
 }
 
 void set_blas_threads(int n_threads) {
     const std::lock_guard lock(own_threads_mutex);
     threads_before = n_threads;
-    if (n_own_threads == 0) openblas_set_num_threads(n_threads);
+    if (n_own_threads == 0) give_blas(n_threads);
 }
 
 int blas_threads() {
     const std::lock_guard lock(own_threads_mutex);
-    return n_own_threads == 0 ? openblas_get_num_threads() : threads_before;
+    return n_own_threads == 0 && !has_no_threads ? openblas_get_num_threads() : threads_before;
 }
 
 std::string blas_core() { return openblas_get_corename(); }

@@ -13,6 +13,8 @@
 #include "kluft/core/nearest_name.hpp"
 #include "kluft/core/stopwatch.hpp"
 #include "kluft/core/units.hpp"
+#include "kluft/scene/scene_model.hpp"
+#include "kluft/scene/scene_reader.hpp"
 #include "kluft/studies/ensemble.hpp"
 
 namespace kluft {
@@ -197,6 +199,20 @@ private:
                 "The elastic targets are met with mapped fractures closed and locked: a run in "
                 "which they slip is softer. Run the calibrated scene and compare its "
                 "youngs_modulus before you use it.");
+        for (std::size_t t = 0; t < result_.targets.size(); ++t)
+            warn_of_copies(calibration_.targets[t], result_.targets[t]);
+    }
+
+    /// A target that the mean of the copies meets, and a run of one net may miss.
+    void warn_of_copies(const CalibrationTarget& target, const TargetResult& found) {
+        if (!found.met || found.copies.size() < 2 || target.quantity == TargetQuantity::curve) return;
+        const auto [least, most] = std::ranges::minmax(found.copies);
+        if (std::max(target.value - least, most - target.value) <= target.tolerance * std::abs(target.value)) return;
+        const Measure measure = measure_of(target.quantity);
+        result_.warnings.push_back(
+            fmt::format("{} is met by the mean of {} copies; single ones lie between {} and {}, and so may a run of the "
+                        "calibrated scene, which is one net of many.",
+                        target.name, found.copies.size(), value_text(least, measure), value_text(most, measure)));
     }
 
     /// Which target a group of rows belongs to.
@@ -329,7 +345,35 @@ private:
                             is_low ? "lower" : "upper",
                             value_text(is_low ? parameter.from : parameter.to, parameter.measure), target.name));
         }
+        add_refusals(target, gradient);
         add_scatter(target, result_.targets[t]);
+    }
+
+    /// Parameters that cannot go on towards the target because the scene is refused beside where they are.
+    void add_refusals(const CalibrationTarget& target, const Eigen::VectorXd& gradient) {
+        constexpr double beside = 0.01; // in logarithms
+        for (std::size_t i = 0; i < calibration_.parameters.size(); ++i) {
+            const auto at = static_cast<Eigen::Index>(i);
+            if (gradient[at] == 0.0) continue;
+            Eigen::VectorXd x = result_.x;
+            x[at] += gradient[at] < 0.0 ? beside : -beside;
+            const std::string why = why_refused(settings_at(calibration_, x));
+            if (why.empty()) continue;
+            const CalibrationParameter& parameter = calibration_.parameters[i];
+            result_.obstacles.push_back(fmt::format(
+                "{} stays at {}: {} would come nearer beyond it, where the scene is refused: {}", parameter.name,
+                value_text(std::exp(result_.x[at]), parameter.measure), target.name, why));
+        }
+    }
+
+    /// What the scene with these settings is refused for; "" if it is not.
+    [[nodiscard]] std::string why_refused(const std::vector<StudySetting>& settings) const {
+        try {
+            (void)build_scene_model(read_scene(calibration_.scene, assignments(settings)));
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return {};
     }
 
     void add_scatter(const CalibrationTarget& target, const TargetResult& found) {

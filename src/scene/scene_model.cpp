@@ -84,10 +84,13 @@ std::vector<std::string> pruned_pieces(const GeometrySpec& geometry, const CutRe
     for (std::size_t i = 0; i + 1 < trace.points.size(); ++i) whole += (trace.points[i + 1] - trace.points[i]).norm();
     const bool is_told = std::ranges::find(report.lost, fracture, &LostFracture::fracture) != report.lost.end();
     if (is_told || length <= large_part * whole) return {};
+    const int n_others = report.pruned_ends - 1;
     return {fmt::format("{}: {:.3g} m of {} end inside a block and are left out{}: without potential cracks "
                         "(`geometry.tessellation`) a block is cut by what goes through it, and has no other weakness",
                         trace.place, length, trace.name,
-                        report.pruned_ends > 1 ? fmt::format(", as are {} other pieces", report.pruned_ends - 1) : "")};
+                        n_others > 1    ? fmt::format(", as are {} other pieces", n_others)
+                        : n_others == 1 ? ", as is another piece"
+                                        : "")};
 }
 
 std::vector<std::string> bare_net(const GeometrySpec& geometry, const BlockSystem& system) {

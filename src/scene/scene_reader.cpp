@@ -10,6 +10,7 @@
 
 #include "kluft/core/memory.hpp"
 #include "kluft/scene/geometry_reader.hpp"
+#include "kluft/scene/keys_without_effect.hpp"
 #include "kluft/scene/load_reader.hpp"
 #include "kluft/scene/net_check.hpp"
 #include "kluft/scene/plausibility.hpp"
@@ -187,16 +188,27 @@ std::set<int> used_interface_types(const Scene& scene) {
     return used;
 }
 
+/// Materials of the blocks.
+std::set<int> used_materials(const Scene& scene) {
+    std::set<int> used{scene.geometry.material};
+    for (const MaterialRegion& region : scene.geometry.regions) used.insert(region.material);
+    for (const GivenBlock& block : scene.geometry.blocks) used.insert(block.material);
+    used.erase(-1);
+    return used;
+}
+
 /// Potential cracks take their strength from somewhere.
 void require_strength(const SceneSection& section, const InterfaceType& type, const Scene& scene,
                       ReadingContext& context) {
     if (type.kind != InterfaceKind::potential_crack || type.strength) return;
-    for (const auto& material : scene.materials)
+    for (const int index : used_materials(scene)) {
+        const Material& material = scene.materials[static_cast<std::size_t>(index)];
         if (!material.strength)
             context.fail(section, {},
                          fmt::format("expected cohesion, friction_angle and tensile_strength here or in the material "
                                      "{}, found neither",
                                      material.name));
+    }
 }
 
 /// Stiffnesses that are not in Pa/m need a spacing.
@@ -237,6 +249,7 @@ Scene convert(const SceneSection& root, ReadingContext& context) {
     }
     warn_of_net(root, scene, context);
     warn_of_implausible_values(root, scene, context);
+    warn_of_keys_without_effect(root, scene, context);
     return scene;
 }
 

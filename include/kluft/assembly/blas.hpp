@@ -39,7 +39,13 @@ private:
     int number_ = 1;
 };
 
-/// Number of threads for the whole process: of a large factorization, and of the BLAS (OpenBLAS) where there are no OwnThreads.
+/// For a program, at its start: ends the threads that OpenBLAS starts when it is loaded. They wait for work in a loop, a tenth
+/// of a second of processor time, and a run gives them none. From then on each call of the BLAS is computed by the thread that
+/// calls; blas_threads() stays what it was.
+void end_blas_threads();
+
+/// Number of threads for the whole process: of a large factorization, and of the BLAS (OpenBLAS) where there are no OwnThreads
+/// and its own have not been ended.
 void set_blas_threads(int n_threads);
 [[nodiscard]] int blas_threads();
 

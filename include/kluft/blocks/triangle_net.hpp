@@ -64,8 +64,8 @@ struct TriangleFrame {
 /// their place (McCool and Fiume 1992), none in the circle over a piece of a line. CGAL's constrained Delaunay
 /// triangulation joins them; its refinement (Ruppert 1995, Shewchuk 2002) adds points until no triangle has an angle below
 /// smallest_triangle_angle, and Lloyd's passes (1982) move the free points to the centroids of their Voronoi cells, more
-/// regular with each of `net.relaxation`. All is a function of the seed: predicates are exact, random numbers the same on
-/// every machine.
+/// regular with each of `net.relaxation`. All is a function of the seed and of the bits of the lines: predicates are
+/// exact, random numbers the same on every machine.
 [[nodiscard]] std::vector<SourceSegment> triangle_edges(const TriangleNet& net, const TriangleSize& size,
                                                         const TriangleFrame& frame);
 
