@@ -60,8 +60,8 @@ bool has_room_for_work_spaces(int n) {
 
 constexpr int max_own_threads = 32;
 std::mutex own_threads_mutex;
-int n_own_threads = 0;  ///< how many exist
-int threads_before = 1; ///< of the BLAS, before the first of them
+int n_own_threads = 0;       ///< how many exist
+int threads_before = 1;      ///< of the BLAS, before the first of them
 bool has_no_threads = false; ///< of the BLAS itself: they have been ended
 
 /// A BLAS whose threads have been ended would start them again.

@@ -209,10 +209,10 @@ private:
         const auto [least, most] = std::ranges::minmax(found.copies);
         if (std::max(target.value - least, most - target.value) <= target.tolerance * std::abs(target.value)) return;
         const Measure measure = measure_of(target.quantity);
-        result_.warnings.push_back(
-            fmt::format("{} is met by the mean of {} copies; single ones lie between {} and {}, and so may a run of the "
-                        "calibrated scene, which is one net of many.",
-                        target.name, found.copies.size(), value_text(least, measure), value_text(most, measure)));
+        result_.warnings.push_back(fmt::format(
+            "{} is met by the mean of {} copies; single ones lie between {} and {}, and so may a run of the "
+            "calibrated scene, which is one net of many.",
+            target.name, found.copies.size(), value_text(least, measure), value_text(most, measure)));
     }
 
     /// Which target a group of rows belongs to.
@@ -360,9 +360,9 @@ private:
             const std::string why = why_refused(settings_at(calibration_, x));
             if (why.empty()) continue;
             const CalibrationParameter& parameter = calibration_.parameters[i];
-            result_.obstacles.push_back(fmt::format(
-                "{} stays at {}: {} would come nearer beyond it, where the scene is refused: {}", parameter.name,
-                value_text(std::exp(result_.x[at]), parameter.measure), target.name, why));
+            result_.obstacles.push_back(
+                fmt::format("{} stays at {}: {} would come nearer beyond it, where the scene is refused: {}",
+                            parameter.name, value_text(std::exp(result_.x[at]), parameter.measure), target.name, why));
         }
     }
 

@@ -45,9 +45,10 @@ json parse_file(const std::filesystem::path& file) {
     try {
         return json::parse(text);
     } catch (const json::exception& error) {
-        throw InputError(fmt::format("{}: expected GeoJSON (or a GeoPackage, .gpkg, or a shapefile, .shp), found no valid "
-                                     "JSON: {}",
-                                     file.string(), error.what()));
+        throw InputError(
+            fmt::format("{}: expected GeoJSON (or a GeoPackage, .gpkg, or a shapefile, .shp), found no valid "
+                        "JSON: {}",
+                        file.string(), error.what()));
     }
 }
 

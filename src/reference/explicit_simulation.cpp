@@ -236,12 +236,9 @@ private:
 
     void move_load(double from, double to, double duration, bool steady) {
         double done = 0.0;
-        double passed = 0.0;
         while (done < 1.0 && !failed()) {
-            const bool patient = !steady && passed < longest_wait * duration;
-            const double rate = patient ? load_rate_ : 1.0;
+            const double rate = steady ? 1.0 : load_rate_;
             done = std::min(1.0, done + rate * motion_.time_step() / duration);
-            passed += motion_.time_step();
             set_load(from + (to - from) * (steady ? done : smooth(done)));
             advance();
         }

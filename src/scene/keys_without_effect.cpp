@@ -10,15 +10,11 @@ void warn_of_keys_without_effect(const SceneSection& root, const Scene& scene, R
     const auto warn = [&](const SceneSection& section, std::string_view key, std::string_view why) {
         if (section.has(key)) context.warn(section, key, fmt::format("has no effect: {}", why));
     };
-    const SceneSection geometry = root.section("geometry");
     if (scene.geometry.blocks.empty())
-        warn(geometry, "blocks_interface",
+        warn(root.section("geometry"), "blocks_interface",
              "it is that of given blocks; the interfaces of a domain stand in fractures and tessellation");
-    const SceneSection cracks = root.section("cracks");
     if (scene.cracks.strength_noise.deviation == 0.0)
-        warn(cracks, "strength_seed", "without cracks.strength_noise the strengths do not scatter");
-    if (scene.cracks.update != CrackUpdate::event)
-        warn(cracks, "event_tolerance", "it is that of cracks.update: event");
+        warn(root.section("cracks"), "strength_seed", "without cracks.strength_noise the strengths do not scatter");
 }
 
 } // namespace kluft

@@ -188,12 +188,12 @@ std::set<int> used_interface_types(const Scene& scene) {
     return used;
 }
 
-/// Materials of the blocks.
+/// Materials of the blocks, as far as they are known.
 std::set<int> used_materials(const Scene& scene) {
     std::set<int> used{scene.geometry.material};
     for (const MaterialRegion& region : scene.geometry.regions) used.insert(region.material);
     for (const GivenBlock& block : scene.geometry.blocks) used.insert(block.material);
-    used.erase(-1);
+    std::erase_if(used, [&](int m) { return m < 0 || m >= static_cast<int>(scene.materials.size()); });
     return used;
 }
 

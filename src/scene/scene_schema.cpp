@@ -217,8 +217,9 @@ std::vector<KeyRule> interface_rules() {
          .measure = Measure::angle,
          .range = below_ninety,
          .fallback = "0",
-         .doc = "Opening per slip of a fracture, as an angle; not above the friction angle. Slip that turns back opens it "
-                "further."},
+         .doc =
+             "Opening per slip of a fracture, as an angle; not above the friction angle. Slip that turns back opens it "
+             "further."},
         {.path = "interfaces.*.fails_to",
          .type = KeyType::text,
          .fallback_note = "the only fracture among the interfaces",
@@ -428,8 +429,9 @@ std::vector<KeyRule> cut_rules() {
          .type = KeyType::integer,
          .range = {.least = 0.0, .most = 9007199254740991.0},
          .fallback = "1",
-         .doc = "Of the random points that are joined: the same seed gives the same body the same net. A body that lies "
-                "elsewhere, or has one more trace, may have quite another net with it."},
+         .doc =
+             "Of the random points that are joined: the same seed gives the same body the same net. A body that lies "
+             "elsewhere, or has one more trace, may have quite another net with it."},
         {.path = "geometry.tessellation.triangles.relaxation",
          .type = KeyType::integer,
          .range = {.least = 0.0, .most = 20.0},

@@ -285,6 +285,37 @@ TEST(ExplicitSimulation, FailedStepEndsAtItsLastBalancedEquilibrium) {
     EXPECT_EQ(state.body.interfaces.front(), InterfaceStatus::tension_crack);
 }
 
+// A joint under 1 MPa: tan(30) MPa over its length, which is that of the box across the platen's way too. A body that is pushed
+// fast slides on by its inertia when the platen stops, and leaves it.
+TEST(ExplicitSimulation, JointIsShearedWithItsFrictionHoweverFarThePlatenGoesInALoadStep) {
+    for (const char* const steps : {"2", "8"}) {
+        SCOPED_TRACE(steps);
+        const auto run = run_scene(R"(
+kluft: 1
+analysis: {integrator: explicit}
+materials: {rock: {density: 2600, youngs_modulus: 10 GPa, poissons_ratio: 0.2}}
+interfaces: {joint: {kind: fracture, friction_angle: 30, normal_stiffness: 100 GPa/m, shear_stiffness: 50 GPa/m, friction_rounding: 0}}
+geometry:
+  domain: {polygon: [[0, 0], [1, 0], [1, 0.5], [1, 1], [0, 1], [0, 0.5]]}
+  fractures: [{trace: [[-0.1, 0.5], [1.1, 0.5]]}]
+boundaries:
+  bottom: {sides: [0], support: fixed}
+  lower_right: {sides: [1], support: smooth}
+  top: {sides: [3]}
+  upper_left: {sides: [4]}
+stages:
+  - {pressure: {top: 1 MPa}}
+  - {displacement: {boundary: upper_left, value: 4 mm}}
+)",
+                                   {"stages.1.steps=" + std::string(steps)});
+        ASSERT_EQ(run.report.status, RunStatus::done) << run.report.diagnosis;
+        for (std::size_t i = 2; i < run.history.size(); ++i) {
+            if (!run.history[i].balanced) continue;
+            EXPECT_NEAR(run.history[i].axial_stress, 1e6 * std::tan(30 * degree), 0.01e6) << i;
+        }
+    }
+}
+
 TEST(ExplicitSimulation, PlatenVelocityIsWhatTheSceneSays) {
     const std::string platen = "strain: {boundary: top, value: 1e-4}";
     const auto run_at = [&](const char* rate) {

@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "kluft/core/diagnostics.hpp"
 #include "kluft/scene/outline.hpp"
 #include "scene/scene_text.hpp"
 #include "support/units.hpp"
@@ -13,9 +14,11 @@
 namespace kluft {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::ThrowsMessage;
 
 TEST(SceneReader, ReadsMaterialsInSi) {
     const Scene scene = read_scene_text(test::full_scene);
@@ -291,6 +294,29 @@ TEST(SceneReader, WarnsOfWhatHasNoEffect) {
                 ElementsAre(HasSubstr("no effect where the boundary is supported")));
     EXPECT_THAT(read_scene_text(test::full_scene, {"geometry.fractures.0.trace=[[30, 0], [40, 1]]"}).warnings,
                 ElementsAre(HasSubstr("main lies outside the domain")));
+    EXPECT_THAT(read_scene_text(test::full_scene, {"geometry.blocks_interface=joint"}).warnings,
+                ElementsAre(AllOf(HasSubstr("geometry.blocks_interface"), HasSubstr("has no effect"))));
+    EXPECT_THAT(read_scene_text(test::full_scene, {"cracks.strength_noise=0", "cracks.strength_seed=3"}).warnings,
+                ElementsAre(AllOf(HasSubstr("cracks.strength_seed"), HasSubstr("has no effect"))));
+}
+
+TEST(SceneReader, OnlyMaterialsOfTheBodyNeedStrengthsForPotentialCracks) {
+    const std::string scene = R"(kluft: 1
+materials:
+  rock: {youngs_modulus: 10 GPa, poissons_ratio: 0.25, cohesion: 1 MPa, friction_angle: 40, tensile_strength: 1 MPa}
+  steel: {youngs_modulus: 200 GPa, poissons_ratio: 0.3}
+interfaces:
+  bond: {kind: potential_crack}
+  joint: {kind: fracture, friction_angle: 30}
+geometry:
+  domain: {rectangle: {width: 1, height: 2}}
+  material: rock
+  tessellation: {triangles: {spacing: 0.2}, interface: bond}
+stages: [{strain: {boundary: top, value: 1 %}}]
+)";
+    EXPECT_THAT(read_scene_text(scene).warnings, IsEmpty());
+    EXPECT_THAT([&] { (void)read_scene_text(scene, {"geometry.material=steel"}); },
+                ThrowsMessage<InputError>(HasSubstr("in the material steel, found neither")));
 }
 
 TEST(SceneReader, JsonIsASceneToo) {

@@ -6,8 +6,8 @@
 
 namespace kluft {
 
-/// Warnings: an interface of given blocks where the body is cut, a seed of strengths that do not scatter, a tolerance of events
-/// that are not sought. `root` is the whole scene.
+/// Warnings: an interface of given blocks where the body is cut, a seed of strengths that do not scatter. `root` is the whole
+/// scene.
 void warn_of_keys_without_effect(const SceneSection& root, const Scene& scene, ReadingContext& context);
 
 } // namespace kluft
