@@ -36,15 +36,13 @@ namespace {
 /// Numbers of what cuts the body, in order of priority: the sides of the outline, those of the holes, the fractures,
 /// the tessellation.
 struct SourceNumbers {
-    int n_sides = 0;        ///< of the outline
-    int first_fracture = 0; ///< = number of all sides
+    int first_fracture = 0; ///< = number of all sides, of the outline and of the holes
     int tessellation = 0;   ///< = first_fracture + number of fractures
 };
 
 SourceNumbers number_sources(const GeometrySpec& spec) {
     SourceNumbers numbers;
-    numbers.n_sides = static_cast<int>(spec.domain.size());
-    numbers.first_fracture = numbers.n_sides;
+    numbers.first_fracture = static_cast<int>(spec.domain.size());
     for (const Polygon& hole : spec.holes) numbers.first_fracture += static_cast<int>(hole.size());
     numbers.tessellation = numbers.first_fracture + static_cast<int>(spec.fractures.size());
     return numbers;
@@ -63,16 +61,16 @@ void check_polygon(const Polygon& polygon, const std::string& what) {
     check_finite(polygon, what);
 }
 
-/// The boundary of each side of the outline, -1 for sides in none.
+/// The boundary of each side of the outline and of the holes, -1 for sides in none.
 std::vector<int> boundary_of_sides(const GeometrySpec& spec) {
-    const int n_sides = static_cast<int>(spec.domain.size());
+    const int n_sides = number_sources(spec).first_fracture;
     std::vector<int> boundary(n_sides, -1);
     for (int k = 0; k < static_cast<int>(spec.boundaries.size()); ++k) {
         const BoundarySides& named = spec.boundaries[k];
         for (const int side : named.sides) {
             if (side < 0 || side >= n_sides) {
-                throw InputError(
-                    fmt::format("boundaries.{}: the domain has sides 0 to {}, got {}", named.name, n_sides - 1, side));
+                throw InputError(fmt::format("boundaries.{}: the domain and its holes have sides 0 to {}, got {}",
+                                             named.name, n_sides - 1, side));
             }
             if (boundary[side] >= 0 && boundary[side] != k) {
                 throw InputError(fmt::format("boundaries.{}: side {} already belongs to boundary {}", named.name, side,
@@ -564,7 +562,7 @@ private:
                 edge.start = number_of_vertex_[edge.start];
                 edge.end = number_of_vertex_[edge.end];
                 const int side = map_.source(h);
-                if (side < numbers_.n_sides) edge.boundary = boundary_of_side_[side];
+                if (side < numbers_.first_fracture) edge.boundary = boundary_of_side_[side];
                 if (edge.boundary >= 0) system_.boundaries[edge.boundary].edges.push_back({number, at});
                 side_of_half_edge_.resize(map_.half_edges.size(), {-1, -1});
                 side_of_half_edge_[h] = {number, at};

@@ -51,7 +51,8 @@ double lateral_pressure(const Scene& scene, std::size_t platen_stage) {
     double sum = 0.0;
     int n_sides = 0;
     for (std::size_t i = 0; i < scene.geometry.boundaries.size(); ++i) {
-        if (std::abs(outward_normal(scene, i).dot(axis)) > most_lateral) continue;
+        const Vec2 normal = outward_normal(scene, i);
+        if (normal.isZero() || std::abs(normal.dot(axis)) > most_lateral) continue;
         ++n_sides;
         double pressure = 0.0;
         for (std::size_t s = 0; s <= platen_stage; ++s)

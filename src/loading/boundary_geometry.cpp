@@ -42,6 +42,7 @@ Edges edges_of(const BlockSystem& system, const Side& side) {
 
 constexpr double same_plane = 1e-9;     ///< of the body's larger side
 constexpr double same_direction = 1e-6; ///< of the cosine between normals
+constexpr double faces_all_ways = 1e-9; ///< of the length: what is left of the sum of normals is round-off
 
 /// Whether a line from a point along a direction meets the body farther on than a distance.
 bool meets_body(const BlockSystem& system, const Vec2& from, const Vec2& direction, double distance) {
@@ -69,7 +70,8 @@ BoundaryFrame boundary_frame(const BlockSystem& system, int boundary) {
         frame.length += (end - start).norm();
     });
     if (frame.length == 0.0) return frame;
-    if (sum.norm() > 0.0) frame.normal = sum.normalized();
+    if (sum.norm() <= faces_all_ways * frame.length) return frame;
+    frame.normal = sum.normalized();
     for (int i = 0; i < 2; ++i) { // a side along an axis has exactly that normal
         if (std::abs(frame.normal[i]) < 1e-12)
             frame.normal = Vec2::Unit(1 - i) * (frame.normal[1 - i] < 0.0 ? -1.0 : 1.0);

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <string_view>
@@ -212,6 +213,11 @@ private:
     }
 
     void name_block_boundaries(const std::vector<SceneSection>& sections) {
+        for (const auto& section : sections)
+            if (section.has("hole"))
+                context_.fail(
+                    section, "hole",
+                    fmt::format("expected nothing for given blocks, found {}", found_text(*section.value("hole"))));
         const bool gives_sides = std::any_of(sections.begin(), sections.end(), [](const SceneSection& section) {
             return section.has("sides") || section.has("facing") || section.has("block");
         });
@@ -296,8 +302,12 @@ private:
         } else if (domain.has("polygon")) {
             set_outline(read_polygon(domain, "polygon"));
         } else {
-            read_domain_file(domain);
+            if (domain.has("holes"))
+                context_.fail(domain, "holes", "expected the holes in the map's polygon, found some beside `file`");
+            return read_domain_file(domain);
         }
+        for (const auto& hole : domain.sections("holes"))
+            if (hole.node()->is_mapping()) spec_.holes.push_back(read_polygon(hole, "polygon"));
     }
 
     void read_rectangle(const SceneSection& rectangle) {
@@ -649,9 +659,51 @@ private:
         } else if (!gives_sides) {
             name_facing_sides();
         } else {
-            for (const auto& section : sections) name_sides(section);
-            check_sides_once(sections);
+            for (const auto& section : sections)
+                if (!section.has("hole") || section.has("sides") || section.has("facing")) name_sides(section);
+            check_sides_once();
         }
+        name_walls_of_holes(sections);
+    }
+
+    /// Beside the boundaries of the outline.
+    void name_walls_of_holes(const std::vector<SceneSection>& sections) {
+        std::set<long long> named;
+        for (const auto& section : sections) {
+            if (!section.has("hole") || section.has("sides") || section.has("facing")) continue;
+            const std::vector<std::string> taken = names_of(spec_.boundaries);
+            BoundarySides wall{section.name(), {}};
+            if (std::ranges::find(taken, wall.name) != taken.end()) {
+                context_.fail(
+                    section, "hole",
+                    fmt::format("expected a name that no part of the outline has, found {}", in_quotes(wall.name)));
+                continue;
+            }
+            const long long hole = section.integer("hole");
+            const std::string problem = problem_of_hole(hole);
+            if (!problem.empty())
+                context_.fail(section, "hole", problem);
+            else if (!named.insert(hole).second)
+                context_.fail(section, "hole", fmt::format("expected each hole once, found {} again", hole));
+            else
+                wall.sides = sides_of_hole(static_cast<int>(hole));
+            spec_.boundaries.push_back(std::move(wall));
+        }
+    }
+
+    [[nodiscard]] std::string problem_of_hole(long long hole) const {
+        const auto n_holes = static_cast<long long>(spec_.holes.size());
+        if (hole >= 0 && hole < n_holes) return {};
+        if (n_holes == 0) return "expected a domain with holes, found none";
+        return fmt::format("expected a hole of the domain from 0 to {}, found {}", n_holes - 1, hole);
+    }
+
+    [[nodiscard]] std::vector<int> sides_of_hole(int hole) const {
+        auto first = static_cast<int>(spec_.domain.size());
+        for (int i = 0; i < hole; ++i) first += static_cast<int>(spec_.holes[static_cast<std::size_t>(i)].size());
+        std::vector<int> sides(spec_.holes[static_cast<std::size_t>(hole)].size());
+        std::iota(sides.begin(), sides.end(), first);
+        return sides;
     }
 
     void name_rectangle_sides(const std::vector<SceneSection>& sections) {
@@ -674,7 +726,7 @@ private:
 
     void name_sides(const SceneSection& section) {
         BoundarySides boundary{section.name(), {}};
-        if (section.node()->is_mapping() && gives_one_of(section, {"sides", "facing"}, context_))
+        if (section.node()->is_mapping() && gives_one_of(section, {"sides", "facing", "hole"}, context_))
             boundary.sides = section.has("sides") ? counted_sides(section) : facing_sides(section);
         spec_.boundaries.push_back(std::move(boundary));
     }
@@ -703,13 +755,13 @@ private:
         return sides;
     }
 
-    void check_sides_once(const std::vector<SceneSection>& sections) {
+    void check_sides_once() {
         const int n_sides = static_cast<int>(spec_.domain.size());
         std::set<int> seen;
-        for (std::size_t i = 0; i < sections.size(); ++i)
-            for (const int side : spec_.boundaries[i].sides)
+        for (const BoundarySides& boundary : spec_.boundaries)
+            for (const int side : boundary.sides)
                 if (!seen.insert(side).second)
-                    context_.fail(sections[i], {},
+                    context_.fail(root_.section("boundaries"), boundary.name,
                                   fmt::format("expected each side of the domain once, found side {} again",
                                               counter_clockwise_side(side, n_sides, is_clockwise_)));
     }

@@ -282,6 +282,18 @@ std::vector<KeyRule> domain_rules() {
          .least_items = 3,
          .doc = "Corners of a simple polygon in order, either way round. Side i of it goes from corner i to the next, "
                 "counted from 0."},
+        {.path = "geometry.domain.holes",
+         .type = KeyType::list,
+         .least_items = 1,
+         .doc = "Openings in the body, beside `rectangle` or `polygon`. Those of a map are in its polygon."},
+        {.path = "geometry.domain.holes.#", .type = KeyType::mapping, .doc = "One of them."},
+        {.path = "geometry.domain.holes.#.polygon",
+         .type = KeyType::points,
+         .measure = Measure::length,
+         .required = true,
+         .least_items = 3,
+         .doc =
+             "Corners of a simple polygon that lies in the domain and touches neither its outline nor another hole."},
         {.path = "geometry.domain.file",
          .type = KeyType::text,
          .doc = "Map with one polygon (and its holes), relative to the scene file: GeoJSON, GeoPackage (`.gpkg`) or "
@@ -582,7 +594,8 @@ std::vector<KeyRule> loading_rules() {
          .doc = "Named parts of the outline. A rectangle has `bottom`, `right`, `top`, `left`, and here they only get "
                 "supports. Any other domain has the same four (each side belongs to the direction that its outward "
                 "normal points to, within 45 degrees) unless a boundary here has `sides` or `facing`; then exactly "
-                "the boundaries given here exist, and sides in none of them are free. Of given blocks the same holds "
+                "the boundaries given here exist, and sides in none of them are free. Walls of holes are boundaries "
+                "where one here has `hole`. Of given blocks the same holds "
                 "for all sides, of which the parts that no other block shares belong to the boundary."},
         {.path = "boundaries.*", .type = KeyType::mapping, .doc = "One boundary."},
         {.path = "boundaries.*.support",
@@ -606,6 +619,12 @@ std::vector<KeyRule> loading_rules() {
              "All sides whose outward normal points within 45 degrees of this direction (at exactly 45 degrees it is "
              "`top` or `bottom`); with `block` only those of that block, without it those that no boundary with a "
              "`block` has. Not for rectangles."},
+        {.path = "boundaries.*.hole",
+         .type = KeyType::integer,
+         .range = natural,
+         .doc = "The wall of this hole of the domain, counted from 0 as `geometry.domain.holes` or the map's polygon "
+                "gives them. A pressure on it acts on the rock; it may be `fixed`, but has no platen and no other "
+                "support, since it faces all ways."},
         {.path = "boundaries.*.block",
          .type = KeyType::text,
          .fallback_note = "all blocks",

@@ -108,6 +108,29 @@ void refuse_moved_fixed_blocks(const BlockSystem& system, const LoadProgram& loa
     }
 }
 
+/// A boundary that is smooth or has a platen is so in one direction.
+void require_directions(const BlockSystem& system, const LoadProgram& loads) {
+    const auto faces_all_ways = [&](int boundary) {
+        const BoundaryFrame frame = boundary_frame(system, boundary);
+        return frame.length > 0.0 && frame.normal.isZero();
+    };
+    for (std::size_t i = 0; i < loads.supports.size(); ++i) {
+        const bool has_direction = loads.supports[i] == Support::smooth || loads.supports[i] == Support::pinned;
+        if (has_direction && faces_all_ways(static_cast<int>(i)))
+            throw InputError(
+                fmt::format("boundaries.{}.support: expected none or fixed for sides that together face all ways, "
+                            "found {}",
+                            system.boundaries[i].name, loads.supports[i] == Support::smooth ? "smooth" : "pinned"));
+    }
+    for (const Stage& stage : loads.stages) {
+        if (!stage.motion || !faces_all_ways(stage.motion->boundary)) continue;
+        throw InputError(
+            fmt::format("{}: expected a boundary for the platen that faces one way, found '{}', whose sides "
+                        "together face all ways",
+                        stage.motion->place, system.boundaries[stage.motion->boundary].name));
+    }
+}
+
 /// E and nu of the blocks of a rigid net: one law per interface type holds no more than one pair of them.
 const Material& rock_of_rigid_net(const BlockSystem& system, const ModelInput& input) {
     const Material& rock = input.materials[system.blocks.front().material];
@@ -332,6 +355,7 @@ Model build_model(BlockSystem system, const ModelInput& input) {
     model.force_points = points_of_forces(system, input.loads);
     model.histories = place_histories(system, input.histories);
     refuse_moved_fixed_blocks(system, input.loads);
+    require_directions(system, model.loads);
     const double boundary_stress = largest_boundary_stress(system, input, model.force_points);
     model.net = net_of_body(system, input);
     const LawBench bench{.system = system,

@@ -99,7 +99,8 @@ PrescribedDisplacement held(const BlockSystem& system, int boundary, int block, 
 /// The rows of the support of one boundary, each vertex of a block once.
 void add_support(const BlockSystem& system, Support support, int boundary, const Eigen::VectorXd& start,
                  std::vector<PrescribedDisplacement>& rows) {
-    const Vec2 normal = boundary_frame(system, boundary).normal;
+    const Vec2 mean_normal = boundary_frame(system, boundary).normal;
+    const Vec2 normal = mean_normal.isZero() ? Vec2::UnitX() : mean_normal; // fixed ones alone may face all ways
     const Vec2 tangent(-normal.y(), normal.x());
     const auto pin = support == Support::pinned ? middle_vertex(system, boundary) : std::nullopt;
     std::set<std::pair<int, int>> done; // (block, vertex)

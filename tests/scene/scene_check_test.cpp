@@ -472,6 +472,24 @@ TEST(SceneErrors, ARectangleThatVanishesInRoundOffHasNoArea) {
                 ElementsAre(HasSubstr("expected a rectangle with an area")));
 }
 
+TEST(SceneErrors, WallsOfHolesAreNamedOnceAndBesideTheOutline) {
+    const std::string hole = "geometry.domain.holes=[{polygon: [[0.2, 0.2], [0.4, 0.2], [0.4, 0.4]]}]";
+    const auto errors = [&](const std::string& boundaries) {
+        return errors_in(test::short_scene, {hole, "boundaries=" + boundaries});
+    };
+    EXPECT_THAT(errors("{wall: {hole: 0}, bottom: {support: fixed}}"), IsEmpty());
+    EXPECT_THAT(errors("{wall: {hole: 1}}"),
+                ElementsAre(HasSubstr("boundaries.wall.hole: expected a hole of the domain from 0 to 0, found 1")));
+    EXPECT_THAT(errors("{wall: {hole: 0}, lining: {hole: 0}}"),
+                ElementsAre(HasSubstr("boundaries.lining.hole: expected each hole once, found 0 again")));
+    EXPECT_THAT(errors("{top: {hole: 0}}"),
+                ElementsAre(HasSubstr("boundaries.top.hole: expected a name that no part of the outline has")));
+    EXPECT_THAT(errors_in(test::short_scene, {"boundaries={wall: {hole: 0}}"}),
+                ElementsAre(HasSubstr("boundaries.wall.hole: expected a domain with holes, found none")));
+    EXPECT_THAT(errors_in(test::short_scene, {"geometry.domain.holes=[{polygon: [[0, 0], [1, 1], [1, 0], [0, 1]]}]"}),
+                ElementsAre(HasSubstr("geometry.domain.holes.0.polygon: expected a simple polygon")));
+}
+
 TEST(SceneErrors, SidesOfAPolygonBelongToOneBoundaryEach) {
     const std::string polygon = "geometry.domain={rectangle: null, polygon: [[0, 0], [1, 0], [1, 2], [0, 2]]}";
     const auto errors = [&](const std::string& boundaries) {
@@ -485,9 +503,9 @@ TEST(SceneErrors, SidesOfAPolygonBelongToOneBoundaryEach) {
     EXPECT_THAT(errors("{top: {sides: [2]}, roof: {facing: top}}"),
                 ElementsAre(HasSubstr("boundaries.roof: expected each side of the domain once, found side 2 again")));
     EXPECT_THAT(errors("{top: {sides: [2]}, roof: {support: fixed}}"),
-                ElementsAre(HasSubstr("boundaries.roof: expected one of sides, facing, found none of them")));
+                ElementsAre(HasSubstr("boundaries.roof: expected one of sides, facing, hole, found none of them")));
     EXPECT_THAT(errors("{top: {sides: [2], facing: top}}"),
-                ElementsAre(HasSubstr("boundaries.top: expected one of sides, facing, found sides and facing")));
+                ElementsAre(HasSubstr("boundaries.top: expected one of sides, facing, hole, found sides and facing")));
 }
 
 TEST(SceneErrors, NamesAreMadeOfLettersDigitsUnderscoresAndHyphens) {

@@ -98,9 +98,9 @@ struct BlockSetSpec {
     bool fixed = false;      ///< they do not move or deform
 };
 
-/// A named part of the body's outline: the indices of the domain polygon's sides (side i from vertex i to i + 1), or of
-/// the given blocks' sides, counted through block after block, of which only the parts that no other block shares
-/// belong to it.
+/// A named part of the body's outline: the indices of the domain polygon's sides (side i from vertex i to i + 1) and, counted
+/// on from these, of its holes' sides, hole after hole; or of the given blocks' sides, counted through block after block, of
+/// which only the parts that no other block shares belong to it.
 struct BoundarySides {
     std::string name;
     std::vector<int> sides;

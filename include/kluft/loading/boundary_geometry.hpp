@@ -12,7 +12,8 @@
 
 namespace kluft {
 
-/// Mean outward normal of a boundary before loading (unit), and its length (m).
+/// Mean outward normal of a boundary before loading (unit; zero where its sides face all ways, as around a hole), and its
+/// length (m).
 struct BoundaryFrame {
     Vec2 normal = Vec2::Zero();
     double length = 0.0;
