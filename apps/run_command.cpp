@@ -40,7 +40,8 @@ namespace fs = std::filesystem;
 /// Passes everything on to the files and keeps the terminal informed.
 class RunObserver : public StepObserver {
 public:
-    RunObserver(const Model& model, RunWriter& writer, bool quiet) : writer_(writer), contacts_(model) {
+    RunObserver(const Model& model, CrackCriterion criterion, RunWriter& writer, bool quiet)
+        : writer_(writer), contacts_(model, criterion) {
         if (!quiet) line_ = std::make_unique<ProgressLine>(ProgressLine::on_standard_error());
     }
     void equilibrium(const StepRecord& record) override { writer_.equilibrium(record); }
@@ -101,7 +102,7 @@ void write_report(const SceneModel& built, const Scene& scene, const RunWriter& 
 ExitCode simulate(const SceneModel& built, const Scene& scene, State& state, RunWriter& writer, RunLog& log,
                   const fs::path& directory, double earlier_cpu, bool quiet) {
     const Model& model = built.model;
-    RunObserver observer(model, writer, quiet);
+    RunObserver observer(model, scene.cracks.criterion, writer, quiet);
     RunReport report = run_stages(model, scene, state, observer, stop_requested);
     observer.clear();
     warn_of_contacts(model, state, observer.contacts(), report);

@@ -396,7 +396,7 @@ private:
     std::optional<Progress> progress_; ///< guarded by turn_
 
     std::string row_;
-    ContactWatch contacts_{model()};
+    ContactWatch contacts_{model(), scene_.cracks.criterion};
     RunReport report_;
     std::string closing_;
     std::shared_ptr<const BodyState> snapshot_;

@@ -15,12 +15,18 @@ namespace {
 
 constexpr double clear_excess = 2.0; ///< of the tensile strength
 
-/// The largest normal traction of a bond along which it is linear, at one of its ends (Pa): its points are Gauss's.
-double tension_at_end(const LoadedBody& body, int bond, const Eigen::VectorXd& q) {
+/// Normal tractions of a bond along which it is linear (Pa): its points are Gauss's.
+struct NormalTractions {
+    double mean = 0.0;
+    double largest = 0.0; ///< at one of its ends
+};
+
+NormalTractions normal_tractions(const LoadedBody& body, int bond, const Eigen::VectorXd& q) {
     static_assert(n_bond_points == 2);
     const double first = bond_traction(body, bond, 0, q).normal;
     const double second = bond_traction(body, bond, 1, q).normal;
-    return 0.5 * (first + second + std::numbers::sqrt3 * std::abs(first - second));
+    const double mean = 0.5 * (first + second);
+    return {mean, mean + 0.5 * std::numbers::sqrt3 * std::abs(first - second)};
 }
 
 } // namespace
@@ -34,8 +40,9 @@ std::string bond_bending_warning(const Model& model, const State& state) {
             const Bond& bond = bonds[i];
             if (model.system.interfaces[bond.interface].origin != EdgeOrigin::given) continue;
             const double strength = model.strengths[bond.interface].tensile_strength;
-            const double tension = tension_at_end(body, i, state.body.displacement);
-            if (tension <= clear_excess * strength || tension <= largest) continue;
+            const auto [mean, tension] = normal_tractions(body, i, state.body.displacement);
+            const bool is_torn = mean > strength; // bending is the least of it
+            if (is_torn || tension <= clear_excess * strength || tension <= largest) continue;
             largest = tension;
             warning = fmt::format(
                 "the bond of blocks {} and {} bends: one of its ends is pulled by {:.3g} MPa, {:.2g} times its tensile "

@@ -76,11 +76,40 @@ std::string key_of_force(const LoadProgram& loads, int force) {
                        loads.forces[static_cast<std::size_t>(force)].name);
 }
 
-std::vector<MaterialPoint> points_of_forces(const BlockSystem& system, const LoadProgram& loads) {
+/// The blocks that a force without a block may act on: of several that meet at its point those that are not fixed.
+std::vector<int> blocks_under(const BlockSystem& system, const Vec2& point) {
+    std::vector<int> blocks;
+    for (int b = 0; b < system.n_blocks(); ++b)
+        if (block_contains(system, b, point)) blocks.push_back(b);
+    std::ranges::stable_partition(blocks, [&](int b) { return !system.blocks[b].fixed; });
+    return blocks;
+}
+
+/// Whether two of the blocks meet along something that is no edge of a net.
+bool meet_at_a_joint(const BlockSystem& system, const std::vector<int>& blocks) {
+    const auto is_one = [&](int block) { return std::ranges::find(blocks, block) != blocks.end(); };
+    return std::ranges::any_of(system.interfaces, [&](const Interface& each) {
+        return each.origin != EdgeOrigin::tessellation && is_one(each.block_a) && is_one(each.block_b);
+    });
+}
+
+std::vector<MaterialPoint> points_of_forces(const BlockSystem& system, const LoadProgram& loads,
+                                            std::vector<std::string>& warnings) {
     std::vector<MaterialPoint> points;
     for (const PointForce& force : loads.forces) {
         const std::string key = key_of_force(loads, static_cast<int>(points.size()));
-        points.push_back(material_point(system, force.block, force.point, key));
+        const std::vector<int> blocks = force.block.empty() ? blocks_under(system, force.point) : std::vector<int>{};
+        if (blocks.size() < 2) {
+            points.push_back(material_point(system, force.block, force.point, key));
+            continue;
+        }
+        points.push_back(
+            {blocks.front(), block_coordinates(system.blocks[blocks.front()], force.point - system.origin)});
+        if (meet_at_a_joint(system, blocks))
+            warnings.push_back(
+                fmt::format("{}: its point lies where blocks {} and {} meet, and it acts on the first; `block` "
+                            "names another, a point inside of one leaves no doubt",
+                            key, block_label(system, blocks[0]), block_label(system, blocks[1])));
     }
     return points;
 }
@@ -352,7 +381,7 @@ Model build_model(BlockSystem system, const ModelInput& input) {
     model.loads = input.loads;
     model.loads.supports.resize(system.boundaries.size(), Support::none);
 
-    model.force_points = points_of_forces(system, input.loads);
+    model.force_points = points_of_forces(system, input.loads, model.warnings);
     model.histories = place_histories(system, input.histories);
     refuse_moved_fixed_blocks(system, input.loads);
     require_directions(system, model.loads);

@@ -2,10 +2,13 @@
 
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "kluft/assembly/blas.hpp"
 #include "kluft/contact/bonds.hpp"
 #include "kluft/simulation/accurate_steps.hpp"
 #include "kluft/simulation/causes.hpp"
+#include "kluft/simulation/fallen_blocks.hpp"
 #include "kluft/simulation/fixed_steps.hpp"
 #include "kluft/simulation/load_step.hpp"
 #include "kluft/simulation/strength_search.hpp"
@@ -77,6 +80,18 @@ std::vector<std::string> causes_of(const StepBench& bench, const State& state, c
     return likely_causes(bench.model, at, end.failure ? end.failure->moving : state.imbalance.moving);
 }
 
+/// A body that has given way under given loads, and stands elsewhere, is balanced like any other.
+void warn_of_fall(const StepBench& bench, const State& state) {
+    const Stage& stage = bench.stage(state);
+    if (!is_loaded_by_stress(stage) || stage.strength_reduction) return;
+    const std::string fall = description_of_fall(bench.model, state.stage_start.displacement, state);
+    if (fall.empty()) return;
+    bench.journal.report().warnings.push_back(fmt::format(
+        "the body gave way under the loads of stage {} and came to rest elsewhere (a jump): {}. What is found of "
+        "it then is not the strength of the body as cut",
+        state.at.stage, fall));
+}
+
 /// The next stage starts from the loads at the end of this one.
 void end_stage(const StepBench& bench, Eigen::VectorXd forces, State& state) {
     if (forces.size() == 0) forces = measure_state(bench, state, 1.0).measured.forces; // resumed at the end of a stage
@@ -116,6 +131,7 @@ RunReport run_simulation(const Model& model, const CrackOptions& cracks, const S
             StageEnd end = run_stage(bench, state);
             const bool last = state.at.stage + 1 == static_cast<int>(model.loads.stages.size());
             end.causes = causes_of(bench, state, end);
+            warn_of_fall(bench, state);
             if (end.ends_run() || last || state.unbalanced_in_succession > 0) return journal.ended(state, end);
             end_stage(bench, std::move(end.forces), state);
         }

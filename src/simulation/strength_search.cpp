@@ -12,6 +12,7 @@
 #include "kluft/blocks/block_search.hpp"
 #include "kluft/kinematics/affine.hpp"
 #include "kluft/simulation/corner_contact.hpp"
+#include "kluft/simulation/fallen_blocks.hpp"
 #include "kluft/simulation/over_damped_motion.hpp"
 #include "kluft/simulation/strength_reduction.hpp"
 
@@ -45,6 +46,23 @@ std::optional<Failure> find_initial_equilibrium(const StepBench& bench, State& s
     bench.journal.warn(step, state.at.step + 1);
     equilibria = std::move(step.equilibria);
     return std::nullopt;
+}
+
+/// A body that has given way under the loads before, and rests in another place, has failed with the strengths it had then, as in
+/// (32b). What a platen of given travel has moved has not fallen.
+std::optional<Failure> failure_before(const StepBench& bench, const State& state) {
+    const std::vector<Stage>& stages = bench.model.loads.stages;
+    if (std::any_of(stages.begin(), stages.begin() + state.at.stage, prescribes_strain)) return std::nullopt;
+    const Eigen::VectorXd as_cut = Eigen::VectorXd::Zero(state.body.displacement.size());
+    const std::string fall = description_of_fall(bench.model, as_cut, state);
+    if (fall.empty()) return std::nullopt;
+    return Failure{.kind = FailureKind::falling,
+                   .load_factor = 0.0,
+                   .strength_factor = strength_factor(bench.model.loads, state.at.stage, 0.0),
+                   .what =
+                       fmt::format("the body has given way under its loads before strengths are reduced, and rests in "
+                                   "another place: {}. Its factor of safety is below `from`, with which it was loaded",
+                                   fall)};
 }
 
 /// What a load step to a factor has come to.
@@ -180,6 +198,8 @@ StageEnd find_strength_limit(const StepBench& bench, State& state) {
     Doubts doubts(bench.model, state);
     doubts.look_at(state, bench.journal.last_row(), reduction.factor_at(state.at.load_factor));
     std::vector<StepRecord> before; // equilibria that are not told yet
+    if (state.at.load_factor == 0.0) end.failure = failure_before(bench, state);
+    if (end.failure) return {.failure = end.failure, .step = state.at.step + 1};
     if (state.at.load_factor == 0.0) end.failure = find_initial_equilibrium(bench, state, before);
     if (end.failure) return {.failure = end.failure, .step = state.at.step + 1};
     const auto width = [&](double to) { // of the factors from the last equilibrium on, relative

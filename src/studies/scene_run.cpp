@@ -113,6 +113,7 @@ void ContactWatch::step(const StepRecord& record, const State& state) {
     for (const double stress : {record.axial_stress, record.lateral_stress})
         largest_stress_ = std::max(largest_stress_, std::abs(stress));
     corners_.step(record, state);
+    bonds_.step(record, state);
 }
 
 void warn_of_contacts(const Model& model, const State& state, const ContactWatch& watch, RunReport& report) {
@@ -120,7 +121,7 @@ void warn_of_contacts(const Model& model, const State& state, const ContactWatch
     try {
         for (const std::string& warning :
              {contact_pressure_warning(model, state, watch.largest_stress()), corner_contact_warning(model, state),
-              watch.corners().warning(), bond_bending_warning(model, state)})
+              watch.corners().warning(), watch.bonds().warning(), bond_bending_warning(model, state)})
             if (!warning.empty()) report.warnings.push_back(warning);
     } catch (const std::bad_alloc&) {
         return;

@@ -209,6 +209,13 @@ void ReportBuilder::add_head() {
         items.push_back(fmt::format("{} unbalanced load steps: marked in the plots, and never recommended.",
                                     counted(static_cast<std::size_t>(n_unbalanced), "case") +
                                         (n_unbalanced == 1 ? " has" : " have")));
+    const auto references = reference_marks(table_);
+    for (std::size_t i = 0; i < references.size(); ++i)
+        if (references[i] && unbalanced_[i])
+            items.push_back(
+                fmt::format("{} is a reference and has unbalanced load steps: what is measured against it is "
+                            "known no better than it is.",
+                            table_.cases[i].name));
     if (auto answer = found_answer()) add(std::move(*answer));
     add(ReportList{std::move(items)});
     auto varied = varied_items();
@@ -592,7 +599,8 @@ void ReportBuilder::add_cases() {
         std::vector<std::string> row{each.name};
         for (std::size_t p = 0; with_settings && p < table_.parameters.size(); ++p)
             row.push_back(each.settings[p].empty() ? "as the scene" : each.settings[p]);
-        row.push_back(references[i] ? "reference" : status_text(each.status) + (unbalanced_[i] ? ", unbalanced" : ""));
+        row.push_back((references[i] ? std::string("reference") : status_text(each.status)) +
+                      (unbalanced_[i] ? ", unbalanced" : ""));
         for (const auto& [measure, with_error] : shown) {
             if (!measure->is_curve)
                 row.push_back(measure->values[i] ? value_text(*measure, *measure->values[i]) : unknown);

@@ -275,5 +275,30 @@ TEST(Model, FixedBlocksForcesAndGravityBelongToTheFingerprint) {
     EXPECT_NE(print({heavy}), print({heavy, "stages.1.gravity=1"}));
 }
 
+// 2 MN/m along a joint of 1 m under 1 MPa, of tan(40) = 0.839 MN/m: the upper block slides. The force's point lies on the joint; on
+// the fixed block below it would push nothing.
+TEST(GivenBlocks, ForceOnAJointActsOnTheBlockThatIsNotFixed) {
+    const std::string scene = R"(kluft: 1
+materials: {rock: {density: 2500, youngs_modulus: 10 GPa, poissons_ratio: 0.2}}
+interfaces: {joint: {kind: fracture, normal_stiffness: 100 GPa/m, shear_stiffness: 50 GPa/m, friction_angle: 40}}
+geometry:
+  blocks_interface: joint
+  blocks:
+    - {name: lower, polygon: [[-1, -1], [2, -1], [2, 0], [-1, 0]], support: fixed}
+    - {name: upper, polygon: [[0, 0], [1, 0], [1, 0.5], [0, 0.5]]}
+boundaries: {top: {block: upper, facing: top}}
+stages:
+  - {pressure: {top: 1 MPa}}
+  - {forces: {push: {point: [0, 0], force: [2 MN/m, 0]}}, steps: 10}
+)";
+    const SceneRun run = run_scene(scene);
+    EXPECT_EQ(run.report.status, RunStatus::no_equilibrium);
+    EXPECT_LT(run.history.back().load_factor, 0.43);
+    EXPECT_THAT(run.model.warnings, testing::Contains(testing::AllOf(testing::HasSubstr("stages.1.forces.push"),
+                                                                     testing::HasSubstr("'upper' and 'lower' meet"))));
+    const SceneRun named = run_scene(scene, {"stages.1.forces.push.block=upper"});
+    EXPECT_THAT(named.model.warnings, testing::IsEmpty());
+}
+
 } // namespace
 } // namespace kluft

@@ -93,6 +93,19 @@ TEST(StudyReport, SaysOrderLimitFailuresAndWhatAccuracyCosts) {
     EXPECT_THAT(page, Not(HasSubstr("src=\"study-")));
 }
 
+TEST(StudyReport, SaysThatTheReferenceIsOutOfBalance) {
+    const TemporaryDirectory directory;
+    StudyTable table = refined_table(directory.path());
+    table.reference = table.cases.size() - 1;
+    EXPECT_THAT((write_study_report(table, directory.path()), read_file(directory / "study.md")),
+                Not(HasSubstr("is a reference and has unbalanced load steps")));
+    write_case(directory / "cases" / "event-400", 1.5e6, 1);
+    write_study_report(table, directory.path());
+    const std::string text = read_file(directory / "study.md");
+    EXPECT_THAT(text, HasSubstr("event-400 is a reference and has unbalanced load steps"));
+    EXPECT_THAT(text, HasSubstr("reference, unbalanced"));
+}
+
 TEST(StudyReport, DrawsTheBandOfReplicasAndCountsMembers) {
     const TemporaryDirectory directory;
     StudyTable table = made_table({}, std::nullopt);

@@ -9,6 +9,7 @@
 #include "kluft/output/summary.hpp"
 #include "kluft/scene/scene.hpp"
 #include "kluft/simulation/model.hpp"
+#include "kluft/simulation/overloaded_bonds.hpp"
 #include "kluft/simulation/overloaded_corners.hpp"
 #include "kluft/simulation/run_report.hpp"
 #include "kluft/simulation/state.hpp"
@@ -38,7 +39,7 @@ RunReport run_stages(const Model& model, const Scene& scene, State& state, StepO
 /// What the warnings at the end of a run need to know of its load steps. The model must outlive it.
 class ContactWatch {
 public:
-    explicit ContactWatch(const Model& model) : corners_(model) {}
+    ContactWatch(const Model& model, CrackCriterion criterion) : corners_(model), bonds_(model, criterion) {}
 
     /// A committed load step.
     void step(const StepRecord& record, const State& state);
@@ -46,13 +47,16 @@ public:
     /// Measured on the boundaries (Pa).
     [[nodiscard]] double largest_stress() const { return largest_stress_; }
     [[nodiscard]] const CornerWatch& corners() const { return corners_; }
+    [[nodiscard]] const BondWatch& bonds() const { return bonds_; }
 
 private:
     CornerWatch corners_;
+    BondWatch bonds_;
     double largest_stress_ = 0.0;
 };
 
-/// Adds warnings of contacts that are pressed far more than the loads apply or than rock bears. Where memory has run out, what was run
+/// Adds warnings of contacts that are pressed far more than the loads apply or than rock bears, and of bonds that carry more than
+/// they bear. Where memory has run out, what was run
 /// is all that counts.
 void warn_of_contacts(const Model& model, const State& state, const ContactWatch& watch, RunReport& report);
 

@@ -1,0 +1,42 @@
+// Bonds between blocks that are no cells of a net, which carry more than their own strength: mean stresses of large blocks say
+// little of the bond between them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kluft/simulation/model.hpp"
+#include "kluft/simulation/simulation_options.hpp"
+#include "kluft/simulation/state.hpp"
+#include "kluft/simulation/step_record.hpp"
+
+namespace kluft {
+
+/// Follows a run in which bonds fail by the mean stress of their two blocks (CrackCriterion::principal_stress), and remembers
+/// that bond of given blocks, or of a trace between blocks larger than the cells of a net, whose own traction was the most of what
+/// it bears, by (24). Costs nothing where there is none. `model` must outlive it.
+class BondWatch {
+public:
+    BondWatch(const Model& model, CrackCriterion criterion);
+
+    /// A committed load step.
+    void step(const StepRecord& record, const State& state);
+
+    /// What is to be said where the bond carried more than 1.1 times its strength; "" where it did not.
+    [[nodiscard]] std::string warning() const;
+
+private:
+    struct Overload {
+        int interface = -1;
+        int step = 0;
+        double index = 0.0;  ///< failure index by (24)
+        double normal = 0.0; ///< mean traction (Pa, positive in tension)
+        double shear = 0.0;
+    };
+
+    const Model& model_;
+    std::vector<int> interfaces_; ///< of large blocks, with a bond in the body as cut
+    Overload worst_;
+};
+
+} // namespace kluft
