@@ -58,11 +58,13 @@ void keep_judged(double size, const StepError& error, bool branches, double accu
     control.path_error += error.path;
 }
 
-StepGoal accurate_goal(const StepBench& bench, const State& before, double target, double accuracy) {
+/// Up to the peak potential cracks fail together as far as the scene has them do so, however roughly their event is met.
+StepGoal accurate_goal(const StepBench& bench, const State& before, double target, const LocalAccuracy& local) {
     StepGoal goal = goal_at(bench, target, is_checked(bench, before, target == 1.0));
-    goal.accuracy = accuracy;
-    goal.cracks.event_tolerance = accuracy;
-    goal.balance.share = std::min(bench.solver.balance, accurate_balance * accuracy);
+    goal.accuracy = local.accuracy;
+    goal.cracks.event_tolerance =
+        local.past_peak ? local.accuracy : std::min(local.accuracy, bench.cracks.event_tolerance);
+    goal.balance.share = std::min(bench.solver.balance, accurate_balance * local.accuracy);
     return goal;
 }
 
@@ -111,8 +113,7 @@ Step take_accurate_step(const StepBench& bench, const State& before) {
     Rejected rejected;
     for (bool again = false;; again = true) {
         const double size = fitted_step_size(control.size, remaining);
-        StepGoal goal =
-            accurate_goal(bench, before, size < remaining ? before.at.load_factor + size : 1.0, local.accuracy);
+        StepGoal goal = accurate_goal(bench, before, size < remaining ? before.at.load_factor + size : 1.0, local);
         goal.solves_before = solves_before;
         Attempt attempt = try_step(bench, before, goal, control, local.small_step(), again);
         StepControl& reached = attempt.step.end.control;

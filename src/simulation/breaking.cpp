@@ -23,11 +23,13 @@ std::vector<CrackCandidate> candidates(const StepInProgress& p, const Placement&
                         loaded_body(model, placement, at), q);
 }
 
-/// Those that fail together: at an event of a step from an accuracy, the first time, all within its tolerance around 1.
+/// Those that fail together: at an event of a step from an accuracy, which it meets to within that, the first time the foremost of
+/// those around 1.
 std::vector<CrackCandidate> breaking(const StepGoal& goal, const std::vector<CrackCandidate>& all, bool first) {
     const bool around_one = first && goal.accuracy > 0.0 && goal.cracks.update == CrackUpdate::event;
-    if (!around_one || largest_index(all) > 1.0 + goal.accuracy) return chosen_to_fail(goal.cracks, all);
-    return failing(all, 1.0 - goal.accuracy);
+    const double largest = largest_index(all);
+    if (!around_one || largest > 1.0 + goal.accuracy) return chosen_to_fail(goal.cracks, all);
+    return failing(all, std::max(1.0 - goal.accuracy, largest - goal.cracks.event_tolerance));
 }
 
 } // namespace

@@ -239,5 +239,18 @@ TEST(SlowStepControl, PeakOfACrackingSampleIsMetToTheAccuracyFromAnyFirstStep) {
     }
 }
 
+// Two cracks of this specimen nearly fail together, and the first relieves the second: failing both at once takes it to 15.5 MPa.
+// Against fixed load steps with events located to 1e-4.
+TEST(SlowStepControl, ACrackThatItsNeighbourRelievesDoesNotFailWithIt) {
+    const auto peak_with = [](const std::string& setting) {
+        return peak_of(run_scene(read_scene(KLUFT_SOURCE_DIR "/models/quickstart.yaml",
+                                            {setting, "stages.1.stop_after_drop=2 %", "stages.1.steps=20"})));
+    };
+    const double reference = peak_with("cracks.event_tolerance=1e-4");
+    for (const double accuracy : {0.01, 0.005})
+        EXPECT_NEAR(peak_with(fmt::format("solver.accuracy={}", accuracy)), reference, accuracy * reference)
+            << accuracy;
+}
+
 } // namespace
 } // namespace kluft
