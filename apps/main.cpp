@@ -34,12 +34,18 @@ constexpr int most_threads = 4096;
 
 using Command = std::function<ExitCode()>; ///< what the command line asks for
 
-int exit_with(ExitCode code) { return static_cast<int>(code); }
+/// OpenBLAS waits in its exit handler for threads that wait for memory.
+bool leaves_without_handlers = false;
 
-/// Without the exit handlers of libraries: OpenBLAS waits there for a thread that waits for memory.
-[[noreturn]] void leave_out_of_resources() {
+/// Without the exit handlers of libraries.
+[[noreturn]] void leave(ExitCode code) {
     std::fflush(nullptr);
-    std::_Exit(exit_with(ExitCode::out_of_resources));
+    std::_Exit(static_cast<int>(code));
+}
+
+int exit_with(ExitCode code) {
+    if (leaves_without_handlers || code == ExitCode::out_of_resources) leave(code);
+    return static_cast<int>(code);
 }
 
 /// Memory for GMP, which otherwise aborts the program where there is none. It is used before the first load step only.
@@ -47,7 +53,7 @@ void* gmp_reallocate(void* old, std::size_t, std::size_t size) {
     void* const memory = std::realloc(old, size);
     if (memory == nullptr) {
         std::fputs("out of memory\n", stderr);
-        leave_out_of_resources();
+        leave(ExitCode::out_of_resources);
     }
     return memory;
 }
@@ -114,7 +120,6 @@ int finished(ExitCode code) {
         std::fprintf(stderr, "%s\n", lost.c_str());
         if (code == ExitCode::done || code == ExitCode::missed) code = ExitCode::out_of_resources;
     }
-    if (code == ExitCode::out_of_resources) leave_out_of_resources();
     return exit_with(code);
 }
 
@@ -475,14 +480,12 @@ int main(int argc, char** argv) {
         kluft::take_termination();
         kluft::open_standard_streams();
         kluft::leave_writing_to_its_result();
-        kluft::end_blas_threads();
+        leaves_without_handlers = !kluft::end_blas_threads();
         kluft::choose_blas_kernels(argv);
         mp_set_memory_functions(gmp_allocate, gmp_reallocate, nullptr);
         load_unwinder();
         return program(argc, argv);
     } catch (...) {
-        const ExitCode code = kluft::tell_failure();
-        if (code == ExitCode::out_of_resources) leave_out_of_resources();
-        return exit_with(code);
+        return exit_with(kluft::tell_failure());
     }
 }

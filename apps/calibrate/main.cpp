@@ -1,5 +1,7 @@
 // kluft-calibrate, which `kluft calibrate` starts: what needs Ipopt.
 #include <chrono>
+#include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -77,16 +79,22 @@ kluft::ExitCode run(const std::vector<std::string>& words) {
 } // namespace
 
 int main(int argc, char** argv) {
+    bool leaves_without_handlers = false; // OpenBLAS waits in its own for threads that wait for memory
+    const auto leave = [&](ExitCode code) {
+        if (!leaves_without_handlers) return static_cast<int>(code);
+        std::fflush(nullptr);
+        std::_Exit(static_cast<int>(code));
+    };
     try {
         kluft::take_termination();
         kluft::open_standard_streams();
         kluft::leave_writing_to_its_result();
-        kluft::end_blas_threads();
+        leaves_without_handlers = !kluft::end_blas_threads();
         const ExitCode code = run({argv, argv + argc});
         const std::string lost = kluft::lost_output();
-        if (lost.empty()) return static_cast<int>(code);
+        if (lost.empty()) return leave(code);
         throw kluft::ResourceError(lost);
     } catch (...) {
-        return static_cast<int>(kluft::tell_failure());
+        return leave(kluft::tell_failure());
     }
 }

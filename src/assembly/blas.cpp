@@ -189,13 +189,15 @@ OwnThreads::~OwnThreads() {
     if (--n_own_threads == 0) give_blas(threads_before);
 }
 
-void end_blas_threads() {
+bool end_blas_threads() {
     const std::lock_guard lock(own_threads_mutex);
-    if (has_no_threads) return;
+    if (has_no_threads) return true;
+    if (!has_room_for_work_spaces(openblas_get_num_threads())) return false;
     if (n_own_threads == 0) threads_before = openblas_get_num_threads();
     openblas_set_num_threads(1);
     if (blas_thread_shutdown_ != nullptr) blas_thread_shutdown_();
     has_no_threads = true;
+    return true;
 }
 
 void set_blas_threads(int n_threads) {

@@ -437,6 +437,14 @@ double least_area(const GeometrySpec& spec) {
     return std::max(rounding_area * domain_area, spec.minimum_area * std::min(mean_cell_area(spec), domain_area));
 }
 
+/// A face that is narrower is no block of its own (m).
+double least_width(const GeometrySpec& spec, const LocalFrame& frame) {
+    constexpr double hair = 1e-6; // of the diagonal: what lies between two traces of one joint
+    if (has_triangles(spec))
+        return resolution(spec, frame); // a strip would be filled with triangles as narrow as it is
+    return hair * frame.box.upper.norm();
+}
+
 void note_free_pieces(const FreePieces& free, CutReport& report) {
     report.pruned_ends = free.count;
     report.longest_pruned = free.longest;
@@ -446,7 +454,7 @@ MendLimits mend_limits(const GeometrySpec& spec, const LocalFrame& frame, const 
     MendLimits limits;
     limits.area = least_area(spec);
     limits.edge = resolution(spec, frame);
-    if (has_triangles(spec)) limits.width = limits.edge; // a strip would be filled with triangles as narrow as it is
+    limits.width = least_width(spec, frame);
     limits.rounding = 4.0 * std::numeric_limits<double>::epsilon() * frame.box.upper.norm();
     limits.first_fracture = numbers.first_fracture;
     limits.tessellation = numbers.tessellation;
@@ -804,8 +812,9 @@ private:
         } else if ((extent.upper - extent.lower).norm() < resolution_) {
             loss.cause = LostFracture::Cause::too_short;
         } else if (const auto piece = cut_off_.find(numbers_.first_fracture + fracture);
-                   piece != cut_off_.end() && piece->second < least_area(spec_)) {
-            loss.cause = LostFracture::Cause::cuts_off_little;
+                   piece != cut_off_.end() && (piece->second < least_area(spec_) || !has_triangles(spec_))) {
+            loss.cause = piece->second < least_area(spec_) ? LostFracture::Cause::cuts_off_little
+                                                           : LostFracture::Cause::cuts_off_a_hair;
             loss.area = piece->second;
         } else if (has_triangles(spec_) && (region_.empty() || contains(region_, places[places.size() / 2]))) {
             loss.cause = LostFracture::Cause::too_near;
@@ -882,6 +891,7 @@ CutBody cut(const GeometrySpec& spec, ExactCells exact) {
     body.report.lost = LossSearch(spec, frame, numbers, mended.cut_off).lost(body.system);
     body.report.resolution = resolution(spec, frame);
     body.report.minimum_area = least_area(spec);
+    body.report.minimum_width = least_width(spec, frame);
     if (has_triangles(spec)) body.report.fine_details = fine_details(spec, body.report.resolution);
     form_sets(spec, body.system);
     return body;

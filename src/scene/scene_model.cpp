@@ -35,6 +35,9 @@ std::string reason(const LostFracture& lost, const GeometrySpec& geometry, const
         return fmt::format("what it cuts off is {:.3g} m2, less than {:.3g} m2, the smallest block "
                            "(`geometry.minimum_area`)",
                            lost.area, report.minimum_area);
+    case LostFracture::Cause::cuts_off_a_hair:
+        return fmt::format("what it cuts off from another line is narrower than {:.3g} m, the smallest block",
+                           report.minimum_width);
     case LostFracture::Cause::too_near:
         return fmt::format("it lies nearer to another line than {:.3g} m, the smallest length that the net resolves, "
                            "or at less than 14 degrees to it",
@@ -57,7 +60,8 @@ std::vector<std::string> lost_fractures(const GeometrySpec& geometry, const CutR
     std::vector<std::string> warnings;
     for (const auto cause :
          {LostFracture::Cause::too_short, LostFracture::Cause::coincides, LostFracture::Cause::cuts_off_little,
-          LostFracture::Cause::too_near, LostFracture::Cause::separates_nothing, LostFracture::Cause::in_part}) {
+          LostFracture::Cause::cuts_off_a_hair, LostFracture::Cause::too_near, LostFracture::Cause::separates_nothing,
+          LostFracture::Cause::in_part}) {
         std::vector<LostFracture> of_cause;
         std::ranges::copy_if(report.lost, std::back_inserter(of_cause),
                              [cause](const LostFracture& lost) { return lost.cause == cause; });

@@ -445,6 +445,29 @@ TEST(BlockCutter, AJointThatCutsOffTooLittleIsSaidToDoSo) {
     EXPECT_NEAR(body.report.lost[0].area, 0.005, 1e-12);
 }
 
+// One joint that is drawn twice, as on a map: what lies between the two lines is no block, though its area is above the minimum.
+// Between two that are 1e-5 of the body's size apart lies a layer.
+TEST(BlockCutter, AHairBetweenTwoTracesIsNoBlock) {
+    for (const double apart : {1e-10, 1e-8, 1e-6}) {
+        const std::vector<std::pair<Vec2, Vec2>> second = {{{-1, 2.0 - apart}, {11, 3.0 + apart}},
+                                                           {{-1, 2}, {11, 3.0 + apart}},
+                                                           {{-1, 2.0 + apart}, {11, 3.0 + apart}}};
+        for (const auto& [from, to] : second) {
+            GeometrySpec spec = rectangle(10, 10);
+            add_trace(spec, {{-1, 2}, {11, 3}});
+            add_trace(spec, {from, to});
+            const CutBody body = sound_cut(spec);
+            EXPECT_EQ(body.system.n_blocks(), 2) << apart;
+            ASSERT_EQ(body.report.lost.size(), 1U) << apart;
+            EXPECT_EQ(body.report.lost[0].cause, LostFracture::Cause::cuts_off_a_hair) << apart;
+        }
+    }
+    GeometrySpec layer = rectangle(10, 10);
+    add_trace(layer, {{-1, 2}, {11, 3}});
+    add_trace(layer, {{-1, 2.0001}, {11, 3.0001}});
+    EXPECT_EQ(sound_cut(layer).system.n_blocks(), 3);
+}
+
 TEST(BlockCutter, SliversPreferToLeaveAcrossTheTessellation) {
     for (int seed = 0; seed < 20; ++seed) {
         Uniform uniform(100 + seed);

@@ -13,7 +13,7 @@ MEGABYTE = 1 << 20
 
 def limited(bench, i):
     which = ["-f", "-v", "-t"][i % 3]
-    names = ["run", "study", "slope", "calibration", "draw a run", "envelope"]
+    names = ["run", "study", "slope", "calibration", "draw a run", "envelope", "check"]
     name = "run" if which == "-t" else names[i // 3 % len(names)]
     words, rng, cwd = bench.jobs()[name], bench.rng("limits", i), bench.place("limited", i)
     if which == "-t":

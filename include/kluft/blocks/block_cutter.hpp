@@ -16,6 +16,7 @@ struct LostFracture {
         too_short,         ///< than what is resolved
         coincides,         ///< with an earlier fracture or the outline
         cuts_off_little,   ///< a piece below the minimum area
+        cuts_off_a_hair,   ///< a strip that is too narrow for a block
         too_near,          ///< to another line, of a net of triangles
         separates_nothing, ///< it ends inside blocks
         in_part            ///< pieces of it are too near to another line
@@ -23,7 +24,7 @@ struct LostFracture {
     int fracture = 0;
     Cause cause = Cause::separates_nothing;
     int other = -1;      ///< the fracture that it coincides with; -1 for the outline and other causes
-    double area = 0.0;   ///< of the largest piece that it cuts off, where that is too little (m2)
+    double area = 0.0;   ///< of the largest piece that it cuts off, where that is too little or a hair (m2)
     double length = 0.0; ///< of what is missing of a part, where no fracture is within two resolutions (m)
 };
 
@@ -56,6 +57,7 @@ struct CutReport {
     std::vector<FineDetail> fine_details; ///< of a body with triangles
     double resolution = 0.0;              ///< the smallest length that the cut resolves (m)
     double minimum_area = 0.0;            ///< the smallest piece that is a block of its own (m2)
+    double minimum_width = 0.0;           ///< smallest width of a block, twice its area over its perimeter (m)
     double smallest_area = 0.0;           ///< m2
     double smallest_edge = 0.0;           ///< m
     double smallest_angle = 0.0;          ///< radians, between successive edges of a block
