@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <limits>
 #include <string_view>
 #include <type_traits>
@@ -108,7 +109,9 @@ template <class Number> bool parse_number(std::string_view text, Number& value) 
 
 /// Each returns what was expected when the text is something else, otherwise nothing.
 std::string_view parse(std::string_view text, int& value) { return parse_number(text, value) ? "" : "an integer"; }
-std::string_view parse(std::string_view text, double& value) { return parse_number(text, value) ? "" : "a number"; }
+std::string_view parse(std::string_view text, double& value) {
+    return parse_number(text, value) && !std::isnan(value) ? "" : "a number";
+}
 std::string_view parse(std::string_view text, bool& value) {
     value = text == "1";
     return text == "0" || text == "1" ? "" : "0 or 1";

@@ -4,6 +4,8 @@
 #include <string_view>
 #include <system_error>
 
+#include <fmt/format.h>
+
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/core/nearest_name.hpp"
 #include "kluft/output/history_table.hpp"
@@ -93,6 +95,11 @@ FinishedRun read_finished_run(const fs::path& directory, const std::string& name
         run.summary = read_summary(directory / "summary.json");
         run.platen_stage = run.summary->platen_stage;
         run.numbers = run.summary->numbers;
+        if (run.history.back().step != run.numbers.steps)
+            run.notes.push_back(
+                fmt::format("history.csv of {} ends at load step {}, its summary.json says {}: one of them is "
+                            "damaged or of another run",
+                            run.name, run.history.back().step, run.numbers.steps));
         return run;
     }
     run.notes.push_back(directory.string() + " has no summary.json: its numbers are made from its tables");

@@ -108,6 +108,8 @@ TEST(HistoryTable, SaysWhereWhatWasExpectedAndFound) {
                 ThrowsMessage<InputError>(HasSubstr("c.csv:3: mode: expected tension or shear, found 'bending'")));
     write_file(path, cracks_header() + "\n1,2,3,4x,5,shear,6,7,8\n");
     EXPECT_THAT(read, ThrowsMessage<InputError>(HasSubstr("c.csv:2: x: expected a number, found '4x'")));
+    write_file(path, cracks_header() + "\n1,2,3,nan,5,shear,6,7,8\n"); // the program writes none
+    EXPECT_THAT(read, ThrowsMessage<InputError>(HasSubstr("c.csv:2: x: expected a number, found 'nan'")));
     write_file(path, cracks_header() + "\n1,2,3\n");
     EXPECT_THAT(read, ThrowsMessage<InputError>(HasSubstr("c.csv:2: expected 9 columns, found 3")));
     write_file(path, "step,pass\n1,2\n");

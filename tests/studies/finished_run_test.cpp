@@ -14,6 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::Contains;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using testing::TemporaryDirectory;
 
 std::string refusal(const fs::path& directory) {
@@ -95,6 +96,19 @@ TEST(FinishedRun, MayLackColumnsThatNoCurveNeeds) {
     EXPECT_TRUE(run.history[1].balanced);
     write_file(directory / "history.csv", "stage,step,axial_stress,axial_strain\n0,0,0,0\n");
     EXPECT_THAT(refusal(directory.path()), HasSubstr("history.csv:1: no column 'differential_stress'"));
+}
+
+TEST(FinishedRun, SaysThatRowsOfItsTableAreMissing) {
+    const TemporaryDirectory directory;
+    RunSummary summary;
+    summary.numbers.steps = 4;
+    write_summary(directory / "summary.json", summary);
+    const std::string rows = straight_line();
+    write_file(directory / "history.csv", rows);
+    EXPECT_THAT(read_finished_run(directory.path(), "run").notes, Not(Contains(HasSubstr("damaged"))));
+    write_file(directory / "history.csv", rows.substr(0, rows.size() - 20)); // cut in the last row
+    EXPECT_THAT(read_finished_run(directory.path(), "run").notes,
+                Contains(HasSubstr("history.csv of run ends at load step 3, its summary.json says 4")));
 }
 
 TEST(FinishedRun, SaysWhyItsBlocksAreNotKnown) {
