@@ -81,7 +81,7 @@ std::vector<int> blocks_under(const BlockSystem& system, const Vec2& point) {
     std::vector<int> blocks;
     for (int b = 0; b < system.n_blocks(); ++b)
         if (block_contains(system, b, point)) blocks.push_back(b);
-    std::ranges::stable_partition(blocks, [&](int b) { return !system.blocks[b].fixed; });
+    std::stable_partition(blocks.begin(), blocks.end(), [&](int b) { return !system.blocks[b].fixed; });
     return blocks;
 }
 
