@@ -63,10 +63,17 @@ bool block_contains(const BlockSystem& system, int block, const Vec2& point) {
     return is_inside(system, b, local) || distance_to_outline(system, b, local) <= tolerance;
 }
 
-int block_containing(const BlockSystem& system, const Vec2& point) {
+std::vector<int> blocks_containing(const BlockSystem& system, const Vec2& point) {
+    std::vector<int> blocks;
     for (int b = 0; b < system.n_blocks(); ++b)
-        if (block_contains(system, b, point)) return b;
-    return -1;
+        if (block_contains(system, b, point)) blocks.push_back(b);
+    std::stable_partition(blocks.begin(), blocks.end(), [&](int b) { return !system.blocks[b].fixed; });
+    return blocks;
+}
+
+int block_containing(const BlockSystem& system, const Vec2& point) {
+    const std::vector<int> blocks = blocks_containing(system, point);
+    return blocks.empty() ? -1 : blocks.front();
 }
 
 void form_sets(const GeometrySpec& spec, BlockSystem& system) {

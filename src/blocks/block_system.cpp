@@ -15,6 +15,11 @@ constexpr double small_block = 4.0; ///< times smaller than the net's cells: fro
 
 double spacing_of(const Block& block) { return std::sqrt(2.0 * block.area / std::numbers::sqrt3); }
 
+bool is_cell_of_net(const BlockSystem& system, const Block& block) {
+    constexpr double largest_cell = 2.0; // in spacings of the net
+    return spacing_of(block) <= largest_cell * system.spacing;
+}
+
 double motion_scale(const BlockSystem& system, const Block& block) {
     return std::min(system.spacing, small_block * spacing_of(block));
 }

@@ -21,7 +21,8 @@ namespace kluft {
 
 namespace {
 
-constexpr double bound_width = 1e-3; // in logarithms: this near a bound a parameter is at it
+constexpr double bound_width = 1e-3;  // in logarithms: this near a bound a parameter is at it
+constexpr double no_influence = 1e-6; // of a parameter on a target, in tolerances per unit of its logarithm
 
 /// Exact rows, solved again only where a parameter that they depend on has moved.
 class RememberedRows {
@@ -331,7 +332,6 @@ private:
         if (result_.targets[t].met) return;
         const Eigen::MatrixXd own = search_.jacobian.middleRows(groups_[g].first, groups_[g].n);
         const Eigen::VectorXd gradient = own.transpose() * search_.rows.segment(groups_[g].first, groups_[g].n);
-        constexpr double no_influence = 1e-6;
         if (own.norm() < no_influence)
             result_.obstacles.push_back(fmt::format("No parameter changes {}.", target.name));
         for (std::size_t i = 0; i < at_bound.size(); ++i) {
@@ -345,19 +345,20 @@ private:
                             is_low ? "lower" : "upper",
                             value_text(is_low ? parameter.from : parameter.to, parameter.measure), target.name));
         }
-        add_refusals(target, gradient);
+        add_refusals(target, gradient, at_bound);
         add_scatter(target, result_.targets[t]);
     }
 
     /// Parameters that cannot go on towards the target because the scene is refused beside where they are.
-    void add_refusals(const CalibrationTarget& target, const Eigen::VectorXd& gradient) {
+    void add_refusals(const CalibrationTarget& target, const Eigen::VectorXd& gradient,
+                      const std::vector<char>& at_bound) {
         constexpr double beside = 0.01; // in logarithms
         for (std::size_t i = 0; i < calibration_.parameters.size(); ++i) {
             const auto at = static_cast<Eigen::Index>(i);
-            if (gradient[at] == 0.0) continue;
+            if (at_bound[i] || std::abs(gradient[at]) < no_influence) continue;
             Eigen::VectorXd x = result_.x;
             x[at] += gradient[at] < 0.0 ? beside : -beside;
-            const std::string why = why_refused(settings_at(calibration_, x));
+            const std::string why = why_refused(target, x);
             if (why.empty()) continue;
             const CalibrationParameter& parameter = calibration_.parameters[i];
             result_.obstacles.push_back(
@@ -366,10 +367,12 @@ private:
         }
     }
 
-    /// What the scene with these settings is refused for; "" if it is not.
-    [[nodiscard]] std::string why_refused(const std::vector<StudySetting>& settings) const {
+    /// What the scene of a target is refused for with these parameters; "" if it is not.
+    [[nodiscard]] std::string why_refused(const CalibrationTarget& target, const Eigen::VectorXd& x) const {
+        std::vector<StudySetting> settings = settings_at(calibration_, x);
+        settings.insert(settings.end(), target.set.begin(), target.set.end());
         try {
-            (void)build_scene_model(read_scene(calibration_.scene, assignments(settings)));
+            (void)build_scene_model(read_scene(target.scene, assignments(settings)));
         } catch (const InputError& error) {
             return error.what();
         }

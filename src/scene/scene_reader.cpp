@@ -190,7 +190,8 @@ std::set<int> used_interface_types(const Scene& scene) {
 
 /// Materials of the blocks, as far as they are known.
 std::set<int> used_materials(const Scene& scene) {
-    std::set<int> used{scene.geometry.material};
+    std::set<int> used; // `geometry.material` is that of a body that is cut
+    if (scene.geometry.blocks.empty()) used.insert(scene.geometry.material);
     for (const MaterialRegion& region : scene.geometry.regions) used.insert(region.material);
     for (const GivenBlock& block : scene.geometry.blocks) used.insert(block.material);
     std::erase_if(used, [&](int m) { return m < 0 || m >= static_cast<int>(scene.materials.size()); });

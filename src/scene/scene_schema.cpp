@@ -815,7 +815,7 @@ std::vector<KeyRule> option_rules() {
          .range = between_zero_and_one,
          .fallback = "2.5e-3",
          .doc = "Of f at an event, which is then above 1 by as much at most: strengths come out up to twice that too "
-                "large."},
+                "large. Cracks within it of the foremost fail together."},
         {.path = "cracks.strength_noise",
          .type = KeyType::number,
          .range = {.least = 0.0, .most = 0.3, .open_above = true},
@@ -850,8 +850,9 @@ std::vector<KeyRule> option_rules() {
              "prescribed). "
              "Load steps get the size that keeps their estimated error below it; the `steps` of a stage are then "
              "the size of its first one only, and history.csv has one row per step that was accepted. With "
-             "`cracks.update: event` each potential crack fails where its f is 1 to within this accuracy, whatever "
-             "`cracks.event_tolerance` says, and the first slip of each mapped fracture ends a step at its own load; "
+             "`cracks.update: event` each potential crack fails where its f is 1 to within this accuracy; "
+             "`cracks.event_tolerance` then only says which fail together, up to the peak, and the first slip of each "
+             "mapped fracture ends a step at its own load; "
              "with another update cracks fail at the ends of the steps, and the accuracy holds for the friction "
              "only. Stages of `strength_reduction` keep their steps. For `integrator: implicit` and `cracks.every: 1` "
              "only."},

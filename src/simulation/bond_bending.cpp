@@ -7,6 +7,7 @@
 
 #include "kluft/blocks/block_search.hpp"
 #include "kluft/loading/loaded_body.hpp"
+#include "kluft/simulation/overloaded_bonds.hpp"
 #include "kluft/simulation/state_fields.hpp"
 
 namespace kluft {
@@ -41,7 +42,7 @@ std::string bond_bending_warning(const Model& model, const State& state) {
             if (model.system.interfaces[bond.interface].origin != EdgeOrigin::given) continue;
             const double strength = model.strengths[bond.interface].tensile_strength;
             const auto [mean, tension] = normal_tractions(body, i, state.body.displacement);
-            const bool is_torn = mean > strength; // bending is the least of it
+            const bool is_torn = mean > clear_overload * strength; // BondWatch says so
             if (is_torn || tension <= clear_excess * strength || tension <= largest) continue;
             largest = tension;
             warning = fmt::format(

@@ -55,14 +55,13 @@ Layer middle_half(const BlockSystem& system, const Vec2& axis) {
 /// Whether it is made of cells of the net. Larger blocks are rock around a region with a net: that carries load when all
 /// bonds of the net have failed.
 bool cells_fill(const BlockSystem& system, const Layer& layer) {
-    constexpr double largest_cell = 2.0; // in spacings of the net
     constexpr double most_of_it = 0.95;
     double of_cells = 0.0;
     double all = 0.0;
     for (const Block& block : system.blocks) {
         if (!layer.contains(block.centroid)) continue;
         all += block.area;
-        if (spacing_of(block) <= largest_cell * system.spacing) of_cells += block.area;
+        if (is_cell_of_net(system, block)) of_cells += block.area;
     }
     return of_cells >= most_of_it * all;
 }

@@ -76,21 +76,17 @@ std::string key_of_force(const LoadProgram& loads, int force) {
                        loads.forces[static_cast<std::size_t>(force)].name);
 }
 
-/// The blocks that a force without a block may act on: of several that meet at its point those that are not fixed.
-std::vector<int> blocks_under(const BlockSystem& system, const Vec2& point) {
-    std::vector<int> blocks;
-    for (int b = 0; b < system.n_blocks(); ++b)
-        if (block_contains(system, b, point)) blocks.push_back(b);
-    std::stable_partition(blocks.begin(), blocks.end(), [&](int b) { return !system.blocks[b].fixed; });
-    return blocks;
-}
-
-/// Whether two of the blocks meet along something that is no edge of a net.
-bool meet_at_a_joint(const BlockSystem& system, const std::vector<int>& blocks) {
-    const auto is_one = [&](int block) { return std::ranges::find(blocks, block) != blocks.end(); };
-    return std::ranges::any_of(system.interfaces, [&](const Interface& each) {
-        return each.origin != EdgeOrigin::tessellation && is_one(each.block_a) && is_one(each.block_b);
-    });
+/// Of the blocks at a point one that is not fixed and meets the first along something that is no edge of a net; -1 without one.
+int block_across_a_joint(const BlockSystem& system, const std::vector<int>& blocks) {
+    for (const Interface& each : system.interfaces) {
+        if (each.origin == EdgeOrigin::tessellation) continue;
+        const int other = each.block_a == blocks.front()   ? each.block_b
+                          : each.block_b == blocks.front() ? each.block_a
+                                                           : -1;
+        const bool is_there = std::ranges::find(blocks, other) != blocks.end();
+        if (other >= 0 && is_there && !system.blocks[other].fixed) return other;
+    }
+    return -1;
 }
 
 std::vector<MaterialPoint> points_of_forces(const BlockSystem& system, const LoadProgram& loads,
@@ -98,18 +94,14 @@ std::vector<MaterialPoint> points_of_forces(const BlockSystem& system, const Loa
     std::vector<MaterialPoint> points;
     for (const PointForce& force : loads.forces) {
         const std::string key = key_of_force(loads, static_cast<int>(points.size()));
-        const std::vector<int> blocks = force.block.empty() ? blocks_under(system, force.point) : std::vector<int>{};
-        if (blocks.size() < 2) {
-            points.push_back(material_point(system, force.block, force.point, key));
-            continue;
-        }
-        points.push_back(
-            {blocks.front(), block_coordinates(system.blocks[blocks.front()], force.point - system.origin)});
-        if (meet_at_a_joint(system, blocks))
+        points.push_back(material_point(system, force.block, force.point, key));
+        if (!force.block.empty()) continue;
+        const int other = block_across_a_joint(system, blocks_containing(system, force.point));
+        if (other >= 0)
             warnings.push_back(
-                fmt::format("{}: its point lies where blocks {} and {} meet, and it acts on the first; `block` "
+                fmt::format("{}: its point lies on a joint of blocks {} and {}, and it acts on the first; `block` "
                             "names another, a point inside of one leaves no doubt",
-                            key, block_label(system, blocks[0]), block_label(system, blocks[1])));
+                            key, block_label(system, points.back().block), block_label(system, other)));
     }
     return points;
 }
@@ -146,10 +138,10 @@ void require_directions(const BlockSystem& system, const LoadProgram& loads) {
     for (std::size_t i = 0; i < loads.supports.size(); ++i) {
         const bool has_direction = loads.supports[i] == Support::smooth || loads.supports[i] == Support::pinned;
         if (has_direction && faces_all_ways(static_cast<int>(i)))
-            throw InputError(
-                fmt::format("boundaries.{}.support: expected none or fixed for sides that together face all ways, "
-                            "found {}",
-                            system.boundaries[i].name, loads.supports[i] == Support::smooth ? "smooth" : "pinned"));
+            throw InputError(fmt::format(
+                "boundaries.{}.support: expected none or fixed for sides whose normals cancel, as around a hole, "
+                "found {}",
+                system.boundaries[i].name, loads.supports[i] == Support::smooth ? "smooth" : "pinned"));
     }
     for (const Stage& stage : loads.stages) {
         if (!stage.motion || !faces_all_ways(stage.motion->boundary)) continue;
@@ -412,16 +404,17 @@ Model build_model(BlockSystem system, const ModelInput& input) {
     }
 
     model.strengths.resize(system.interfaces.size());
+    bool any_was_capped = false;
     for (int i = 0; i < system.n_interfaces(); ++i) {
         if (!model.bonds[law_of(system.interfaces[i])]) continue;
         const auto [strength, was_capped] = capped(strength_of(system.interfaces[i], system, input));
         model.strengths[i] = scaled(strength, strength_factor(input.strength_noise, i));
-        if (was_capped && model.warnings.empty()) {
-            model.warnings.push_back(
-                "the tensile strength of a potential crack is larger than c cot(phi) and was capped");
-        }
+        any_was_capped = any_was_capped || was_capped;
         model.has_potential_cracks = true;
     }
+    if (any_was_capped)
+        model.warnings.emplace_back(
+            "the tensile strength of a potential crack is larger than c cot(phi) and was capped");
     std::vector<const InterfaceLaw*> fracture_laws;
     for (const Interface& interface : system.interfaces)
         fracture_laws.push_back(&model.laws[model.fracture_law[law_of(interface)]]);

@@ -83,7 +83,7 @@ std::vector<std::string> causes_of(const StepBench& bench, const State& state, c
 /// A body that has given way under given loads, and stands elsewhere, is balanced like any other.
 void warn_of_fall(const StepBench& bench, const State& state) {
     const Stage& stage = bench.stage(state);
-    if (!is_loaded_by_stress(stage) || stage.strength_reduction) return;
+    if (stage.motion || stage.strength_reduction) return;
     const std::string fall = description_of_fall(bench.model, state.stage_start.displacement, state);
     if (fall.empty()) return;
     bench.journal.report().warnings.push_back(fmt::format(
@@ -131,7 +131,7 @@ RunReport run_simulation(const Model& model, const CrackOptions& cracks, const S
             StageEnd end = run_stage(bench, state);
             const bool last = state.at.stage + 1 == static_cast<int>(model.loads.stages.size());
             end.causes = causes_of(bench, state, end);
-            warn_of_fall(bench, state);
+            if (!end.failure && state.unbalanced_in_succession == 0) warn_of_fall(bench, state);
             if (end.ends_run() || last || state.unbalanced_in_succession > 0) return journal.ended(state, end);
             end_stage(bench, std::move(end.forces), state);
         }

@@ -52,6 +52,16 @@ geometry:
 stages: [{gravity: 7.2, steps: 20}]
 )";
 
+// By hand: of c = 10 kPa and 40 degrees under 1 MPa 849.1 kPa of shear.
+TEST(OverloadedBonds, LoadIsComparedWithWhatFrictionAndCohesionBearTogether) {
+    constexpr double degree = 3.14159265358979323846 / 180.0;
+    const Strength weak{10e3, 40.0 * degree, 5e3};
+    EXPECT_NEAR(load_over_strength(-1e6, 860e3, weak), 1.0128, 1e-4);
+    EXPECT_NEAR(load_over_strength(-1e6, -860e3, weak), 1.0128, 1e-4);
+    EXPECT_NEAR(load_over_strength(4e3, 0.0, weak), 0.8, 1e-12);
+    EXPECT_EQ(load_over_strength(1.0, 1.0, {0.0, 0.0, 0.0}), 0.0);
+}
+
 TEST(OverloadedBonds, OfGivenBlocksAreWarnedOf) {
     EXPECT_THAT(warning_of(hanging_block_scene),
                 AllOf(HasSubstr("'roof'"), HasSubstr("'hanging'"), HasSubstr("carries 1.8 times"),
@@ -76,8 +86,8 @@ stages:
 )";
 
 TEST(OverloadedBonds, OfATraceWithoutANetAreWarnedOf) {
-    EXPECT_THAT(warning_of(sheared_trace_scene),
-                AllOf(HasSubstr("at (0.5, 0)"), HasSubstr("4 MPa of shear"), HasSubstr("of pressure")));
+    EXPECT_THAT(warning_of(sheared_trace_scene), AllOf(HasSubstr("at (0.5, 0)"), HasSubstr("carries 3.59 times"),
+                                                       HasSubstr("4 MPa of shear"), HasSubstr("of pressure")));
     EXPECT_THAT(warning_of(sheared_trace_scene, {"stages.1.forces.push.force=[1 MN/m, 0]"}), IsEmpty());
 }
 

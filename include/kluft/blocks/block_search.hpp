@@ -21,7 +21,9 @@ namespace kluft {
 /// Whether a block has a point in it or on its outline, before loading. `point` in scene coordinates (m).
 [[nodiscard]] bool block_contains(const BlockSystem& system, int block, const Vec2& point);
 
-/// The first block that has the point in it or on its outline, before loading; -1 without one.
+/// The blocks that have the point (scene coordinates, m) in them or on their outline, before loading, those that are not fixed first;
+/// and the first of them, -1 without one.
+[[nodiscard]] std::vector<int> blocks_containing(const BlockSystem& system, const Vec2& point);
 [[nodiscard]] int block_containing(const BlockSystem& system, const Vec2& point);
 
 /// Fills the sets of a body from their specification and fixes the blocks of the fixed ones.

@@ -100,6 +100,9 @@ struct BlockSystem {
 /// The spacing of hexagons as large as the block (m).
 [[nodiscard]] double spacing_of(const Block& block);
 
+/// Whether it is no larger than two cells of the net, of a body with one. Larger blocks are rock around a region with a net.
+[[nodiscard]] bool is_cell_of_net(const BlockSystem& system, const Block& block);
+
 /// The spacing that motions of a block are measured by: the net's, of blocks much smaller than its cells four times their
 /// own (m).
 [[nodiscard]] double motion_scale(const BlockSystem& system, const Block& block);

@@ -56,7 +56,8 @@ struct ModelInput {
 
 /// In a tessellated body of rigid blocks the net's interfaces take over the compliance of the blocks (docs/theory.md,
 /// lattice). Throws InputError where stiffnesses cannot be resolved, a potential crack has no strength, a platen moves a
-/// fixed block or a point force or a history is of no block.
+/// fixed block, a boundary whose normals cancel has a platen or a support other than fixed, or a point force or a history is of
+/// no block.
 [[nodiscard]] Model build_model(BlockSystem system, const ModelInput& input);
 
 /// Whether there is gravity in any stage.
