@@ -34,7 +34,7 @@ constexpr int most_threads = 4096;
 
 using Command = std::function<ExitCode()>; ///< what the command line asks for
 
-/// OpenBLAS waits in its exit handler for threads that wait for memory.
+/// Whether the program ends without the exit handlers of libraries: OpenBLAS waits in its own for threads that wait for memory.
 bool leaves_without_handlers = false;
 
 /// Without the exit handlers of libraries.

@@ -81,7 +81,7 @@ kluft::ExitCode run(const std::vector<std::string>& words) {
 int main(int argc, char** argv) {
     bool leaves_without_handlers = false; // OpenBLAS waits in its own for threads that wait for memory
     const auto leave = [&](ExitCode code) {
-        if (!leaves_without_handlers) return static_cast<int>(code);
+        if (!leaves_without_handlers && code != ExitCode::out_of_resources) return static_cast<int>(code);
         std::fflush(nullptr);
         std::_Exit(static_cast<int>(code));
     };
