@@ -169,7 +169,7 @@ private:
         reduction.from = section.number("from");
         reduction.to = section.number("to");
         reduction.tolerance = section.number("tolerance");
-        if (section.has("to") && !(reduction.to > reduction.from))
+        if (section.given_number("to") && !(reduction.to > reduction.from))
             context_.fail(section, "to",
                           fmt::format("expected a number > from ({:g}), found {:g}", reduction.from, reduction.to));
         if (const SceneNode* names = section.value("interfaces"); names != nullptr && names->is_list()) {

@@ -50,7 +50,8 @@ std::string number_problem(const SceneNode& node, Measure measure, const Range& 
     if (is_size && *reading.value < smallest_size)
         return fmt::format("{}, which is below {:g} m", found_text(node), smallest_size);
     if (std::abs(*reading.value) > largest(measure))
-        return fmt::format("{}, which is beyond {:g} {}", found_text(node), largest(measure), unit_name(measure));
+        return fmt::format("{}, which is beyond {:g}{}{}", found_text(node), largest(measure),
+                           measure == Measure::fraction ? "" : " ", unit_name(measure));
     return {};
 }
 

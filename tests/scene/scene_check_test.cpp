@@ -472,6 +472,12 @@ TEST(SceneErrors, ARectangleThatVanishesInRoundOffHasNoArea) {
                 ElementsAre(HasSubstr("expected a rectangle with an area")));
 }
 
+TEST(SceneErrors, AFactorBeyondAllRangeIsRefusedOnce) {
+    EXPECT_THAT(errors_in(test::short_scene, {"stages=[{strain: {boundary: top, value: 1 %}}, "
+                                              "{strength_reduction: {from: 1, to: 1e15}}]"}),
+                ElementsAre(::testing::EndsWith("found '1e15', which is beyond 1e+09")));
+}
+
 TEST(SceneErrors, WallsOfHolesAreNamedOnceAndBesideTheOutline) {
     const std::string hole = "geometry.domain.holes=[{polygon: [[0.2, 0.2], [0.4, 0.2], [0.4, 0.4]]}]";
     const auto errors = [&](const std::string& boundaries) {
