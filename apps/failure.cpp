@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <new>
@@ -46,6 +47,11 @@ ExitCode told(const std::filesystem::filesystem_error& error) {
 }
 
 } // namespace
+
+void leave_without_handlers(ExitCode code) {
+    std::fflush(nullptr);
+    std::_Exit(static_cast<int>(code));
+}
 
 ExitCode tell_failure() noexcept {
     try {

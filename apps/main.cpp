@@ -34,17 +34,11 @@ constexpr int most_threads = 4096;
 
 using Command = std::function<ExitCode()>; ///< what the command line asks for
 
-/// Whether the program ends without the exit handlers of libraries: OpenBLAS waits in its own for threads that wait for memory.
-bool leaves_without_handlers = false;
-
-/// Without the exit handlers of libraries.
-[[noreturn]] void leave(ExitCode code) {
-    std::fflush(nullptr);
-    std::_Exit(static_cast<int>(code));
-}
+/// OpenBLAS waits in its exit handler for threads that wait for memory.
+bool waits_at_exit = false;
 
 int exit_with(ExitCode code) {
-    if (leaves_without_handlers || code == ExitCode::out_of_resources) leave(code);
+    if (waits_at_exit || code == ExitCode::out_of_resources) kluft::leave_without_handlers(code);
     return static_cast<int>(code);
 }
 
@@ -53,7 +47,7 @@ void* gmp_reallocate(void* old, std::size_t, std::size_t size) {
     void* const memory = std::realloc(old, size);
     if (memory == nullptr) {
         std::fputs("out of memory\n", stderr);
-        leave(ExitCode::out_of_resources);
+        kluft::leave_without_handlers(ExitCode::out_of_resources);
     }
     return memory;
 }
@@ -480,7 +474,7 @@ int main(int argc, char** argv) {
         kluft::take_termination();
         kluft::open_standard_streams();
         kluft::leave_writing_to_its_result();
-        leaves_without_handlers = !kluft::end_blas_threads();
+        waits_at_exit = !kluft::end_blas_threads();
         kluft::choose_blas_kernels(argv);
         mp_set_memory_functions(gmp_allocate, gmp_reallocate, nullptr);
         load_unwinder();

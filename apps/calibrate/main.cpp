@@ -1,7 +1,5 @@
 // kluft-calibrate, which `kluft calibrate` starts: what needs Ipopt.
 #include <chrono>
-#include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -79,22 +77,21 @@ kluft::ExitCode run(const std::vector<std::string>& words) {
 } // namespace
 
 int main(int argc, char** argv) {
-    bool leaves_without_handlers = false; // OpenBLAS waits in its own for threads that wait for memory
-    const auto leave = [&](ExitCode code) {
-        if (!leaves_without_handlers && code != ExitCode::out_of_resources) return static_cast<int>(code);
-        std::fflush(nullptr);
-        std::_Exit(static_cast<int>(code));
+    bool waits_at_exit = false; // OpenBLAS in its exit handler, for threads that wait for memory
+    const auto exit_with = [&](ExitCode code) {
+        if (waits_at_exit || code == ExitCode::out_of_resources) kluft::leave_without_handlers(code);
+        return static_cast<int>(code);
     };
     try {
         kluft::take_termination();
         kluft::open_standard_streams();
         kluft::leave_writing_to_its_result();
-        leaves_without_handlers = !kluft::end_blas_threads();
+        waits_at_exit = !kluft::end_blas_threads();
         const ExitCode code = run({argv, argv + argc});
         const std::string lost = kluft::lost_output();
-        if (lost.empty()) return leave(code);
+        if (lost.empty()) return exit_with(code);
         throw kluft::ResourceError(lost);
     } catch (...) {
-        return leave(kluft::tell_failure());
+        return exit_with(kluft::tell_failure());
     }
 }

@@ -28,12 +28,17 @@ std::optional<Strength> strength_of_net(const Scene& scene) {
 
 Vec2 outward_normal(const Scene& scene, std::size_t boundary) {
     const Polygon& domain = scene.geometry.domain;
+    constexpr double faces_all_ways = 1e-9; // of the length: what is left of the sum is round-off
     Vec2 sum = Vec2::Zero();
+    double length = 0.0;
     for (const int side : scene.geometry.boundaries[boundary].sides) {
         const auto i = static_cast<std::size_t>(side);
-        if (i < domain.size()) sum += right_normal(domain[(i + 1) % domain.size()] - domain[i]);
+        if (i >= domain.size()) continue;
+        const Vec2 along = domain[(i + 1) % domain.size()] - domain[i];
+        sum += right_normal(along);
+        length += along.norm();
     }
-    return sum.normalized();
+    return sum.norm() > faces_all_ways * length ? Vec2(sum.normalized()) : Vec2(Vec2::Zero());
 }
 
 /// The stage that first moves a platen.

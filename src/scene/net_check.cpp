@@ -31,16 +31,6 @@ void require_stiffness(const SceneSection& interface, const std::string& why, Re
 
 const Material& material(const Scene& scene, int index) { return scene.materials[static_cast<std::size_t>(index)]; }
 
-/// Indices of the materials that the body is made of.
-std::set<int> materials_of_body(const Scene& scene) {
-    std::set<int> materials{scene.geometry.material};
-    for (const MaterialRegion& region : scene.geometry.regions) materials.insert(region.material);
-    std::erase_if(materials, [&](int m) {
-        return m < 0 || m >= static_cast<int>(scene.materials.size()) || !(material(scene, m).youngs_modulus > 0.0);
-    });
-    return materials;
-}
-
 /// k_n d of a net whose stiffness does not follow from a ratio (Pa).
 double stiffness_times_spacing(const InterfaceType& type, const GeometrySpec& geometry) {
     if (type.normal_stiffness) return *type.normal_stiffness * lattice_spacing(geometry);
@@ -79,6 +69,7 @@ void warn_of_stiffness(const SceneSection& interface, const InterfaceType& type,
     const auto* key = type.normal_stiffness ? "normal_stiffness" : "normal_stiffness_times_spacing";
     for (const int m : materials_of_body(scene)) {
         const Material& rock = material(scene, m);
+        if (!(rock.youngs_modulus > 0.0)) continue;
         warn_of_ratio(interface, key, stiffness_times_spacing(type, scene.geometry) / rock.youngs_modulus,
                       " with the E of " + rock.name, scene, context);
     }
@@ -107,6 +98,15 @@ void warn_of_rigid_triangles(const SceneSection& root, const Scene& scene, Readi
 }
 
 } // namespace
+
+std::set<int> materials_of_body(const Scene& scene) {
+    std::set<int> materials; // `geometry.material` is that of a body that is cut
+    if (scene.geometry.blocks.empty()) materials.insert(scene.geometry.material);
+    for (const MaterialRegion& region : scene.geometry.regions) materials.insert(region.material);
+    for (const GivenBlock& block : scene.geometry.blocks) materials.insert(block.material);
+    std::erase_if(materials, [&](int m) { return m < 0 || m >= static_cast<int>(scene.materials.size()); });
+    return materials;
+}
 
 std::set<int> require_stiffness_of_joints(const SceneSection& root, const Scene& scene, ReadingContext& context) {
     const auto interfaces = root.sections("interfaces");

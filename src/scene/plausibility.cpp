@@ -97,6 +97,18 @@ void warn_of_symmetric_reduction(const SceneSection& root, const Scene& scene, R
             "unsymmetric finds them");
 }
 
+/// What something else in the scene makes meaningless.
+void warn_of_keys_without_effect(const SceneSection& root, const Scene& scene, ReadingContext& context) {
+    const auto warn = [&](const SceneSection& section, std::string_view key, std::string_view why) {
+        if (section.has(key)) context.warn(section, key, fmt::format("has no effect: {}", why));
+    };
+    if (scene.geometry.blocks.empty())
+        warn(root.section("geometry"), "blocks_interface",
+             "it is that of given blocks; the interfaces of a domain stand in fractures and tessellation");
+    if (scene.cracks.strength_noise.deviation == 0.0)
+        warn(root.section("cracks"), "strength_seed", "without cracks.strength_noise the strengths do not scatter");
+}
+
 } // namespace
 
 void warn_of_implausible_values(const SceneSection& root, const Scene& scene, ReadingContext& context) {
@@ -108,6 +120,7 @@ void warn_of_implausible_values(const SceneSection& root, const Scene& scene, Re
         warn_of_joint(interfaces[i], scene.interface_types[i], context);
     warn_of_one_sided_pressure(root, scene, context);
     warn_of_symmetric_reduction(root, scene, context);
+    warn_of_keys_without_effect(root, scene, context);
 }
 
 } // namespace kluft

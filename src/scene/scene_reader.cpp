@@ -10,7 +10,6 @@
 
 #include "kluft/core/memory.hpp"
 #include "kluft/scene/geometry_reader.hpp"
-#include "kluft/scene/keys_without_effect.hpp"
 #include "kluft/scene/load_reader.hpp"
 #include "kluft/scene/net_check.hpp"
 #include "kluft/scene/plausibility.hpp"
@@ -188,21 +187,11 @@ std::set<int> used_interface_types(const Scene& scene) {
     return used;
 }
 
-/// Materials of the blocks, as far as they are known.
-std::set<int> used_materials(const Scene& scene) {
-    std::set<int> used; // `geometry.material` is that of a body that is cut
-    if (scene.geometry.blocks.empty()) used.insert(scene.geometry.material);
-    for (const MaterialRegion& region : scene.geometry.regions) used.insert(region.material);
-    for (const GivenBlock& block : scene.geometry.blocks) used.insert(block.material);
-    std::erase_if(used, [&](int m) { return m < 0 || m >= static_cast<int>(scene.materials.size()); });
-    return used;
-}
-
 /// Potential cracks take their strength from somewhere.
 void require_strength(const SceneSection& section, const InterfaceType& type, const Scene& scene,
                       ReadingContext& context) {
     if (type.kind != InterfaceKind::potential_crack || type.strength) return;
-    for (const int index : used_materials(scene)) {
+    for (const int index : materials_of_body(scene)) {
         const Material& material = scene.materials[static_cast<std::size_t>(index)];
         if (!material.strength)
             context.fail(section, {},
@@ -250,7 +239,6 @@ Scene convert(const SceneSection& root, ReadingContext& context) {
     }
     warn_of_net(root, scene, context);
     warn_of_implausible_values(root, scene, context);
-    warn_of_keys_without_effect(root, scene, context);
     return scene;
 }
 

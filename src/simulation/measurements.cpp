@@ -167,15 +167,19 @@ ContactCounts count_contacts(const Model& model, const State& state, const Loade
     return counts;
 }
 
+InterfaceTraction mean_traction(const std::vector<InterfaceLaw>& laws, const Bond& bond, const Eigen::VectorXd& q) {
+    InterfaceTraction mean;
+    for (int k = 0; k < n_bond_points; ++k) {
+        const PointTraction traction = bond_traction(laws[bond.law], bond, k, q);
+        mean.normal += traction.normal / n_bond_points;
+        mean.shear += traction.shear / n_bond_points;
+    }
+    return mean;
+}
+
 std::vector<InterfaceTraction> bond_tractions(const Model& model, const LoadedBody& body, const Eigen::VectorXd& q) {
     std::vector<InterfaceTraction> tractions(model.system.interfaces.size());
-    for (const Bond& bond : body.placement->bonds) {
-        for (int k = 0; k < n_bond_points; ++k) {
-            const auto traction = bond_traction((*body.laws)[bond.law], bond, k, q);
-            tractions[bond.interface].normal += 0.5 * traction.normal;
-            tractions[bond.interface].shear += 0.5 * traction.shear;
-        }
-    }
+    for (const Bond& bond : body.placement->bonds) tractions[bond.interface] = mean_traction(*body.laws, bond, q);
     return tractions;
 }
 

@@ -9,6 +9,7 @@
 #include "kluft/blocks/block_search.hpp"
 #include "kluft/contact/bonds.hpp"
 #include "kluft/core/place_text.hpp"
+#include "kluft/simulation/measurements.hpp"
 #include "kluft/simulation/strength_reduction.hpp"
 
 namespace kluft {
@@ -21,23 +22,6 @@ bool is_of_large_blocks(const BlockSystem& system, bool has_net, const Interface
     if (interface.origin == EdgeOrigin::given || !has_net) return true;
     return std::ranges::any_of(std::array{interface.block_a, interface.block_b},
                                [&](int b) { return !is_cell_of_net(system, system.blocks[b]); });
-}
-
-/// Mean over the two points of a bond (Pa).
-struct MeanTraction {
-    double normal = 0.0; ///< positive in tension
-    double shear = 0.0;
-};
-
-MeanTraction mean_traction(const Model& model, const BodyState& body, int interface) {
-    const Bond bond = bond_at(model.system, interface, body.displacement, &body.bond_shear[n_bond_points * interface]);
-    MeanTraction mean;
-    for (int k = 0; k < n_bond_points; ++k) {
-        const PointTraction traction = bond_traction(model.laws[bond.law], bond, k, body.displacement);
-        mean.normal += traction.normal / n_bond_points;
-        mean.shear += traction.shear / n_bond_points;
-    }
-    return mean;
 }
 
 } // namespace
@@ -66,7 +50,9 @@ void BondWatch::step(const StepRecord& record, const State& state) {
     const std::vector<Strength> strengths = reduced_strengths(model_, record.stage, factor);
     for (const int i : interfaces_) {
         if (state.body.interfaces[i] != InterfaceStatus::potential_crack) continue;
-        const auto [normal, shear] = mean_traction(model_, state.body, i);
+        const Eigen::VectorXd& q = state.body.displacement;
+        const Bond bond = bond_at(model_.system, i, q, &state.body.bond_shear[n_bond_points * i]);
+        const auto [normal, shear] = mean_traction(model_.laws, bond, q);
         const double load = load_over_strength(normal, shear, strengths[i]);
         if (load > worst_.load) worst_ = {i, record.step, load, normal, shear};
     }

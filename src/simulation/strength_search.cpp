@@ -32,22 +32,6 @@ StepGoal goal_with_strengths_of(const StepBench& bench, const State& state, doub
     return goal;
 }
 
-/// The state that the stages before have left must be in equilibrium by the tolerances of this one, too. `equilibria`:
-/// what is to be told of it with the first load step.
-std::optional<Failure> find_initial_equilibrium(const StepBench& bench, State& state,
-                                                std::vector<StepRecord>& equilibria) {
-    StepGoal goal = goal_with_strengths_of(bench, state, 0.0);
-    goal.checks_cracks = false;
-    begin_load_step(bench);
-    Step step = take_step(bench, state, goal);
-    if (step.failure) return step.failure;
-    state = std::move(step.end);
-    state.costs = bench.journal.costs();
-    bench.journal.warn(step, state.at.step + 1);
-    equilibria = std::move(step.equilibria);
-    return std::nullopt;
-}
-
 /// A body that has given way under the loads before, and rests in another place, has failed with the strengths it had then, as in
 /// (32b). What a platen of given travel has moved has not fallen.
 std::optional<Failure> failure_before(const StepBench& bench, const State& state) {
@@ -63,6 +47,23 @@ std::optional<Failure> failure_before(const StepBench& bench, const State& state
                        fmt::format("the body has given way under its loads before strengths are reduced, and rests in "
                                    "another place: {}. Its factor of safety is below `from`, with which it was loaded",
                                    fall)};
+}
+
+/// The state that the stages before have left must be in equilibrium by the tolerances of this one, too. `equilibria`:
+/// what is to be told of it with the first load step.
+std::optional<Failure> find_initial_equilibrium(const StepBench& bench, State& state,
+                                                std::vector<StepRecord>& equilibria) {
+    if (auto failure = failure_before(bench, state)) return failure;
+    StepGoal goal = goal_with_strengths_of(bench, state, 0.0);
+    goal.checks_cracks = false;
+    begin_load_step(bench);
+    Step step = take_step(bench, state, goal);
+    if (step.failure) return step.failure;
+    state = std::move(step.end);
+    state.costs = bench.journal.costs();
+    bench.journal.warn(step, state.at.step + 1);
+    equilibria = std::move(step.equilibria);
+    return std::nullopt;
 }
 
 /// What a load step to a factor has come to.
@@ -198,8 +199,6 @@ StageEnd find_strength_limit(const StepBench& bench, State& state) {
     Doubts doubts(bench.model, state);
     doubts.look_at(state, bench.journal.last_row(), reduction.factor_at(state.at.load_factor));
     std::vector<StepRecord> before; // equilibria that are not told yet
-    if (state.at.load_factor == 0.0) end.failure = failure_before(bench, state);
-    if (end.failure) return {.failure = end.failure, .step = state.at.step + 1};
     if (state.at.load_factor == 0.0) end.failure = find_initial_equilibrium(bench, state, before);
     if (end.failure) return {.failure = end.failure, .step = state.at.step + 1};
     const auto width = [&](double to) { // of the factors from the last equilibrium on, relative

@@ -8,6 +8,9 @@
 
 namespace kluft {
 
+/// Indices of the materials that the blocks are made of, as far as they are known.
+[[nodiscard]] std::set<int> materials_of_body(const Scene& scene);
+
 /// An error for each interface of a mapped fracture (or that such a fracture fails to) without a stiffness of its own, at
 /// the key that is missing. Returns the indices of those interfaces. `root` is the whole scene.
 std::set<int> require_stiffness_of_joints(const SceneSection& root, const Scene& scene, ReadingContext& context);

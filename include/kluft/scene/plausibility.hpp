@@ -1,4 +1,4 @@
-// Values that a scene may have and that are hardly meant: a lost unit, a forgotten side.
+// Values that a scene may have and that are hardly meant: a lost unit, a forgotten side, a key that changes nothing.
 #pragma once
 
 #include "kluft/scene/reading_context.hpp"
@@ -7,7 +7,8 @@
 namespace kluft {
 
 /// Warnings: a material softer than 1 MPa or stiffer than diamond, or of no rock's density; a joint stiffer than a
-/// millimetre of steel; a pressure on one side of a rectangle against which nothing stands. `root` is the whole scene.
+/// millimetre of steel; a pressure on one side of a rectangle against which nothing stands; an interface of given blocks where
+/// the body is cut, a seed of strengths that do not scatter. `root` is the whole scene.
 void warn_of_implausible_values(const SceneSection& root, const Scene& scene, ReadingContext& context);
 
 } // namespace kluft

@@ -52,6 +52,10 @@ struct ContactCounts {
 [[nodiscard]] ContactCounts count_contacts(const Model& model, const State& state, const LoadedBody& body,
                                            const Eigen::VectorXd& q);
 
+/// Of a bond, mean of its points (Pa).
+[[nodiscard]] InterfaceTraction mean_traction(const std::vector<InterfaceLaw>& laws, const Bond& bond,
+                                              const Eigen::VectorXd& q);
+
 /// Tractions of the bonded interfaces, mean of their points (Pa); zero for the others.
 [[nodiscard]] std::vector<InterfaceTraction> bond_tractions(const Model& model, const LoadedBody& body,
                                                             const Eigen::VectorXd& q);
