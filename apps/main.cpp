@@ -134,7 +134,8 @@ void add_run_command(CLI::App& app, Command& command) {
     sub->add_option("scene", arguments->scene, "Scene file (YAML)")->required();
     sub->add_option("-o,--output", arguments->directory, "Directory of the results (default: results/<scene name>)")
         ->check(flaw_of_name);
-    sub->add_option("--set", arguments->overrides, "Replace a value of the scene, e.g. --set stages.1.steps=200")
+    sub->add_option("--set", arguments->overrides,
+                    "Set a value of the scene, e.g. --set stages.1.steps=200; a mapping is merged, null removes a key")
         ->take_all()
         ->allow_extra_args(false);
     sub->add_option("--threads", arguments->threads, "Threads of the factorization (bodies of 20 000 unknowns or more)")
@@ -156,7 +157,7 @@ void add_check_command(CLI::App& app, Command& command) {
     auto arguments = std::make_shared<kluft::CheckArguments>();
     CLI::App* sub = app.add_subcommand("check", "Say what a scene amounts to, without running it");
     sub->add_option("scene", arguments->scene, "Scene file (YAML)")->required();
-    sub->add_option("--set", arguments->overrides, "Replace a value of the scene")->take_all()->allow_extra_args(false);
+    sub->add_option("--set", arguments->overrides, "Set a value of the scene")->take_all()->allow_extra_args(false);
     sub->add_flag("--json", arguments->json,
                   "For programs: one object of JSON, of a scene with mistakes with its problems");
     sub->footer(
@@ -203,7 +204,7 @@ void add_draw_command(CLI::App& app, Command& command) {
     sub->add_option("--window", arguments->window, "The part of it that is drawn: x0,y0,x1,y1 in m or with units");
     sub->add_option("--limit", arguments->limit, "Where the stress axis of the curves ends, e.g. 5 MPa");
     sub->add_option("--title", arguments->title, "Title of the picture");
-    sub->add_option("--set", arguments->overrides, "Replace a value of the scene")->take_all()->allow_extra_args(false);
+    sub->add_option("--set", arguments->overrides, "Set a value of the scene")->take_all()->allow_extra_args(false);
     sub->footer(
         "Examples:\n"
         "  kluft draw models/triaxial/case-3-all.yaml -o geometry.svg\n"
@@ -296,7 +297,8 @@ void add_envelope_command(CLI::App& app, Command& command) {
         ->take_all()
         ->allow_extra_args(false);
     sub->add_option("--title", arguments->title, "Title of the picture")->capture_default_str();
-    sub->footer("Runs that were not yet falling, ended unbalanced or whose net locked are bounds: they are drawn and "
+    sub->footer("Runs that had neither fallen nor levelled off, ended unbalanced or whose net locked are bounds: they "
+                "are drawn and "
                 "listed, but "
                 "not fitted.\nRuns that pull, and rows of tables with sigma_3 below zero, give the tensile strength.\n"
                 "Other columns of tables: run, peak_reached, balanced, net_locked (0 or 1).\n"
@@ -322,7 +324,7 @@ void add_study_command(CLI::App& app, Command& command) {
         ->check(flaw_of_name);
     sub->add_option("--jobs", arguments->jobs, "Cases that run at once (default: the number of processors)")
         ->check(CLI::Range(1, most_threads));
-    sub->add_option("--set", arguments->overrides, "Replace a value of the scene in all cases")
+    sub->add_option("--set", arguments->overrides, "Set a value of the scene in all cases")
         ->take_all()
         ->allow_extra_args(false);
     CLI::Option* emit = sub->add_option("--emit", arguments->emit,

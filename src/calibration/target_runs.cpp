@@ -142,8 +142,8 @@ RunSummary summary_with_peak(const fs::path& directory) {
     RunSummary summary = read_summary(directory / "summary.json");
     if (read_peak(directory, directory.filename()).net_locked)
         throw InputError("loose blocks of the net carried the load, as masonry does, and not the rock");
-    if (summary.numbers.peak_reached || summary.status == RunStatus::collapsed) return summary;
-    throw InputError(fmt::format("the stress was not yet falling where the run ended ({}{}{})",
+    if (is_strength(summary.numbers) || summary.status == RunStatus::collapsed) return summary;
+    throw InputError(fmt::format("the stress had neither fallen nor levelled off where the run ended ({}{}{})",
                                  status_name(summary.status), summary.message.empty() ? "" : ": ",
                                  summary.message.substr(0, summary.message.find('\n'))));
 }
@@ -152,7 +152,11 @@ double value_of_run(const CalibrationTarget& target, const fs::path& directory) 
     const RunSummary summary = summary_with_peak(directory);
     std::optional<double> value;
     if (target.quantity == TargetQuantity::peak_stress) value = summary.numbers.peak_stress;
-    if (target.quantity == TargetQuantity::peak_strain) value = summary.numbers.peak_strain;
+    if (target.quantity == TargetQuantity::peak_strain) {
+        if (summary.numbers.levelled_off)
+            throw InputError("the stress levelled off: there is no peak to have a strain");
+        value = summary.numbers.peak_strain;
+    }
     if (target.quantity == TargetQuantity::residual_stress) value = summary.numbers.residual_stress;
     if (target.quantity == TargetQuantity::tensile_strength && summary.numbers.peak_stress) {
         value = -*summary.numbers.peak_stress;

@@ -17,7 +17,8 @@ namespace {
 const double facing_cosine = -std::sqrt(0.5);
 /// An overlap shorter than this part of the shorter edge is no contact.
 constexpr double shortest_overlap = 1e-6;
-/// Deeper than this part of it, they are in contact only if what overlaps is inside one of the blocks.
+/// Deeper than this part of the smaller block, they are in contact only if what overlaps is inside both blocks; the two faces of an
+/// interface, inside one.
 constexpr double doubtful_penetration = 0.01;
 /// Two points of a fracture that were nearer than this part of its edge were one point; what is between is round-off.
 constexpr double same_point = 1e-12;
@@ -256,7 +257,7 @@ private:
         if (gap_at(at) < doubtful_) {
             const Vec2 on_a = edge_a.start + (at / extent_a) * (edge_a.end - edge_a.start);
             const Vec2 on_b = edge_b.end + ((at - start_b) / extent_b) * (edge_b.start - edge_b.end);
-            if (!is_inside(a, on_b) && !is_inside(b, on_a)) return;
+            if (own ? !is_inside(a, on_b) && !is_inside(b, on_a) : !is_in_both(a, b, 0.5 * (on_a + on_b))) return;
         }
 
         overlapping_.emplace_back(edge_a.edge, edge_b.edge);
@@ -299,6 +300,9 @@ private:
         }
         return inside;
     }
+
+    /// Of what two blocks have in common; what lies between the backs of two thin parts is in one of them.
+    [[nodiscard]] bool is_in_both(int a, int b, const Vec2& x) const { return is_inside(a, x) && is_inside(b, x); }
 
     [[nodiscard]] bool overlap_covers(int edge_of_vertex, int edge, bool swapped) const {
         const auto pair = swapped ? std::pair(edge, edge_of_vertex) : std::pair(edge_of_vertex, edge);

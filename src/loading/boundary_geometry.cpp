@@ -190,9 +190,14 @@ PlatenForce width_across(const BlockSystem& system, int boundary) {
 
 double distance_across(const BlockSystem& system, int boundary) {
     const int opposite = opposite_boundary(system, boundary);
-    const Vec2 base = opposite >= 0 ? mean_position(system, outer_edges(system, opposite)) : system.lower;
+    const Vec2 normal = boundary_frame(system, boundary).normal;
     const Vec2 place = mean_position(system, outer_edges(system, boundary));
-    return std::abs(boundary_frame(system, boundary).normal.dot(place - base));
+    if (opposite >= 0) return std::abs(normal.dot(place - mean_position(system, outer_edges(system, opposite))));
+    double farthest = 0.0;
+    for (const Block& block : system.blocks)
+        for (const Edge& edge : block.edges)
+            farthest = std::max(farthest, normal.dot(place - edge_start(system, edge)));
+    return farthest;
 }
 
 } // namespace kluft

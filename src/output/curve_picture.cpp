@@ -450,11 +450,11 @@ void add_peak(const RunCurve& run, const StepRecord& peak, bool alone, PlottedCu
     const auto& rows = run.equilibria.empty() ? run.history : run.equilibria;
     curve.peak = plotted(peak);
     const CurveNumbers numbers = curve_numbers(rows, {}, run.platen_stage, Plane::strain);
-    curve.peak_reached = numbers.peak_reached;
+    curve.peak_reached = is_strength(numbers);
     const std::string values = fmt::format("differential {:#.3g} MPa at {:#.3g} %", curve.peak->y(), curve.peak->x());
     if (alone) {
         curve.peak_text = {values, fmt::format("axial {:#.3g} MPa", peak.axial_stress / mega)};
-        if (!curve.peak_reached) curve.peak_text.push_back(peak_remark(numbers));
+        if (const std::string remark = peak_remark(numbers); !remark.empty()) curve.peak_text.push_back(remark);
     } else {
         curve.label += ": " + (curve.peak_reached ? values : peak_remark(numbers));
     }

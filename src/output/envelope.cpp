@@ -161,7 +161,7 @@ PeakPoint peak_point(const std::string& run, const std::vector<StepRecord>& equi
     return {.run = run,
             .sigma_3 = low,
             .sigma_1 = high,
-            .peak_reached = numbers.peak_reached,
+            .peak_reached = is_strength(numbers),
             .net_locked = numbers.net_locked};
 }
 

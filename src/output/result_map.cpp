@@ -1,9 +1,9 @@
 #include "kluft/output/result_map.hpp"
 
 #include <cmath>
-#include <numbers>
 #include <utility>
 
+#include "kluft/core/units.hpp"
 #include "kluft/output/block_outline.hpp"
 
 namespace kluft {
@@ -38,7 +38,7 @@ Vec2 mean_displacement(const BlockSystem& system, const Block& block, const Vec2
 double azimuth_of_sigma_1(const Mat2& stress) {
     const Mat2 compression = -0.5 * (stress + stress.transpose());
     const double from_x = 0.5 * std::atan2(2.0 * compression(0, 1), compression(0, 0) - compression(1, 1));
-    const double azimuth = 90.0 - from_x * 180.0 / std::numbers::pi;
+    const double azimuth = 90.0 - from_x * degrees;
     return azimuth >= 180.0 ? azimuth - 180.0 : azimuth;
 }
 

@@ -27,9 +27,12 @@ constexpr double sliding_share = 0.01; // of what is closed: from there on a bod
 constexpr std::size_t least_elastic_rows = 3;
 constexpr double elastic_share = 0.3;       // of the peak differential stress, where there are fewer
 constexpr double ratio_slack = 1e-3;        // of Poisson's ratio, for round-off
+constexpr double flat_rise = 1e-6;          // of the stresses: what is left over in balance makes such a curve rise
 constexpr double same_lateral = 1e-6;       // of the lateral stress: it has not changed
 constexpr double fall_after_peak = 0.01;    // of the peak
 constexpr double fall_out_of_balance = 0.5; // the same, of rows that are not balanced
+constexpr double level_change = 0.01;       // of the differential stress, at most
+constexpr double level_share = 1.0 / 3.0;   // of the platen's way, at its end
 constexpr double residual_share = 0.1;      // of the strain
 constexpr double strain_rounding = 1e-9;    // relative
 constexpr double locking_rise = 0.05;       // of the largest stress until then
@@ -96,6 +99,26 @@ bool falls_after_peak(const Rows& rows, const StepRecord& peak, double sense) {
         return sense * row.axial_stress + relieved <= (row.balanced ? fallen : collapsed) &&
                sense * row.axial_strain >= gone_back;
     });
+}
+
+/// Whether the rows of a stage of the platen and all that follow end on a level, see CurveNumbers.
+bool levels_off(const Rows& rows, double sense) {
+    if (rows.empty()) return false;
+    const double first = sense * rows.front().axial_strain;
+    const double last = sense * rows.back().axial_strain;
+    const auto begin = std::ranges::find_if(
+        rows, [&](const StepRecord& row) { return sense * row.axial_strain >= last - level_share * (last - first); });
+    double least = std::numeric_limits<double>::infinity();
+    double largest = -least;
+    double strain = -least;
+    for (auto row = begin; row != rows.end(); ++row) {
+        const bool goes_on = sense * row->axial_strain >= strain;
+        if (!row->balanced || !goes_on || !has_lateral_stress_of(*row, rows.back())) return false;
+        strain = sense * row->axial_strain;
+        least = std::min(least, sense * row->differential_stress);
+        largest = std::max(largest, sense * row->differential_stress);
+    }
+    return rows.end() - begin > 2 && largest > 0.0 && largest - least <= level_change * largest;
 }
 
 /// None where the peak lies in the last fifth of the strain, as where a run ends with the drop behind it: the stress has not settled.
@@ -189,6 +212,17 @@ Rows elastic_rows(const Rows& equilibria, const Rows& rows, int platen_stage, do
     return rows_up_to(rows, elastic_share * peak, sense);
 }
 
+/// Whether the stress of (strain, stress) stays what it is.
+bool is_flat(const std::vector<std::pair<double, double>>& curve) {
+    double least = std::numeric_limits<double>::infinity();
+    double largest = -least;
+    for (const auto& [strain, stress] : curve) {
+        least = std::min(least, stress);
+        largest = std::max(largest, stress);
+    }
+    return largest - least <= flat_rise * std::max(std::abs(least), std::abs(largest));
+}
+
 void add_elastic_constants(const Rows& equilibria, const Rows& history, int platen_stage, Plane plane,
                            CurveNumbers& numbers) {
     const Rows balanced = balanced_rows(platen_rows(history, platen_stage));
@@ -201,6 +235,7 @@ void add_elastic_constants(const Rows& equilibria, const Rows& history, int plat
         lateral.emplace_back(row.axial_strain, -row.lateral_strain);
     }
     numbers.axial_modulus = slope(stress);
+    if (is_flat(stress)) numbers.axial_modulus.reset(); // what slides from the start has no modulus
     numbers.lateral_ratio = slope(lateral);
     const bool is_measured =
         std::ranges::any_of(lateral, [](const std::pair<double, double>& point) { return point.second != 0.0; });
@@ -250,6 +285,7 @@ void read_numbers(const Json& json, CurveNumbers& numbers) {
     numbers.peak_strain = optional_number(json, "peak_strain");
     numbers.peak_reached = json.at("peak_reached").get<bool>();
     numbers.net_locked = json.value("net_locked", false); // an earlier version does not say
+    numbers.levelled_off = json.value("levelled_off", false);
     numbers.residual_stress = optional_number(json, "residual_stress");
     numbers.youngs_modulus = optional_number(json, "youngs_modulus");
     numbers.poissons_ratio = optional_number(json, "poissons_ratio");
@@ -360,6 +396,8 @@ CurveNumbers curve_numbers(const std::vector<StepRecord>& equilibria, const std:
         numbers.net_locked = is_net_locked(all, platen_stage);
         numbers.peak_reached =
             platen_stage && !numbers.net_locked && falls_after_peak(all, *peak, platen_sense(all, platen_stage));
+        numbers.levelled_off = platen_stage && !numbers.net_locked && !numbers.peak_reached &&
+                               levels_off(platen_rows(all, *platen_stage), platen_sense(all, platen_stage));
     }
     if (numbers.peak_reached) numbers.residual_stress = residual_stress(history, platen_stage, *numbers.peak_strain);
     if (platen_stage) add_elastic_constants(all, history, *platen_stage, plane, numbers);
@@ -367,8 +405,11 @@ CurveNumbers curve_numbers(const std::vector<StepRecord>& equilibria, const std:
     return numbers;
 }
 
+bool is_strength(const CurveNumbers& numbers) { return numbers.peak_reached || numbers.levelled_off; }
+
 std::string peak_remark(const CurveNumbers& numbers) {
     if (numbers.net_locked) return "net locked";
+    if (numbers.levelled_off) return "levelled off";
     return numbers.peak_reached ? "" : "not yet falling";
 }
 
@@ -396,6 +437,7 @@ std::string summary_json(const RunSummary& summary) {
     json["peak_stress"] = json_number(numbers.peak_stress);
     json["peak_strain"] = json_number(numbers.peak_strain);
     json["peak_reached"] = numbers.peak_reached;
+    json["levelled_off"] = numbers.levelled_off;
     json["strength_measure"] = strength_measure(summary);
     json["net_locked"] = numbers.net_locked;
     json["residual_stress"] = json_number(numbers.residual_stress);

@@ -73,6 +73,10 @@ RunAnswer strength(const RunFacts& facts) {
     if (numbers.peak_reached) {
         answer.sentence =
             fmt::format("The largest axial stress of all balanced states, {}; it falls behind it.", place);
+    } else if (numbers.levelled_off) {
+        answer.sentence = fmt::format("The largest axial stress of all balanced states, {}; over the last third of the "
+                                      "strain it has changed by 1 % or less: the body gives way at this stress.",
+                                      place);
     } else if (has_status(facts, RunStatus::collapsed)) {
         answer.sentence = fmt::format("The largest axial stress that the body bears, {}; above it there is no "
                                       "equilibrium.",
@@ -161,11 +165,11 @@ void add_doubts(const RunFacts& facts, std::vector<std::string>& warnings) {
         warnings.emplace_back(
             "The net locked: loose cells carry more than the rock did with its bonds, as masonry does. "
             "What is above the value is no strength of the rock.");
-    else if (facts.platen_stage && numbers.peak_stress && !numbers.peak_reached &&
+    else if (facts.platen_stage && numbers.peak_stress && !is_strength(numbers) &&
              !has_status(facts, RunStatus::collapsed))
         warnings.emplace_back(
-            "Still rising: the axial stress has not fallen by 1 % below its largest value. More strain "
-            "shows whether it does.");
+            "No peak yet: the axial stress has neither fallen by 1 % below its largest value nor levelled off. "
+            "More strain shows whether it does.");
     if (facts.platen_stage && numbers.jumps_to_peak > 0)
         warnings.push_back(
             fmt::format("{} before the peak: at fixed loads the body lost its balance and moved to another "

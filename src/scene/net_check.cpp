@@ -1,7 +1,6 @@
 #include "kluft/scene/net_check.hpp"
 
 #include <algorithm>
-#include <numbers>
 #include <optional>
 #include <set>
 #include <string>
@@ -12,6 +11,7 @@
 
 #include "kluft/constitutive/lattice_stiffness.hpp"
 #include "kluft/constitutive/net_kind.hpp"
+#include "kluft/core/units.hpp"
 
 namespace kluft {
 
@@ -79,13 +79,12 @@ void warn_of_locking(const SceneSection& joint, double friction_angle, const Tes
                      ReadingContext& context) {
     const NetKind kind = net_kind(net);
     if (!interlocks(kind) || friction_angle < locking_friction_angle) return;
-    constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
     context.warn(
         joint, "friction_angle",
         fmt::format("{:.3g} deg lets the net lock: {} interlock, and where all their bonds have failed the loose "
                     "cells carry load as masonry does, from some {:.0f} deg on without bound; "
                     "geometry.tessellation.triangles keeps the strength of the rock",
-                    friction_angle * degrees_per_radian, cells_of(kind), locking_friction_angle * degrees_per_radian));
+                    friction_angle * degrees, cells_of(kind), locking_friction_angle * degrees));
 }
 
 /// Stresses in rigid blocks follow from the forces on them alone and scatter far more than those of affine ones.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <set>
 #include <string>
@@ -11,9 +12,38 @@
 
 #include <fmt/format.h>
 
+#include "kluft/core/units.hpp"
+
 namespace kluft {
 
 namespace {
+
+/// A stress whose unit was forgotten, where the key is given.
+void warn_of_lost_unit(const SceneSection& section, std::string_view key, double stress, ReadingContext& context) {
+    constexpr double next_to_nothing = 100.0; // Pa; a centimetre of water
+    const double size = std::abs(stress);
+    if (size > 0.0 && size < next_to_nothing && section.has(key))
+        context.warn(
+            section, key,
+            fmt::format("{:.4g} Pa is next to nothing; is its unit missing, as in {:.4g} MPa?", stress, stress));
+}
+
+/// An angle in radians without its unit.
+void warn_of_small_friction(const SceneSection& section, double friction_angle, ReadingContext& context) {
+    constexpr double slippery = 2.0; // degrees; wet ice has some 3, wet clay 5
+    const double angle = friction_angle * degrees;
+    if (angle > 0.0 && angle < slippery && section.has("friction_angle"))
+        context.warn(section, "friction_angle",
+                     fmt::format("{:.3g} degrees is less friction than that of any rock; is its unit missing, as in "
+                                 "'{:.3g} rad'?",
+                                 angle, angle));
+}
+
+void warn_of_strength(const SceneSection& section, const Strength& strength, ReadingContext& context) {
+    warn_of_lost_unit(section, "cohesion", strength.cohesion, context);
+    warn_of_lost_unit(section, "tensile_strength", strength.tensile_strength, context);
+    warn_of_small_friction(section, strength.friction_angle, context);
+}
 
 void warn_of_material(const SceneSection& section, const Material& material, ReadingContext& context) {
     constexpr double softest = 1e6;     // Pa; soft clay has some MPa
@@ -35,11 +65,51 @@ void warn_of_material(const SceneSection& section, const Material& material, Rea
 
 void warn_of_joint(const SceneSection& section, const InterfaceType& type, ReadingContext& context) {
     constexpr double steel = 2.1e11 / 1e-3; // Pa/m: Young's modulus over a thickness of 1 mm
+    constexpr double softest = 1e5;         // Pa/m: a metre of soft clay has 1e6
+    for (const auto& [key, stiffness] :
+         {std::pair("normal_stiffness", type.normal_stiffness), std::pair("shear_stiffness", type.shear_stiffness)})
+        if (stiffness && *stiffness < softest)
+            context.warn(section, key,
+                         fmt::format("{:.4g} Pa/m is softer than any joint; is its unit missing, as in {:.4g} GPa/m?",
+                                     *stiffness, *stiffness));
+    const bool slides = type.kind == InterfaceKind::fracture;
+    if (slides && !section.has("friction_angle") && !section.has("cohesion"))
+        context.warn(section, "kind",
+                     "a fracture without friction_angle and cohesion slides without resistance; friction_angle: 0 says "
+                     "that this is meant");
+    warn_of_strength(section,
+                     type.strength.value_or(Strength{.cohesion = type.cohesion, .friction_angle = type.friction_angle}),
+                     context);
     if (type.normal_stiffness.value_or(0.0) > steel)
         context.warn(section, "normal_stiffness",
                      fmt::format("{:.3g} Pa/m is stiffer than a millimetre of steel, {:.2g} Pa/m; stiffer joints take "
                                  "more iterations and change no strength",
                                  *type.normal_stiffness, steel));
+}
+
+void warn_of_loads(const SceneSection& root, const Scene& scene, ReadingContext& context) {
+    constexpr double large_strain = 0.2; // rock breaks at some hundredths
+    const std::vector<std::string> names = names_of(scene.geometry.boundaries);
+    const auto stages = root.sections("stages");
+    for (std::size_t s = 0; s < std::min(stages.size(), scene.loads.stages.size()); ++s) {
+        const Stage& stage = scene.loads.stages[s];
+        for (const auto& [boundary, pressure] : stage.pressure) {
+            const SceneSection section = stages[s].section("pressure");
+            const std::string& name = names[static_cast<std::size_t>(boundary)];
+            warn_of_lost_unit(section, name, pressure, context);
+            if (pressure < 0.0 && section.has(name))
+                context.warn(section, name,
+                             fmt::format("{:.4g} Pa pulls: pressures are positive where they push", pressure));
+        }
+        if (!stage.motion) continue;
+        const double value = stage.motion->value;
+        if (stage.motion->control == PlatenControl::stress)
+            warn_of_lost_unit(stages[s].section("stress"), "value", value, context);
+        if (stage.motion->control == PlatenControl::strain && std::abs(value) > large_strain)
+            context.warn(stages[s].section("strain"), "value",
+                         fmt::format("{:.3g} is {:.3g} % of the body's length; is the % missing, as in '{:.3g} %'?",
+                                     value, 100.0 * value, value));
+    }
 }
 
 /// The side of a rectangle across from one; "" of another name.
@@ -113,11 +183,14 @@ void warn_of_keys_without_effect(const SceneSection& root, const Scene& scene, R
 
 void warn_of_implausible_values(const SceneSection& root, const Scene& scene, ReadingContext& context) {
     const auto materials = root.sections("materials");
-    for (std::size_t m = 0; m < std::min(materials.size(), scene.materials.size()); ++m)
+    for (std::size_t m = 0; m < std::min(materials.size(), scene.materials.size()); ++m) {
         warn_of_material(materials[m], scene.materials[m], context);
+        warn_of_strength(materials[m], scene.materials[m].strength.value_or(Strength{}), context);
+    }
     const auto interfaces = root.sections("interfaces");
     for (std::size_t i = 0; i < std::min(interfaces.size(), scene.interface_types.size()); ++i)
         warn_of_joint(interfaces[i], scene.interface_types[i], context);
+    warn_of_loads(root, scene, context);
     warn_of_one_sided_pressure(root, scene, context);
     warn_of_symmetric_reduction(root, scene, context);
     warn_of_keys_without_effect(root, scene, context);

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstddef>
 #include <iterator>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "kluft/core/units.hpp"
 #include "kluft/scene/scene_check.hpp"
 
 namespace kluft {
@@ -87,8 +87,7 @@ void read_fracture(const SceneSection& section, ReadingContext& context, Interfa
     if (type.dilation_angle > type.friction_angle)
         context.fail(section, "dilation_angle",
                      fmt::format("expected at most the friction angle ({:.6g} deg), found {}",
-                                 type.friction_angle * 180.0 / std::numbers::pi,
-                                 found_text(*section.value("dilation_angle"))));
+                                 type.friction_angle * degrees, found_text(*section.value("dilation_angle"))));
 }
 
 void read_potential_crack(const SceneSection& section, ReadingContext& context, InterfaceType& type) {

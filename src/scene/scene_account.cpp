@@ -1,7 +1,6 @@
 #include "kluft/scene/scene_account.hpp"
 
 #include <algorithm>
-#include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
@@ -11,13 +10,12 @@
 #include "kluft/assembly/linear_solver.hpp"
 #include "kluft/constitutive/lattice_stiffness.hpp"
 #include "kluft/core/place_text.hpp"
+#include "kluft/core/units.hpp"
 #include "kluft/kinematics/affine.hpp"
 
 namespace kluft {
 
 namespace {
-
-constexpr double degrees = 180.0 / std::numbers::pi;
 
 using Lines = std::vector<SceneAccount::Line>;
 

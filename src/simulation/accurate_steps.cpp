@@ -46,15 +46,18 @@ std::optional<double> lag_from(double size, const StepError& error, double rejec
     return std::clamp(rate - size * (rejected_rate - rate) / (rejected_size - size), 0.0, accuracy);
 }
 
-/// The error of a step that ended at an event or was relaxed counts as that of the last one that was judged.
+/// The error of a step that ended at an event or was relaxed counts as that of the last one that was judged: in proportion to the square
+/// of the size where it is smaller, and to the size, as errors are kept, where it is larger.
 void charge_unjudged(const State& before, StepControl& control, double load_factor) {
-    const double taken = load_factor - before.at.load_factor;
-    control.path_error += control.curvature * taken * taken;
+    if (control.judged_size == 0.0) return;
+    const double share = (load_factor - before.at.load_factor) / control.judged_size;
+    control.path_error += control.judged_error * share * std::min(share, 1.0);
 }
 
 void keep_judged(double size, const StepError& error, bool branches, double accuracy, StepControl& control) {
     control.size = branches ? size : std::max(least_step_size, next_step_size(size, error, accuracy));
-    control.curvature = error.path / (size * size);
+    control.judged_size = size;
+    control.judged_error = error.path;
     control.path_error += error.path;
 }
 

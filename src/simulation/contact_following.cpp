@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "kluft/simulation/breaking.hpp"
 #include "kluft/simulation/jump.hpp"
 
@@ -23,6 +25,29 @@ bool has_moved_far(const StepInProgress& p, const Eigen::VectorXd& since) {
     return relative_motion(p.bench.model.system, p.displacement() - since) > far;
 }
 
+/// The block that moves farthest, beside its size.
+MovingBlock farthest_block(const BlockSystem& system, const Eigen::VectorXd& motion) {
+    MovingBlock farthest;
+    double largest = -1.0;
+    for (int b = 0; b < system.n_blocks(); ++b) {
+        const Vec2 moved = motion.segment<2>(n_block_unknowns * b);
+        const double share = moved.norm() / motion_scale(system, system.blocks[b]);
+        if (share <= largest) continue;
+        largest = share;
+        farthest = {.block = b, .direction = moved.normalized()};
+    }
+    return farthest;
+}
+
+/// The body is balanced each time: what is named is the block that goes farthest.
+void fail_by_moving_on(StepInProgress& p, const Equilibrium& found, const Eigen::VectorXd& motion) {
+    fail(p, found, found.viscous_share, FailureKind::falling);
+    p.step.failure->moving = {farthest_block(p.bench.model.system, motion)};
+    p.step.failure->what =
+        fmt::format("each time its contacts are detected anew the body moves on, {} times at this load: {}",
+                    max_rounds_of_detection, description(p.bench.model, p.step.failure->moving));
+}
+
 } // namespace
 
 Equilibrium find_again(StepInProgress& p) {
@@ -40,7 +65,7 @@ void let_contacts_follow(StepInProgress& p, Eigen::VectorXd placed_at) {
         stands = true;
         placed_at = p.displacement();
         const Equilibrium found = find_again(p);
-        if (!p.failed() && round == max_rounds_of_detection) fail(p, found, found.viscous_share, FailureKind::falling);
+        if (!p.failed() && round == max_rounds_of_detection) fail_by_moving_on(p, found, p.displacement() - placed_at);
     }
 }
 

@@ -8,6 +8,7 @@
 
 #include "kluft/blocks/block_search.hpp"
 #include "kluft/core/place_text.hpp"
+#include "kluft/core/units.hpp"
 #include "kluft/kinematics/affine.hpp"
 #include "kluft/kinematics/rigid.hpp"
 
@@ -15,7 +16,7 @@ namespace kluft {
 
 namespace {
 
-constexpr double large_turn = 5.0 * std::numbers::pi / 180.0;
+constexpr double large_turn = 5.0 / degrees;
 constexpr double large_motion = 0.25; ///< of the smaller block's motion_scale
 
 /// How two neighbours of the body as cut lie otherwise beside each other than before.
@@ -73,7 +74,7 @@ std::string description_of_fall(const Model& model, const Eigen::VectorXd& befor
     const int beside = a_moved ? farthest->block_b : farthest->block_a;
     return fmt::format("block {} at {} has turned by {:.3g} degrees and moved by {:.3g} m beside block {}",
                        block_label(system, moved), place_text(system.origin + system.blocks[moved].centroid),
-                       most.turn * 180.0 / std::numbers::pi, most.motion, block_label(system, beside));
+                       most.turn * degrees, most.motion, block_label(system, beside));
 }
 
 } // namespace kluft

@@ -92,6 +92,17 @@ void warn_of_fall(const StepBench& bench, const State& state) {
         state.at.stage, fall));
 }
 
+/// Jumps of the path, and events in load steps that had to be relaxed, may cost more than was asked for.
+void report_estimate(double accuracy, const State& state, RunReport& report) {
+    const double estimate = state.control.estimated_error;
+    report.results.estimated_error = estimate;
+    if (estimate <= accuracy) return;
+    report.warnings.push_back(fmt::format(
+        "the estimated error of the load steps is {:.2g} %, more than the {:.2g} % of solver.accuracy: the path "
+        "jumps, or no equilibrium was found where an event had to be met, and what lies between is not known",
+        100.0 * estimate, 100.0 * accuracy));
+}
+
 /// The next stage starts from the loads at the end of this one.
 void end_stage(const StepBench& bench, Eigen::VectorXd forces, State& state) {
     if (forces.size() == 0) forces = measure_state(bench, state, 1.0).measured.forces; // resumed at the end of a stage
@@ -136,7 +147,7 @@ RunReport run_simulation(const Model& model, const CrackOptions& cracks, const S
             end_stage(bench, std::move(end.forces), state);
         }
     });
-    if (solver.accuracy > 0.0) report.results.estimated_error = state.control.estimated_error;
+    if (solver.accuracy > 0.0) report_estimate(solver.accuracy, state, report);
     return report;
 }
 

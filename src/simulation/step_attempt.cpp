@@ -55,8 +55,9 @@ void note_slips(StepInProgress& p, const PlacedState& placed, double load_factor
 void note_event(StepInProgress& p, const PlacedState& placed, const EventCut<Equilibrium>& cut) {
     const double index = index_of(p, placed, cut.found);
     if (index < 1.0 - p.goal.accuracy) return;
+    const double taken = cut.found.load_factor - p.from.at.load_factor; // which encloses the event too
     double& error = p.step.end.control.event_error;
-    error = std::max(error, std::min(std::abs(index - 1.0), cut.width));
+    error = std::max(error, std::min({std::abs(index - 1.0), cut.width, taken}));
     note_slips(p, placed, cut.found.load_factor, cut.found.displacement);
 }
 

@@ -220,7 +220,7 @@ void note_peak(const FinishedRun& run, std::vector<std::string>& notes) {
         notes.push_back(run.name + " has no balanced equilibrium, so no peak");
     } else if (run.numbers.net_locked) {
         notes.push_back(run.name + " has no peak: its net locked, its largest stress before is compared");
-    } else if (!run.numbers.peak_reached) {
+    } else if (!is_strength(run.numbers)) {
         notes.push_back(run.name + " has no peak: its stress was not yet falling, its largest one is compared");
     }
 }

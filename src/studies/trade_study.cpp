@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -11,6 +10,7 @@
 
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/core/nearest_name.hpp"
+#include "kluft/core/units.hpp"
 #include "kluft/scene/quantity.hpp"
 #include "kluft/scene/scene_schema.hpp"
 #include "kluft/scene/scene_tree.hpp"
@@ -256,7 +256,7 @@ private:
         const std::string net = "geometry.tessellation.hexagons";
         add("hexagon size",
             {{net + ".spacing", {number_text(0.8 * hexagons.spacing), number_text(1.25 * hexagons.spacing)}}});
-        add_turned(net + ".rotation", hexagons.rotation * 180.0 / std::numbers::pi);
+        add_turned(net + ".rotation", hexagons.rotation * degrees);
         if (hexagons.jitter == 0.0) add("jittered hexagons", {{net + ".jitter", {"0.1"}}});
         const std::string cells = "geometry.tessellation.voronoi";
         if (is_known(cells + ".spacing") && is_known(cells + ".seed"))

@@ -122,6 +122,20 @@ TEST(ContactDetection, ATipThatTheFloorHasTooIsKeptAboveItWhereNoFacesFaceEachOt
     EXPECT_TRUE(body.points().empty());
 }
 
+// The left block reaches into the right one with a tip that is 6 to 0 cm thick; 3 to 6 cm of the right block lie between it and the
+// floor. Pressed into the rock above it, the tip's upper face has the lower face of the right block behind it, not before it.
+TEST(ContactDetection, TheBackOfAThinPartIsNoFaceThatThePartBesideItTouches) {
+    CutRectangle body(3.0, 2.0, {{{-1, 0.94}, {4, 0.94}}, {{1, 3}, {1, 1.03}, {1.8, 1.0}, {1, 0.97}, {1, 0.5}}});
+    ASSERT_EQ(body.system.n_blocks(), 3);
+    const int left = body.system.blocks[1].centroid.x() < 1.0 ? 1 : 2;
+    for (const double pressed : {0.0, 1e-4, -1e-4}) {
+        body.move(left, {0.0, pressed});
+        const auto points = body.points();
+        EXPECT_GE(points.size(), 12U);
+        for (const ContactPoint& point : points) EXPECT_GE(body.gap(point), -1.01e-4);
+    }
+}
+
 TEST(ContactDetection, PointsAreKeptUpToTheReachAndNoFurther) {
     auto body = two_blocks();
     body.move(1, {0, 0.999 * reach});
@@ -405,10 +419,15 @@ std::map<EdgePair, double> overlaps_of_all_pairs(const BlockSystem& system, cons
                     const double at = low + (deeper_at_low ? 0.25 : 0.75) * (high - low);
                     const Vec2 on_a = p + u * (at - along.dot(p)) / along.dot(u);
                     const Vec2 on_b = s + v * (at - along.dot(s)) / along.dot(v);
-                    if (across(at, s, v) - across(at, p, u) <
-                            -0.01 * std::min(system.blocks[a].size, system.blocks[b].size) &&
-                        turns_around(system, q, a, on_b) < 0.5 && turns_around(system, q, b, on_a) < 0.5)
-                        continue;
+                    const bool deep = across(at, s, v) - across(at, p, u) <
+                                      -0.01 * std::min(system.blocks[a].size, system.blocks[b].size);
+                    const auto is_in = [&](int block, const Vec2& x) {
+                        return turns_around(system, q, block, x) > 0.5;
+                    };
+                    const Vec2 between = 0.5 * (on_a + on_b);
+                    const bool overlap =
+                        own ? is_in(a, on_b) || is_in(b, on_a) : is_in(a, between) && is_in(b, between);
+                    if (deep && !overlap) continue;
                     overlaps[{a, static_cast<int>(e), b, static_cast<int>(f)}] = high - low;
                 }
             }

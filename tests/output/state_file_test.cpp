@@ -47,7 +47,7 @@ State state_of(int n_blocks) {
     state.memory.kept_points = {kept};
     state.memory.steps_since_detection = 2;
     state.memory.detected_at = 0.5 * state.body.displacement;
-    state.control = {0.01, 2.0, 0.5, 1e-3, 2e-3, 3e-3, 2, {2, 0}};
+    state.control = {0.01, 0.02, 2e-4, 0.5, 1e-3, 2e-3, 3e-3, 2, {2, 0}};
     state.stresses = {1.2e6, 1.5e6, 1e6, 1, 1.4e6};
     state.is_settled = false;
     state.costs = {179, 180, 2, 150, 40, 2000, 3, 5, 4, 12.5, 11.5, {1, 2, 3, 4, 5, 6, 7, 8, 9}};

@@ -241,6 +241,55 @@ TEST(Summary, ElasticConstantsEndWhereTheFirstBondFails) {
     EXPECT_NEAR(*numbers.youngs_modulus, 100e6, 1e-3);
 }
 
+/// Elastic up to a differential stress of 2 MPa at 0.2 % strain, then with the hardening modulus to 1 %; 50 load steps at a lateral stress.
+Rows yielding(double hardening, double lateral) {
+    Rows rows{row(0, 0, 0, 0, 0, lateral)};
+    for (int i = 1; i <= 50; ++i) {
+        const double strain = 2e-4 * i;
+        rows.push_back(row(i, 1, strain, std::min(strain * 1e9, 2e6 + (strain - 2e-3) * hardening), 0, lateral));
+    }
+    return rows;
+}
+
+bool has_levelled_off(const Rows& rows) { return curve_numbers(rows, rows, 1, Plane::strain).levelled_off; }
+
+// A joint that slides by Coulomb's law keeps its stress; over the last third of the strain, 0.33 %, a hardening of 5 MPa adds 0.8 % of
+// the stress and one of 10 MPa 1.6 %.
+TEST(Summary, AStressThatLevelsOffIsAStrength) {
+    const Rows level = yielding(0.0, 0.2e6);
+    const auto numbers = curve_numbers(level, level, 1, Plane::strain);
+    EXPECT_TRUE(numbers.levelled_off && is_strength(numbers));
+    EXPECT_FALSE(numbers.peak_reached || numbers.residual_stress);
+    EXPECT_EQ(peak_remark(numbers), "levelled off");
+    EXPECT_TRUE(has_levelled_off(yielding(5e6, 0.2e6)));
+    EXPECT_TRUE(has_levelled_off(yielding(-2e6, 0.2e6)));
+    EXPECT_FALSE(has_levelled_off(yielding(10e6, 0.2e6)));
+    EXPECT_FALSE(has_levelled_off(yielding(1e9, 0.2e6)));
+    EXPECT_FALSE(
+        has_levelled_off(yielding(1e9, 1e9))); // elastic: its stress grows by 1 % only, since the sides bear 1 GPa
+    EXPECT_FALSE(has_levelled_off(triangle(100e6, 0.3))); // falls
+}
+
+TEST(Summary, HasNotLevelledOffOutOfBalanceOrWhereLoadsTurn) {
+    const auto with = [](auto change) {
+        Rows rows = yielding(0.0, 0.2e6);
+        change(rows[40]);
+        return has_levelled_off(rows);
+    };
+    EXPECT_TRUE(with([](StepRecord&) {}));
+    EXPECT_FALSE(with([](StepRecord& row) { row.balanced = false; }));
+    EXPECT_FALSE(with([](StepRecord& row) { row.axial_strain = 0.0; }));
+    EXPECT_FALSE(with([](StepRecord& row) { row.lateral_stress = 0.3e6; }));
+}
+
+// A joint that slides from the first load step on: what is left over in balance makes the curve rise by 1e-8 of itself.
+TEST(Summary, HasNoModulusWhereTheStressDoesNotRise) {
+    Rows rows{row(0, 0, 0, 2e6)};
+    for (int i = 1; i <= 50; ++i) rows.push_back(row(i, 1, 2e-4 * i, 2e6 + 4e-4 * i, -6e-5 * i));
+    const auto numbers = curve_numbers(rows, rows, 1, Plane::stress);
+    EXPECT_FALSE(numbers.axial_modulus || numbers.youngs_modulus || numbers.poissons_ratio);
+}
+
 TEST(Summary, HasNoYoungsModulusWherePoissonsRatioIsImpossible) {
     const Rows rows = triangle(100e6, 0.7);
     const auto numbers = curve_numbers(rows, rows, 1, Plane::stress);

@@ -69,7 +69,18 @@ TEST(RunAnswer, OfACurveThatStillRisesIsABound) {
     const RunAnswer answer = run_answer(facts);
     EXPECT_EQ(answer.value, "at least 16 MPa");
     EXPECT_FALSE(answer.firm);
-    EXPECT_THAT(answer.warnings, Contains(StartsWith("Still rising")));
+    EXPECT_THAT(answer.warnings, Contains(StartsWith("No peak yet")));
+}
+
+TEST(RunAnswer, OfACurveThatHasLevelledOffIsAStrength) {
+    RunFacts facts = pressed();
+    facts.numbers.peak_reached = false;
+    facts.numbers.levelled_off = true;
+    const RunAnswer answer = run_answer(facts);
+    EXPECT_EQ(answer.value, "16 MPa");
+    EXPECT_TRUE(answer.firm);
+    EXPECT_THAT(answer.sentence, HasSubstr("gives way at this stress"));
+    EXPECT_THAT(answer.warnings, Not(Contains(StartsWith("No peak yet"))));
 }
 
 TEST(RunAnswer, OfALockedNetIsNoStrengthOfTheRock) {
@@ -80,7 +91,7 @@ TEST(RunAnswer, OfALockedNetIsNoStrengthOfTheRock) {
     EXPECT_EQ(answer.value, "16 MPa before the net locked");
     EXPECT_FALSE(answer.firm);
     EXPECT_THAT(answer.warnings, Contains(StartsWith("The net locked")));
-    EXPECT_THAT(answer.warnings, Not(Contains(StartsWith("Still rising"))));
+    EXPECT_THAT(answer.warnings, Not(Contains(StartsWith("No peak yet"))));
 }
 
 TEST(RunAnswer, OfAPlatenLoadedByStressIsTheLoadAboveWhichThereIsNoEquilibrium) {

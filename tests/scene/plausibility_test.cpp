@@ -16,6 +16,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::StartsWith;
+using ::testing::UnorderedElementsAre;
 
 const std::string pressed_block = R"(kluft: 1
 materials:
@@ -53,6 +54,32 @@ TEST(ImplausibleValues, LostUnitsAreTold) {
                 ElementsAre(HasSubstr("the density of no rock")));
     EXPECT_THAT(warnings_of_block_with({"interfaces.joint.normal_stiffness=1e15"}),
                 ElementsAre(HasSubstr("interfaces.joint.normal_stiffness: 1e+15 Pa/m is stiffer than a millimetre")));
+}
+
+TEST(ImplausibleValues, LostUnitsOfStrengthsAndLoadsAreTold) {
+    EXPECT_THAT(
+        warnings_of_block_with({"interfaces.joint.normal_stiffness=40", "interfaces.joint.shear_stiffness=20 GPa/m"}),
+        ElementsAre(HasSubstr("interfaces.joint.normal_stiffness: 40 Pa/m is softer than any joint")));
+    EXPECT_THAT(warnings_of_block_with({"interfaces.joint.cohesion=0.5"}),
+                ElementsAre(HasSubstr(
+                    "interfaces.joint.cohesion: 0.5 Pa is next to nothing; is its unit missing, as in 0.5 MPa?")));
+    EXPECT_THAT(warnings_of_block_with({"materials.rock.cohesion=15 MPa", "materials.rock.friction_angle=45 deg",
+                                        "materials.rock.tensile_strength=6"}),
+                ElementsAre(HasSubstr("materials.rock.tensile_strength: 6 Pa")));
+    EXPECT_THAT(warnings_of_block_with({"interfaces.joint.friction_angle=0.61"}),
+                ElementsAre(HasSubstr("'0.61 rad'?")));
+    EXPECT_THAT(warnings_of_block_with({"interfaces.joint.friction_angle=0.61 rad"}), IsEmpty());
+    EXPECT_THAT(warnings_of_block_with({"stages.0.pressure={left: 2, right: 2 MPa}"}),
+                ElementsAre(HasSubstr("stages.0.pressure.left: 2 Pa")));
+    EXPECT_THAT(warnings_of_block_with({"stages.1.strain.value=40 %"}), ElementsAre(HasSubstr("as in '0.4 %'?")));
+}
+
+TEST(ImplausibleValues, ALoadThatPullsAndAJointThatNothingHoldsAreTold) {
+    EXPECT_THAT(warnings_of_block_with({"stages.0.pressure={left: -2 MPa, right: -2 MPa}"}),
+                UnorderedElementsAre(HasSubstr("left: -2e+06 Pa pulls"), HasSubstr("right: -2e+06 Pa pulls")));
+    EXPECT_THAT(warnings_of_block_with({"interfaces.joint.friction_angle=null"}),
+                ElementsAre(HasSubstr("slides without resistance")));
+    EXPECT_THAT(warnings_of_block_with({"interfaces.joint.friction_angle=0"}), IsEmpty());
 }
 
 TEST(ImplausibleValues, PressureOnOneSideIsToldWhereNothingStandsAgainstIt) {

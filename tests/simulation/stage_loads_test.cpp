@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "kluft/core/units.hpp"
 #include "kluft/kinematics/affine.hpp"
 #include "support/scene_run.hpp"
 
@@ -42,6 +43,34 @@ Model model_of(const std::string& boundaries, const std::string& stages) {
 
 StageLoads loads_of(const Model& model, const State& state, int stage = 0) {
     return {model, {state.body.displacement, state.stage_start.boundary_pressure}, model.loads.stages[stage]};
+}
+
+/// A block of 0.4 m by 0.1 m on one that reaches out from below it by 0.05 m on the left and 0.25 m on the right, turned by an angle;
+/// its left side is pushed and has no other side across from it.
+Model pushed_block(double degrees_turned) {
+    const double c = std::cos(degrees_turned / degrees);
+    const double s = std::sin(degrees_turned / degrees);
+    const auto corner = [&](double x, double y) {
+        return fmt::format("[{:.17g}, {:.17g}]", c * x - s * y, s * x + c * y);
+    };
+    const auto box = [&](double left, double right, double low, double high) {
+        return fmt::format("[{}, {}, {}, {}]", corner(left, low), corner(right, low), corner(right, high),
+                           corner(left, high));
+    };
+    return build_scene_model(read_scene_text(fmt::format(R"(
+kluft: 1
+materials: {{rock: {{youngs_modulus: 1 GPa, poissons_ratio: 0.2, density: 2600}}}}
+interfaces: {{joint: {{kind: fracture, normal_stiffness: 1e10, shear_stiffness: 1e10, friction_angle: 30}}}}
+geometry:
+  blocks:
+    - {{name: floor, polygon: {}, support: fixed}}
+    - {{name: slab, polygon: {}}}
+  blocks_interface: joint
+boundaries: {{push: {{block: slab, sides: [3]}}}}
+stages: [{{strain: {{boundary: push, value: 1 %}}}}]
+)",
+                                                         box(0.0, 0.7, 0.0, 0.1), box(0.05, 0.45, 0.1, 0.2))))
+        .model;
 }
 
 /// Rows on a boundary along x (0) or y (1), with the reference positions of their vertices.
@@ -200,6 +229,14 @@ TEST(StageLoads, PlatenForceActsOnTheCurrentWidth) {
         q[6 * b + 1] = 0.5;
     }
     EXPECT_NEAR(force.widening.dot(q), 0.03, 1e-15);
+}
+
+// The floor reaches 0.65 m behind the side that is pushed, whichever way it faces.
+TEST(StageLoads, ABodyWithoutABoundaryAcrossIsAsLongAsItReachesBehindThePlaten) {
+    for (const double turned : {0.0, 30.0, 90.0, 180.0, 270.0}) {
+        const Model model = pushed_block(turned);
+        EXPECT_NEAR(distance_across(model.system, model.loads.stages[0].motion->boundary), 0.65, 1e-12) << turned;
+    }
 }
 
 // ---- pressures -----------------------------------------------------------------------------------------------------

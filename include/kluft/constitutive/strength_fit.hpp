@@ -16,7 +16,7 @@ struct PeakPoint {
     std::string run;
     double sigma_3 = 0.0;     ///< smaller principal stress at the peak; of a compression test the lateral stress
     double sigma_1 = 0.0;     ///< larger principal stress at the peak; of a compression test the axial stress
-    bool peak_reached = true; ///< false: the stress was not yet falling
+    bool peak_reached = true; ///< false: the stress had neither fallen nor levelled off
     bool balanced = true;     ///< false: the run ended out of balance
     bool net_locked = false;  ///< loose blocks of the net of potential cracks carried the load, as masonry does
 };

@@ -29,8 +29,8 @@ struct BoundaryFrame {
 /// Mean displacement of a boundary, weighted by length (m).
 [[nodiscard]] Vec2 mean_displacement(const BlockSystem& system, const Eigen::VectorXd& q, int boundary);
 
-/// The distance of the outer edges of a boundary from those of the opposite one along its normal; from the lower corner of
-/// the body without one (m).
+/// The distance of the outer edges of a boundary from those of the opposite one along its normal; without one, from the farthest point
+/// of the body behind it (m).
 [[nodiscard]] double distance_across(const BlockSystem& system, int boundary);
 
 /// The boundaries on one side of a body.

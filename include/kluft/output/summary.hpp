@@ -21,6 +21,9 @@ struct CurveNumbers {
     bool peak_reached =
         false; ///< a later balanced equilibrium lies at least 1 % below the peak, or a state out of balance by half
     bool net_locked = false; ///< see is_net_locked; then no peak is reached
+    /// No peak is reached, and the differential stress has changed by 1 % or less over the last third of the platen's way, all of it in
+    /// balance, at one lateral stress: what slides without end, as a joint of Coulomb friction does.
+    bool levelled_off = false;
     /// Mean axial stress over the last 10 % of the strain (Pa); none where the peak lies in the last 20 %.
     std::optional<double> residual_stress;
     std::optional<double> axial_modulus;  ///< slope of the differential stress over the axial strain (Pa)
@@ -65,7 +68,10 @@ struct CurveNumbers {
                                          const std::vector<StepRecord>& history, std::optional<int> platen_stage,
                                          Plane plane);
 
-/// What is to be said beside a peak that is not reached: "not yet falling" or "net locked"; "" beside one that is.
+/// Whether the largest axial stress is a strength: it falls behind it, or has levelled off.
+[[nodiscard]] bool is_strength(const CurveNumbers& numbers);
+
+/// What is to be said beside a peak that is not reached: "levelled off", "not yet falling" or "net locked"; "" beside one that is.
 [[nodiscard]] std::string peak_remark(const CurveNumbers& numbers);
 
 /// The name of a status in summary.json.

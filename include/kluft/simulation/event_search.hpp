@@ -23,7 +23,7 @@ struct EventGoal {
 /// An equilibrium at an event, or at the end where there is none.
 template <class Equilibrium> struct EventCut {
     Equilibrium found;
-    /// Load factors that enclose the event, where the index jumps there; infinite elsewhere.
+    /// Load factors that enclose the event, where it was not met; infinite elsewhere.
     double width = std::numeric_limits<double>::infinity();
 };
 
@@ -62,17 +62,12 @@ EventCut<Equilibrium> first_event(const EventGoal& goal, double from, Equilibriu
         }
         const double g = index_of(next) - goal.index;
         const bool is_event = std::abs(g) <= goal.reach;
-        if (is_event) {
-            bracket.high = at;
-        } else {
-            bracket.take(at, g);
-        }
+        if (is_event) return {std::move(next)};
+        bracket.take(at, g);
         (bracket.high == at ? end : before.emplace()) = std::move(next);
-        if (is_event) break;
     }
     if (without < bracket.high && before) return {std::move(*before)}; // the event lies where no equilibrium was found
-    if (bracket.width() <= goal.least_width) return {std::move(end), bracket.width()};
-    return {std::move(end)};
+    return {std::move(end), bracket.width()};
 }
 
 /// The part of the way to its end (0..1) at which an index is expected to reach one. `index_at(share)`; the index at the

@@ -63,7 +63,8 @@ struct SolverMemory {
 /// The size of load steps that follow from an accuracy, and the errors made so far.
 struct StepControl {
     double size = 0.0;            ///< of the next step, load factor
-    double curvature = 0.0;       ///< path error of the last step that was judged, over the square of its size
+    double judged_size = 0.0;     ///< of the last step that was judged, load factor
+    double judged_error = 0.0;    ///< of its path, relative
     double lag = 0.0;             ///< part of the error in proportion to the size, over the size: it does not add up
     double path_error = 0.0;      ///< sum over the steps so far, relative
     double event_error = 0.0;     ///< largest |f - 1| at an event so far
@@ -131,7 +132,8 @@ template <class Members, class Visit> void visit_saved(Members& state, Visit&& v
     visit("steps_since_detection", state.memory.steps_since_detection);
     visit("detected_at", state.memory.detected_at);
     visit("step_size", state.control.size);
-    visit("step_curvature", state.control.curvature);
+    visit("judged_size", state.control.judged_size);
+    visit("judged_error", state.control.judged_error);
     visit("step_lag", state.control.lag);
     visit("path_error", state.control.path_error);
     visit("event_error", state.control.event_error);
