@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <fmt/format.h>
+
 namespace kluft {
 
 namespace {
@@ -37,7 +39,8 @@ ColourScale scale_for(std::vector<double> values) {
     constexpr double ends = 0.01;
     const double low = std::min(0.0, ranked(ends));
     const double high = std::max(0.0, ranked(1.0 - ends));
-    return ColourScale(round_axis(low, high, 5));
+    const auto [least, largest] = std::ranges::minmax(values);
+    return {round_axis(low, high, 5), least, largest};
 }
 
 void draw_colour_bar(Canvas& canvas, const ColourScale& scale, const Vec2& corner, const Vec2& size,
@@ -61,6 +64,11 @@ void draw_colour_bar(Canvas& canvas, const ColourScale& scale, const Vec2& corne
         canvas.text({right + 6.0, y}, axis.label(tick), numbers);
         widest = std::max(widest, canvas.text_width(axis.label(tick), numbers));
     }
+    if (scale.largest() > axis.high)
+        canvas.text(corner - Vec2(0.0, 6.0), fmt::format("to {:.3g}", scale.largest()), {.size = 8.0});
+    if (scale.least() < axis.low)
+        canvas.text(corner + Vec2(0.0, size.y() + 6.0), fmt::format("from {:.3g}", scale.least()),
+                    {.size = 8.0, .down = Align::low});
     const TextStyle upward{.size = 8.5, .across = Align::middle, .down = Align::low, .angle = -0.5 * std::numbers::pi};
     canvas.text({right + 6.0 + widest + 7.0, corner.y() + 0.5 * size.y()}, name, upward);
 }

@@ -169,7 +169,7 @@ void add_doubts(const RunFacts& facts, std::vector<std::string>& warnings) {
              !has_status(facts, RunStatus::collapsed))
         warnings.emplace_back(
             "No peak yet: the axial stress has neither fallen by 1 % below its largest value nor levelled off. "
-            "More strain shows whether it does.");
+            "More strain, or more load, shows whether it does.");
     if (facts.platen_stage && numbers.jumps_to_peak > 0)
         warnings.push_back(
             fmt::format("{} before the peak: at fixed loads the body lost its balance and moved to another "

@@ -87,6 +87,22 @@ void warn_of_joint(const SceneSection& section, const InterfaceType& type, Readi
                                  *type.normal_stiffness, steel));
 }
 
+/// A smooth platen takes the place of a support that holds the boundary along itself.
+void warn_of_support_under_platen(const SceneSection& root, const Scene& scene, std::size_t s,
+                                  const std::vector<std::string>& names, ReadingContext& context) {
+    const Stage& stage = scene.loads.stages[s];
+    const auto moved = static_cast<std::size_t>(stage.motion->boundary);
+    const bool holds = stage.motion->glued || stage.platen_friction > 0.0;
+    if (holds || scene.loads.supports[moved] != Support::fixed) return;
+    for (const SceneSection& boundary : root.sections("boundaries"))
+        if (boundary.path() == "boundaries." + names[moved])
+            context.warn(
+                boundary, "support",
+                fmt::format("has no effect in stages.{}, where a smooth platen moves '{}'; platens: rough there "
+                            "holds it sideways",
+                            s, names[moved]));
+}
+
 void warn_of_loads(const SceneSection& root, const Scene& scene, ReadingContext& context) {
     constexpr double large_strain = 0.2; // rock breaks at some hundredths
     const std::vector<std::string> names = names_of(scene.geometry.boundaries);
@@ -102,6 +118,7 @@ void warn_of_loads(const SceneSection& root, const Scene& scene, ReadingContext&
                              fmt::format("{:.4g} Pa pulls: pressures are positive where they push", pressure));
         }
         if (!stage.motion) continue;
+        warn_of_support_under_platen(root, scene, s, names, context);
         const double value = stage.motion->value;
         if (stage.motion->control == PlatenControl::stress)
             warn_of_lost_unit(stages[s].section("stress"), "value", value, context);

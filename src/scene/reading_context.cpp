@@ -36,7 +36,9 @@ std::optional<int> ReadingContext::reference(const SceneSection& section, std::s
     if (const auto name = section.given_text(key)) return index_of(section, key, *name, names, what);
     if (section.has(key)) return std::nullopt;
     if (names.size() == 1) return 0;
-    fail(section, key, fmt::format("expected the name of {} ({}), found nothing", what, listed(names)));
+    fail(section, key,
+         names.empty() ? fmt::format("expected the name of {}, found nothing, and the scene has none yet", what)
+                       : fmt::format("expected the name of {} ({}), found nothing", what, listed(names)));
     return std::nullopt;
 }
 

@@ -325,6 +325,23 @@ LatticeModuli moduli_of_body(const ElasticModuli& blocks, const ModelInput& inpu
     return lattice_moduli(blocks, net, model.net, input.plane);
 }
 
+/// The axial stress counts from side to side of the body, also where a platen presses a part of it.
+void warn_of_narrow_platens(Model& model) {
+    constexpr double much_narrower = 0.8; // than the body
+    std::set<int> seen;
+    for (const Stage& stage : model.loads.stages) {
+        if (!stage.motion || !seen.insert(stage.motion->boundary).second) continue;
+        const int boundary = stage.motion->boundary;
+        const double own = boundary_frame(model.system, boundary).length;
+        const double width = width_across(model.system, boundary).width;
+        if (own >= much_narrower * width) continue;
+        model.warnings.push_back(fmt::format(
+            "the axial stress of the platen on '{}' is its force over the width of the body, {:.4g} m, and not over "
+            "its own {:.4g} m, on which it presses {:.3g} times as much",
+            model.system.boundaries[boundary].name, width, own, width / own));
+    }
+}
+
 /// Platens are laid on what they press as it lies, which a gap to some of it may not mean.
 void warn_of_uneven_platens(Model& model) {
     std::set<int> seen;
@@ -421,6 +438,7 @@ Model build_model(BlockSystem system, const ModelInput& input) {
     model.overlap_points = overlap_points(system, fracture_laws);
     model.system = std::move(system);
     warn_of_uneven_platens(model);
+    warn_of_narrow_platens(model);
     warn_of_unmeasured_sides(model);
     refuse_contradicting_supports(model);
     return model;

@@ -27,10 +27,11 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::string peak_in_words(const CurveNumbers& numbers) {
+std::string peak_in_words(const CurveNumbers& numbers, RunStatus status) {
     if (numbers.net_locked)
         return " before the net locked (its loose cells carry more without a bond: no strength of the rock)";
-    return numbers.peak_reached ? "" : fmt::format(" ({})", peak_remark(numbers));
+    if (numbers.peak_reached) return "";
+    return status == RunStatus::collapsed ? ", above which nothing stands" : fmt::format(" ({})", peak_remark(numbers));
 }
 
 /// "" where none is known.
@@ -138,7 +139,8 @@ std::string closing_line(const RunReport& report, const RunSummary& summary, con
     std::string text = status_name(report.status);
     if (summary.platen_stage && summary.numbers.peak_stress) {
         text += fmt::format(": peak axial stress {:.4g} MPa at {:.4g} %{}", 1e-6 * *summary.numbers.peak_stress,
-                            100.0 * summary.numbers.peak_strain.value_or(0.0), peak_in_words(summary.numbers));
+                            100.0 * summary.numbers.peak_strain.value_or(0.0),
+                            peak_in_words(summary.numbers, report.status));
         if (const int n = summary.numbers.jumps_to_peak; n > 0)
             text += fmt::format(" after {} {}", n, n == 1 ? "jump" : "jumps");
     }

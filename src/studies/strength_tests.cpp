@@ -251,6 +251,8 @@ PeakPoint read_peak(const fs::path& directory, const std::string& run) {
     PeakPoint point = peak_point(run, rows, summary.platen_stage);
     point.balanced = summary.status != RunStatus::unbalanced;
     point.net_locked = net_locked_in(summary_file);
+    point.peak_reached =
+        point.peak_reached || summary.status == RunStatus::collapsed; // a platen that is loaded by stress
     return point;
 }
 

@@ -273,10 +273,6 @@ bool is_confirmed(const StudyTable& table, const std::vector<StudyGroup>& groups
     return any;
 }
 
-bool makes_the_model(const StudyTable& table, std::size_t parameter) {
-    return table.along != parameter && parameter_kind(table.parameters[parameter]) == ParameterKind::model;
-}
-
 std::vector<std::string> model_settings(const StudyTable& table, const std::vector<std::string>& settings) {
     std::vector<std::string> some;
     for (std::size_t p = 0; p < settings.size(); ++p)
@@ -667,6 +663,10 @@ bool is_own_setting(const StudyTable& table, std::size_t parameter, const std::s
     return a && b && *a == *b;
 }
 
+bool makes_the_model(const StudyTable& table, std::size_t parameter) {
+    return table.along != parameter && parameter_kind(table.parameters[parameter]) == ParameterKind::model;
+}
+
 std::optional<std::size_t> own_group(const StudyTable& table, const std::vector<StudyGroup>& groups) {
     std::optional<std::size_t> nearest;
     double least = std::numeric_limits<double>::infinity();
@@ -701,6 +701,7 @@ std::string advised_settings(const StudyTable& table, const std::vector<StudyGro
     bool all_own = true;
     if (variants_matter(table) && !advised.variant.empty()) words.push_back(advised.variant);
     for (std::size_t p = 0; p < table.parameters.size(); ++p) {
+        if (makes_the_model(table, p)) continue;
         const bool own = is_own_setting(table, p, advised.settings[p]);
         const bool is_named = table.own_settings.empty() ? differs_in_model(groups, others, group, p) : !own;
         all_own = all_own && own;
@@ -710,6 +711,18 @@ std::string advised_settings(const StudyTable& table, const std::vector<StudyGro
     }
     if (words.empty()) return "the scene's own settings";
     return all_own && !table.own_settings.empty() ? listed(words) + " as in the scene" : listed(words);
+}
+
+std::string model_of_group(const StudyTable& table, const std::vector<StudyGroup>& groups, std::size_t group) {
+    std::vector<std::string> words;
+    for (std::size_t p = 0; p < table.parameters.size(); ++p) {
+        const std::string& setting = groups[group].settings[p];
+        const auto is_here = [&](const StudyGroup& each) { return each.settings[p] == setting; };
+        if (makes_the_model(table, p) && !setting.empty() && !is_own_setting(table, p, setting) &&
+            !std::ranges::all_of(groups, is_here))
+            words.push_back(setting_words(table.parameters[p], setting));
+    }
+    return words.empty() ? "" : listed(words);
 }
 
 } // namespace kluft

@@ -94,6 +94,7 @@ std::optional<CaseRun> read_case_run(const fs::path& directory) {
         const RunSummary summary = read_summary(directory / "summary.json");
         CaseRun run;
         run.unbalanced_steps = summary.numbers.unbalanced_steps;
+        run.warnings = summary.warnings;
         if (!summary.motion && summary.costs.open_close_iterations > 0)
             run.solves = summary.costs.open_close_iterations;
         if (!summary.platen_stage) return run;

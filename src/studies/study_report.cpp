@@ -71,6 +71,14 @@ std::string file_word(const std::string& text) {
     return word;
 }
 
+/// A text in which every number is the same.
+std::string without_digits(const std::string& text) {
+    std::string words;
+    for (const char c : text)
+        if ((c < '0' || c > '9') && c != '.' && c != '-') words += c;
+    return words;
+}
+
 std::string on_words(const StudyMeasure& measure) {
     return measure.is_curve ? std::string("in the whole curve") : "on " + measure.name;
 }
@@ -119,12 +127,14 @@ private:
     [[nodiscard]] std::optional<ReportAnswer> found_answer() const;
     [[nodiscard]] std::optional<ReportAnswer> answer_of_replicas() const;
     [[nodiscard]] std::string set_words(std::size_t group) const;
+    [[nodiscard]] std::string settings_and_model(std::size_t group) const;
     void add_convergence();
     void add_work_precision();
     void add_replicas();
     void add_curves();
     void add_cases();
     void add_failures();
+    void add_warnings();
     void add_model_choices();
     void add_recommendation();
     void add_band(const StudyGroup& group, const std::string& label);
@@ -216,6 +226,11 @@ void ReportBuilder::add_head() {
                 fmt::format("{} is a reference and has unbalanced load steps: what is measured against it is "
                             "known no better than it is.",
                             table_.cases[i].name));
+    const auto n_warned = std::ranges::count_if(runs_, [](const auto& run) { return run && !run->warnings.empty(); });
+    if (n_warned > 0)
+        items.push_back(
+            fmt::format("{} warnings, which stand below the table of the cases.",
+                        counted(static_cast<std::size_t>(n_warned), "case") + (n_warned == 1 ? " has" : " have")));
     if (auto answer = found_answer()) add(std::move(*answer));
     add(ReportList{std::move(items)});
     auto varied = varied_items();
@@ -224,12 +239,12 @@ void ReportBuilder::add_head() {
     add(ReportList{std::move(varied)});
 }
 
-/// The settings of a group as the command line takes them.
+/// How a group computes, as the command line takes it; its model is the user's.
 std::string ReportBuilder::set_words(std::size_t group) const {
     const StudyCase& first = table_.cases[groups_[group].cases.front()];
     std::vector<std::string> words;
     for (std::size_t p = 0; p < table_.parameters.size(); ++p)
-        if (!first.settings[p].empty())
+        if (!first.settings[p].empty() && !makes_the_model(table_, p))
             words.insert(words.end(), {"--set", table_.parameters[p] + "=" + first.settings[p]});
     return shell_line(words);
 }
@@ -259,19 +274,26 @@ std::optional<ReportAnswer> ReportBuilder::found_answer() const {
     if (!best)
         return ReportAnswer{"Recommendation", "none", "No settings hold a bound with a finer case that confirms them.",
                             "", false};
+    const std::string model = model_of_group(table_, groups_, *best->group);
     return ReportAnswer{
         "Recommendation", advised_settings(table_, groups_, *best->group),
-        fmt::format("The cheapest settings with an error of at most {:.3g} % {}: it is {:.2g} %, and a case costs {}.",
-                    percent * best->bound, on_words(measure), percent * best->error,
-                    cost_text(*best->group, best->cpu_s)),
+        fmt::format(
+            "The cheapest settings with an error of at most {:.3g} % {}: it is {:.2g} %, and a case costs {}.{}",
+            percent * best->bound, on_words(measure), percent * best->error, cost_text(*best->group, best->cpu_s),
+            model.empty() ? "" : fmt::format(" Found with {}.", model)),
         set_words(*best->group)};
+}
+
+std::string ReportBuilder::settings_and_model(std::size_t group) const {
+    const std::string model = model_of_group(table_, groups_, group);
+    return advised_settings(table_, groups_, group) + (model.empty() ? "" : " with " + model);
 }
 
 std::string ReportBuilder::full_reference_words() const {
     if (!table_.reference || table_.own_settings.empty()) return table_.reference_name;
     for (std::size_t g = 0; g < groups_.size(); ++g)
         if (std::ranges::find(groups_[g].cases, *table_.reference) != groups_[g].cases.end())
-            return fmt::format("{} ({})", reference_words(table_), advised_settings(table_, groups_, g));
+            return fmt::format("{} ({})", reference_words(table_), settings_and_model(g));
     return table_.reference_name;
 }
 
@@ -615,6 +637,34 @@ void ReportBuilder::add_cases() {
     if (!with_settings) add_names();
     add(std::move(rows));
     add_failures();
+    add_warnings();
+}
+
+/// What the runs warned of, so that a number in the table is not taken for what it is not.
+void ReportBuilder::add_warnings() {
+    struct Kind {
+        std::string text; ///< of the first case
+        std::vector<std::size_t> cases;
+    };
+    std::map<std::string, Kind> kinds; // by the text without its numbers
+    for (std::size_t i = 0; i < runs_.size(); ++i) {
+        if (!runs_[i]) continue;
+        for (const std::string& warning : runs_[i]->warnings) {
+            Kind& kind = kinds[without_digits(warning)];
+            if (kind.cases.empty()) kind.text = warning;
+            if (kind.cases.empty() || kind.cases.back() != i) kind.cases.push_back(i);
+        }
+    }
+    if (kinds.empty()) return;
+    add(ReportHeading{2, "Warnings"});
+    std::vector<std::string> items;
+    for (const auto& [words, kind] : kinds) {
+        const std::string first = table_.cases[kind.cases.front()].name;
+        const bool all = kind.cases.size() == table_.cases.size();
+        const std::string others = kind.cases.size() == 1 ? "" : fmt::format(" and {} more", kind.cases.size() - 1);
+        items.push_back(fmt::format("{}: {}", all ? "all cases" : first + others, kind.text));
+    }
+    add(ReportList{std::move(items)});
 }
 
 void ReportBuilder::add_failures() {

@@ -82,6 +82,12 @@ TEST(ImplausibleValues, ALoadThatPullsAndAJointThatNothingHoldsAreTold) {
     EXPECT_THAT(warnings_of_block_with({"interfaces.joint.friction_angle=0"}), IsEmpty());
 }
 
+TEST(ImplausibleValues, ASupportThatASmoothPlatenTakesThePlaceOfIsTold) {
+    EXPECT_THAT(warnings_of_block_with({"boundaries.top={support: fixed}"}),
+                ElementsAre(HasSubstr("boundaries.top.support: has no effect in stages.1")));
+    EXPECT_THAT(warnings_of_block_with({"boundaries.top={support: fixed}", "stages.1.platens=rough"}), IsEmpty());
+}
+
 TEST(ImplausibleValues, PressureOnOneSideIsToldWhereNothingStandsAgainstIt) {
     EXPECT_THAT(warnings_of_block_with({"stages.0.pressure.right=null"}),
                 ElementsAre(AllOf(StartsWith("scene.yaml:12:"), HasSubstr("stages.0.pressure.left: nothing stands"),

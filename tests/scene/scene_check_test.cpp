@@ -378,8 +378,8 @@ TEST(SceneErrors, APotentialCrackNeedsAFractureToFailTo) {
                 ElementsAre(HasSubstr("interfaces.bond.fails_to: expected the name of an interface of kind fracture "
                                       "(joint, other), found nothing")));
     EXPECT_THAT(errors_in(test::short_scene, {"interfaces.bond.kind=potential_crack"}),
-                ElementsAre(HasSubstr("interfaces.bond.fails_to: expected the name of an interface of kind fracture "
-                                      "(none), found nothing")));
+                ElementsAre(HasSubstr("interfaces.bond.fails_to: expected the name of an interface of kind fracture, "
+                                      "found nothing, and the scene has none yet")));
 }
 
 TEST(SceneErrors, StiffnessesTimesSpacingNeedASpacing) {

@@ -88,6 +88,7 @@ TEST(EventSearch, KeepsTheLastEventKnownWhereNothingIsFoundInBetween) {
         });
     EXPECT_TRUE(cut.found.balanced);
     EXPECT_EQ(cut.found.load_factor, 1.0);
+    EXPECT_EQ(cut.width, 1.0); // that is all that is known of where it was
 }
 
 // The guess for a trial lies on the line from the start to the end that is known.

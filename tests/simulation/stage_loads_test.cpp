@@ -239,6 +239,32 @@ TEST(StageLoads, ABodyWithoutABoundaryAcrossIsAsLongAsItReachesBehindThePlaten) 
     }
 }
 
+TEST(StageLoads, APlatenOnAPartOfTheBodyHasAnAxialStressOfTheWholeWidth) {
+    const auto warnings = [](const char* width) {
+        return build_scene_model(read_scene_text(fmt::format(R"(
+kluft: 1
+materials: {{rock: {{youngs_modulus: 1 GPa, poissons_ratio: 0.2, density: 2600}}}}
+interfaces: {{joint: {{kind: fracture, normal_stiffness: 1e10, shear_stiffness: 1e10, friction_angle: 30}}}}
+geometry:
+  blocks:
+    - {{name: ground, polygon: [[0, 0], [16, 0], [16, 8], [0, 8]]}}
+    - {{name: footing, polygon: [[0, 8], [{0}, 8], [{0}, 9], [0, 9]]}}
+  blocks_interface: joint
+boundaries:
+  bottom: {{block: ground, sides: [0], support: fixed}}
+  right: {{block: ground, sides: [1], support: smooth}}
+  left: {{block: ground, sides: [3], support: smooth}}
+  footing: {{block: footing, sides: [2]}}
+stages: [{{stress: {{boundary: footing, value: 1 MPa}}}}]
+)",
+                                                             width)))
+            .model.warnings;
+    };
+    EXPECT_THAT(warnings("2"), testing::ElementsAre(
+                                   testing::HasSubstr("16 m, and not over its own 2 m, on which it presses 8 times")));
+    EXPECT_THAT(warnings("16"), testing::IsEmpty());
+}
+
 // ---- pressures -----------------------------------------------------------------------------------------------------
 
 TEST(StageLoads, PressureGrowsLinearlyFromTheStartOfTheStageAndOthersKeepTheirs) {

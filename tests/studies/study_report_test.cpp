@@ -93,6 +93,43 @@ TEST(StudyReport, SaysOrderLimitFailuresAndWhatAccuracyCosts) {
     EXPECT_THAT(page, Not(HasSubstr("src=\"study-")));
 }
 
+// Two rocks, each with its own finest case for a reference: what to compute with is advised, not what the rock is.
+TEST(StudyReport, RecommendsNoRock) {
+    const TemporaryDirectory directory;
+    StudyTable table = made_table({"materials.rock.cohesion", "stages.1.steps"}, 1);
+    table.directory = directory.path();
+    table.own_settings = {"5 MPa", "20"};
+    for (const char* cohesion : {"4 MPa", "5 MPa"})
+        for (const int steps : {10, 20}) {
+            const double error = steps == 10 ? 1e-3 : 0.0;
+            StudyCase made = done_case({cohesion, fmt::format("{}", steps)}, 15e6 * (1.0 + error), error, 0.1 * steps);
+            made.name = fmt::format("{}-{}", cohesion, steps);
+            write_case(directory / "cases" / made.name, *made.quantities[0], 0);
+            table.cases.push_back(made);
+        }
+    write_study_report(table, directory.path());
+    const std::string page = read_file(directory / "study.md");
+    EXPECT_THAT(page, HasSubstr("10 steps of stage 1"));
+    EXPECT_THAT(page, HasSubstr("Found with materials.rock.cohesion 4 MPa"));
+    EXPECT_THAT(page, Not(HasSubstr("--set materials")));
+}
+
+TEST(StudyReport, SaysWhatRunsWarnedOf) {
+    const TemporaryDirectory directory;
+    const StudyTable table = refined_table(directory.path());
+    for (const char* name : {"all-25", "all-200"}) {
+        const fs::path file = directory / "cases" / name / "summary.json";
+        RunSummary summary = read_summary(file);
+        summary.warnings = {fmt::format("a corner holds block {}", name == std::string("all-25") ? 7 : 12)};
+        write_file(file, summary_json(summary));
+    }
+    write_study_report(table, directory.path());
+    const std::string text = read_file(directory / "study.md");
+    EXPECT_THAT(text, HasSubstr("2 cases have warnings"));
+    EXPECT_THAT(text, HasSubstr("## Warnings"));
+    EXPECT_THAT(text, HasSubstr("all-25 and 1 more: a corner holds block 7"));
+}
+
 TEST(StudyReport, SaysThatTheReferenceIsOutOfBalance) {
     const TemporaryDirectory directory;
     StudyTable table = refined_table(directory.path());

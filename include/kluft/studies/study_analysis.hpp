@@ -195,7 +195,15 @@ struct Advice {
 /// Whether the group sets solver.accuracy, so that its number of steps gives the first step only.
 [[nodiscard]] bool takes_own_steps(const StudyTable& table, const StudyGroup& group);
 
-/// The parameter `along` (a step count as in the scene not of groups that take their own steps) and what differs from the scene's own settings: "25 steps of stage 1, cracks.update all". Where
+/// Whether cases that differ in the parameter are different models of the rock: one the study does not run along.
+[[nodiscard]] bool makes_the_model(const StudyTable& table, std::size_t parameter);
+
+/// What makes the group's model another one than the scene's and that of other groups: "materials.rock.cohesion 4 MPa"; "" where
+/// nothing does.
+[[nodiscard]] std::string model_of_group(const StudyTable& table, const std::vector<StudyGroup>& groups,
+                                         std::size_t group);
+
+/// How the group computes, without what makes its model. The parameter `along` (a step count as in the scene not of groups that take their own steps) and what differs from the scene's own settings: "25 steps of stage 1, cracks.update all". Where
 /// the own settings are not known all in which a group of the references' model differs from this one.
 [[nodiscard]] std::string advised_settings(const StudyTable& table, const std::vector<StudyGroup>& groups,
                                            std::size_t group);

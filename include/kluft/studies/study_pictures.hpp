@@ -30,6 +30,7 @@ struct CaseRun {
     std::vector<Vec2> curve;          ///< the balanced ones of them as long as the strain grows
     int unbalanced_steps = 0;
     std::optional<int> solves; ///< linear ones in the whole run; none of an explicit run
+    std::vector<std::string> warnings;
 };
 
 /// Changes of a value up to this, relative, are not looked at: a solver's tolerance and round-off make them.
