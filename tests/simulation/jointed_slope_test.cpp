@@ -47,7 +47,7 @@ stages:
 
 // Rigid blocks have 2.336, whatever the stage. Supports that held to round-off alone counted as not held where two points of a block lie
 // close together, which ended the search at 1.139 from 1, at 1.156 with 20 load steps.
-TEST(JointedSlope, HasTheFactorOfSafetyOfRigidBlocksWhateverTheStepsOfItsReduction) {
+TEST(SlowJointedSlope, HasTheFactorOfSafetyOfRigidBlocksWhateverTheStepsOfItsReduction) {
     constexpr double of_rigid_blocks = 2.336;
     for (const std::vector<std::string>& settings : {std::vector<std::string>{"analysis.kinematics=rigid"},
                                                      {},
@@ -63,7 +63,7 @@ TEST(JointedSlope, HasTheFactorOfSafetyOfRigidBlocksWhateverTheStepsOfItsReducti
 
 // A slope of weak rock that circles of slip give a factor near 1.5, with a coarse net of triangles: its cells come loose at that and then
 // hold each other by their shapes. The factor that they have is no factor of the rock, and the run says from where on.
-TEST(JointedSlope, WhoseNetLocksSaysSo) {
+TEST(SlowJointedSlope, WhoseNetLocksSaysSo) {
     const SceneRun run = run_scene(slope + R"(  tessellation: {triangles: {spacing: 6 m}, interface: bond}
 materials:
   rock: {density: 2600 kg/m3, youngs_modulus: 5 GPa, poissons_ratio: 0.3, cohesion: 60 kPa, friction_angle: 30 deg, tensile_strength: 20 kPa}

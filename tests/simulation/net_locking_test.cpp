@@ -41,7 +41,7 @@ double largest_stress(const SceneRun& run) {
     return std::ranges::max_element(run.equilibria, {}, &StepRecord::axial_stress)->axial_stress;
 }
 
-TEST(NetLocking, RoughJointsLockHexagonsAndThePeakIsThatOfTheRockBefore) {
+TEST(SlowNetLocking, RoughJointsLockHexagonsAndThePeakIsThatOfTheRockBefore) {
     const SceneRun run = run_scene(intact_rock);
     ASSERT_EQ(run.report.status, RunStatus::done);
     EXPECT_GT(largest_stress(run), 1.5 * strength_of_the_rock());
@@ -54,7 +54,7 @@ TEST(NetLocking, RoughJointsLockHexagonsAndThePeakIsThatOfTheRockBefore) {
 }
 
 // Their stress rises from the first broken bonds on, and without a break: most bonds have failed where it is largest.
-TEST(NetLocking, TrianglesUnderHighPressureLockAndThePeakIsThatOfTheRockBefore) {
+TEST(SlowNetLocking, TrianglesUnderHighPressureLockAndThePeakIsThatOfTheRockBefore) {
     const SceneRun run =
         run_scene(intact_rock, {"geometry.tessellation.hexagons=null", "geometry.tessellation.triangles.spacing=1",
                                 "cracks.strength_noise=0", "stages.1.strain.value=2 %", "stages.1.steps=40",

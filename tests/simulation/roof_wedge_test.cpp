@@ -99,7 +99,7 @@ TEST_P(RoofWedge, HasTheSameFactorBesideBlocksOfAnySize) {
     EXPECT_NEAR(*run.report.results.factor_of_safety, closed_form(joint), 1e-3 * closed_form(joint));
 }
 
-INSTANTIATE_TEST_SUITE_P(Strengths, RoofWedge,
+INSTANTIATE_TEST_SUITE_P(SlowStrengths, RoofWedge,
                          testing::Values(std::tuple(Joint{40, 0}, 1.0, 0.0), std::tuple(Joint{40, 0}, 1000.0, 0.0),
                                          std::tuple(Joint{40, 0}, 1.0, 1000.0), std::tuple(Joint{30, 40e3}, 100.0, 0.0),
                                          std::tuple(Joint{20, 90e3}, 1000.0, 0.0),
