@@ -17,9 +17,12 @@ namespace {
 const double facing_cosine = -std::sqrt(0.5);
 /// An overlap shorter than this part of the shorter edge is no contact.
 constexpr double shortest_overlap = 1e-6;
-/// Deeper than this part of the smaller block, they are in contact only if what overlaps is inside both blocks; the two faces of an
-/// interface, inside one.
+/// Deeper than this part of the smaller block, the faces of an interface are in contact only if what overlaps is inside one of the
+/// blocks.
 constexpr double doubtful_penetration = 0.01;
+/// Deeper than this part of it, other faces are in contact only if what lies between them is inside both blocks, and a vertex and a face
+/// only if the vertex is inside the block; less is round-off.
+constexpr double least_penetration = 1e-9;
 /// Two points of a fracture that were nearer than this part of its edge were one point; what is between is round-off.
 constexpr double same_point = 1e-12;
 /// Deeper than this part of the smaller block, edges that were no neighbours are not in contact ...
@@ -134,6 +137,7 @@ public:
         deepest_ = -deepest_contact(system_, a, b, false);
         deepest_own_ = -deepest_contact(system_, a, b, true);
         doubtful_ = -doubtful_penetration * smaller;
+        shallow_ = -least_penetration * smaller;
         overlapping_.clear();
         for (const auto& edge_a : edges_a) {
             for (const auto& edge_b : edges_b) append_overlap(a, edge_a, b, edge_b);
@@ -254,10 +258,10 @@ private:
             return; // a corner that has sunk into a face beside this one
 
         const double at = low + (gap_low < gap_high ? 0.25 : 0.75) * overlap; // nearer to the deeper end
-        if (gap_at(at) < doubtful_) {
+        if (gap_at(at) < (own ? doubtful_ : shallow_)) {
             const Vec2 on_a = edge_a.start + (at / extent_a) * (edge_a.end - edge_a.start);
             const Vec2 on_b = edge_b.end + ((at - start_b) / extent_b) * (edge_b.start - edge_b.end);
-            if (own ? !is_inside(a, on_b) && !is_inside(b, on_a) : !is_in_both(a, b, 0.5 * (on_a + on_b))) return;
+            if (own ? !is_inside(a, on_b) && !is_inside(b, on_a) : !are_in_both(a, b, on_a, on_b)) return;
         }
 
         overlapping_.emplace_back(edge_a.edge, edge_b.edge);
@@ -301,8 +305,12 @@ private:
         return inside;
     }
 
-    /// Of what two blocks have in common; what lies between the backs of two thin parts is in one of them.
-    [[nodiscard]] bool is_in_both(int a, int b, const Vec2& x) const { return is_inside(a, x) && is_inside(b, x); }
+    /// Whether two blocks have in common what lies between two points. Between the backs of two thin parts that lie on each other
+    /// they have no more in common than the closure of what is between these, of which one of two places at most is a part.
+    [[nodiscard]] bool are_in_both(int a, int b, const Vec2& x, const Vec2& y) const {
+        const auto is_in_both = [&](const Vec2& at) { return is_inside(a, at) && is_inside(b, at); };
+        return is_in_both(0.75 * x + 0.25 * y) && is_in_both(0.25 * x + 0.75 * y);
+    }
 
     [[nodiscard]] bool overlap_covers(int edge_of_vertex, int edge, bool swapped) const {
         const auto pair = swapped ? std::pair(edge, edge_of_vertex) : std::pair(edge_of_vertex, edge);
@@ -321,6 +329,26 @@ private:
             return overlap_covers(leaving.edge, face.edge, swapped) ||
                    overlap_covers(leaving.arriving, face.edge, swapped);
         });
+    }
+
+    /// Whether a vertex that lies `depth` behind a face of the target has come in through another one, behind which it lies less
+    /// deep: as a vertex of its own, or as the end of an edge that overlaps that face. A foot beside a corner is not pushed off by the side.
+    [[nodiscard]] bool has_come_in_elsewhere(const CurrentEdge& leaving, double depth,
+                                             std::span<const CurrentEdge> edges, bool swapped) const {
+        return std::ranges::any_of(edges, [&](const CurrentEdge& face) {
+            const Vec2 outward = right_normal(face.direction);
+            const Vec2 from_face = leaving.start - face.start;
+            const double behind = -outward.dot(from_face);
+            const double along = face.direction.dot(from_face);
+            if (behind < shallow_ || behind >= depth || along < 0.0 || along > face.length) return false;
+            return points_at(leaving, outward) || overlap_covers(leaving.edge, face.edge, swapped) ||
+                   overlap_covers(leaving.arriving, face.edge, swapped);
+        });
+    }
+
+    /// Whether no edge of a vertex goes farther into a face with this outward normal than the vertex.
+    [[nodiscard]] static bool points_at(const CurrentEdge& leaving, const Vec2& outward) {
+        return outward.dot(leaving.end - leaving.start) >= 0.0 && outward.dot(leaving.before - leaving.start) >= 0.0;
     }
 
     /// Whether two neighbours have an interface and no overlap along any: one has turned about a common vertex, or has gone past the
@@ -349,11 +377,12 @@ private:
         const Vec2 from_edge = leaving.start - edge.start;
         const double gap = outward.dot(from_edge);
         if (gap > reach_ || gap < deepest_) return;
-        if (gap < doubtful_ && !is_inside(target, leaving.start)) return;
+        if (gap < shallow_ && !is_inside(target, leaving.start)) return;
         const double s = edge.direction.dot(from_edge) / edge.length;
         if (s < 0.0 || s > 1.0) return;
-        if (outward.dot(leaving.end - leaving.start) < 0.0 || outward.dot(leaving.before - leaving.start) < 0.0) return;
+        if (!points_at(leaving, outward)) return;
         if (is_carried_around_corner(leaving, edge, edges, swapped)) return;
+        if (gap < 0.0 && has_come_in_elsewhere(leaving, -gap, edges, swapped)) return;
         const Edge& target_edge = reference(target, edge.edge);
         const int vertex = reference(owner, leaving.edge).start;
         const bool is_common = vertex == target_edge.start || vertex == target_edge.end;
@@ -376,6 +405,7 @@ private:
     double deepest_ = 0.0;
     double deepest_own_ = 0.0; ///< of the two faces of an interface
     double doubtful_ = 0.0;
+    double shallow_ = 0.0;
     std::vector<std::pair<int, int>> overlapping_; ///< (edge of a, edge of b) of the present pair
 };
 

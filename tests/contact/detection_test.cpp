@@ -419,14 +419,15 @@ std::map<EdgePair, double> overlaps_of_all_pairs(const BlockSystem& system, cons
                     const double at = low + (deeper_at_low ? 0.25 : 0.75) * (high - low);
                     const Vec2 on_a = p + u * (at - along.dot(p)) / along.dot(u);
                     const Vec2 on_b = s + v * (at - along.dot(s)) / along.dot(v);
-                    const bool deep = across(at, s, v) - across(at, p, u) <
-                                      -0.01 * std::min(system.blocks[a].size, system.blocks[b].size);
+                    const bool deep = across(at, s, v) - across(at, p, u) < (own ? -0.01 : -1e-9) * smaller;
                     const auto is_in = [&](int block, const Vec2& x) {
                         return turns_around(system, q, block, x) > 0.5;
                     };
-                    const Vec2 between = 0.5 * (on_a + on_b);
-                    const bool overlap =
-                        own ? is_in(a, on_b) || is_in(b, on_a) : is_in(a, between) && is_in(b, between);
+                    const auto is_in_both = [&](double share) {
+                        const Vec2 x = on_a + share * (on_b - on_a);
+                        return is_in(a, x) && is_in(b, x);
+                    };
+                    const bool overlap = own ? is_in(a, on_b) || is_in(b, on_a) : is_in_both(0.25) && is_in_both(0.75);
                     if (deep && !overlap) continue;
                     overlaps[{a, static_cast<int>(e), b, static_cast<int>(f)}] = high - low;
                 }
