@@ -346,8 +346,9 @@ private:
         });
     }
 
-    /// Whether no edge of a vertex goes farther into a face with this outward normal than the vertex.
+    /// Whether a vertex is a tip, and no edge of it goes farther into a face with this outward normal. The vertex of a notch touches nothing.
     [[nodiscard]] static bool points_at(const CurrentEdge& leaving, const Vec2& outward) {
+        if (cross(leaving.start - leaving.before, leaving.direction) < 0.0) return false;
         return outward.dot(leaving.end - leaving.start) >= 0.0 && outward.dot(leaving.before - leaving.start) >= 0.0;
     }
 

@@ -33,6 +33,7 @@ constexpr double fall_after_peak = 0.01;    // of the peak
 constexpr double fall_out_of_balance = 0.5; // the same, of rows that are not balanced
 constexpr double level_change = 0.01;       // of the differential stress, at most
 constexpr double level_share = 1.0 / 3.0;   // of the platen's way, at its end
+constexpr double least_level_way = 0.5;     // of that part: what the rows in it must cover
 constexpr double residual_share = 0.1;      // of the strain
 constexpr double strain_rounding = 1e-9;    // relative
 constexpr double locking_rise = 0.05;       // of the largest stress until then
@@ -104,10 +105,11 @@ bool falls_after_peak(const Rows& rows, const StepRecord& peak, double sense) {
 /// Whether the rows of a stage of the platen and all that follow end on a level, see CurveNumbers.
 bool levels_off(const Rows& rows, double sense) {
     if (rows.empty()) return false;
-    const double first = sense * rows.front().axial_strain;
-    const double last = sense * rows.back().axial_strain;
-    const auto begin = std::ranges::find_if(
-        rows, [&](const StepRecord& row) { return sense * row.axial_strain >= last - level_share * (last - first); });
+    const double last = sense * rows.back().axial_strain; // counted from where the platen starts
+    const double way = level_share * last;
+    const auto begin =
+        std::ranges::find_if(rows, [&](const StepRecord& row) { return sense * row.axial_strain >= last - way; });
+    if (last - sense * begin->axial_strain < least_level_way * way) return false; // at rest, after one large step
     double least = std::numeric_limits<double>::infinity();
     double largest = -least;
     double strain = -least;

@@ -268,6 +268,10 @@ TEST(Summary, AStressThatLevelsOffIsAStrength) {
     EXPECT_FALSE(
         has_levelled_off(yielding(1e9, 1e9))); // elastic: its stress grows by 1 % only, since the sides bear 1 GPa
     EXPECT_FALSE(has_levelled_off(triangle(100e6, 0.3))); // falls
+    Rows held{row(0, 0, 0, 0), row(1, 1, 1e-3, 20e6)};    // a platen under a stress that hardly grows any more
+    for (int i = 2; i <= 6; ++i) held.push_back(row(i, 1, 1e-3 + 2e-7 * i, 20e6 + 4e3 * i));
+    EXPECT_FALSE(has_levelled_off(held));
+    EXPECT_FALSE(has_levelled_off({held.begin() + 1, held.end()})); // as in equilibria.csv
 }
 
 TEST(Summary, HasNotLevelledOffOutOfBalanceOrWhereLoadsTurn) {
