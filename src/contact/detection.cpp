@@ -378,18 +378,18 @@ private:
         const Vec2 from_edge = leaving.start - edge.start;
         const double gap = outward.dot(from_edge);
         if (gap > reach_ || gap < deepest_) return;
-        if (gap < shallow_ && !is_inside(target, leaving.start)) return;
         const double s = edge.direction.dot(from_edge) / edge.length;
         if (s < 0.0 || s > 1.0) return;
         if (!points_at(leaving, outward)) return;
         if (is_carried_around_corner(leaving, edge, edges, swapped)) return;
-        if (gap < 0.0 && has_come_in_elsewhere(leaving, -gap, edges, swapped)) return;
         const Edge& target_edge = reference(target, edge.edge);
         const int vertex = reference(owner, leaving.edge).start;
         const bool is_common = vertex == target_edge.start || vertex == target_edge.end;
         if (is_common && !faces_are_apart(owner, target, swapped)) return;
         if (overlap_covers(leaving.edge, edge.edge, swapped) || overlap_covers(leaving.arriving, edge.edge, swapped))
             return;
+        if (gap < shallow_ && !is_inside(target, leaving.start)) return; // what takes longest comes last
+        if (gap < 0.0 && has_come_in_elsewhere(leaving, -gap, edges, swapped)) return;
         ContactPoint point = point_between(owner, leaving, 0.0, target, edge, s);
         point.weight = vertex_weight * std::min(edge.length, system_.blocks[owner].size);
         finish(point, -edge.direction);
