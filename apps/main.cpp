@@ -298,9 +298,8 @@ void add_envelope_command(CLI::App& app, Command& command) {
         ->allow_extra_args(false);
     sub->add_option("--title", arguments->title, "Title of the picture")->capture_default_str();
     sub->footer("Runs that had neither fallen nor levelled off, ended unbalanced or whose net locked are bounds: they "
-                "are drawn and "
-                "listed, but "
-                "not fitted.\nRuns that pull, and rows of tables with sigma_3 below zero, give the tensile strength.\n"
+                "are drawn and listed, but not fitted.\nRuns that pull, and rows of tables with sigma_3 below zero, "
+                "give the tensile strength.\n"
                 "Other columns of tables: run, peak_reached, balanced, net_locked (0 or 1).\n"
                 "Examples:\n"
                 "  kluft envelope results/case-5-all results/case-3-all results/case-4-all results/case-6-all\n"

@@ -699,8 +699,7 @@ std::vector<KeyRule> loading_rules() {
          .range = {.least = -0.5, .most = 0.5},
          .required = true,
          .doc = "Displacement in this stage as a fraction of the body's length, from the boundary to the one across "
-                "from it, "
-                "or, where none is, to the farthest point of the body behind it."},
+                "from it, or, where none is, to the farthest point of the body behind it."},
         {.path = "stages.#.strain.glued",
          .type = KeyType::boolean,
          .fallback = "false",

@@ -325,38 +325,38 @@ LatticeModuli moduli_of_body(const ElasticModuli& blocks, const ModelInput& inpu
     return lattice_moduli(blocks, net, model.net, input.plane);
 }
 
-/// The axial stress counts from side to side of the body, also where a platen presses a part of it.
-void warn_of_narrow_platens(Model& model) {
-    constexpr double much_narrower = 0.8; // than the body
-    std::set<int> seen;
-    for (const Stage& stage : model.loads.stages) {
-        if (!stage.motion || !seen.insert(stage.motion->boundary).second) continue;
-        const int boundary = stage.motion->boundary;
-        const double own = boundary_frame(model.system, boundary).length;
-        const double width = width_across(model.system, boundary).width;
-        if (own >= much_narrower * width) continue;
-        model.warnings.push_back(fmt::format(
-            "the axial stress of the platen on '{}' is its force over the width of the body, {:.4g} m, and not over "
-            "its own {:.4g} m, on which it presses {:.3g} times as much",
-            model.system.boundaries[boundary].name, width, own, width / own));
+/// Platens are laid on what they press as it lies, which a gap to some of it may not mean.
+void warn_of_uneven_platen(int moved, Model& model) {
+    const double length = distance_across(model.system, moved);
+    for (const int boundary : {moved, opposite_boundary(model.system, moved)}) {
+        if (boundary < 0) continue;
+        const double apart = unevenness(model.system, boundary);
+        if (apart <= uneven * length) continue;
+        model.warnings.push_back(
+            fmt::format("the platen on '{}' is laid on sides that lie up to {:.3g} m apart, and presses all of "
+                        "them from the start as if it had been cast on them",
+                        model.system.boundaries[boundary].name, apart));
     }
 }
 
-/// Platens are laid on what they press as it lies, which a gap to some of it may not mean.
-void warn_of_uneven_platens(Model& model) {
+/// The axial stress counts from side to side of the body, also where a platen presses a part of it.
+void warn_of_narrow_platen(int moved, Model& model) {
+    constexpr double much_narrower = 0.8; // than the body
+    const double own = boundary_frame(model.system, moved).length;
+    const double width = width_across(model.system, moved).width;
+    if (own >= much_narrower * width) return;
+    model.warnings.push_back(fmt::format(
+        "the axial stress of the platen on '{}' is its force over the width of the body, {:.4g} m, and not over "
+        "its own {:.4g} m, on which it presses {:.3g} times as much",
+        model.system.boundaries[moved].name, width, own, width / own));
+}
+
+void warn_of_platens(Model& model) {
     std::set<int> seen;
     for (const Stage& stage : model.loads.stages) {
         if (!stage.motion || !seen.insert(stage.motion->boundary).second) continue;
-        const double length = distance_across(model.system, stage.motion->boundary);
-        for (const int boundary : {stage.motion->boundary, opposite_boundary(model.system, stage.motion->boundary)}) {
-            if (boundary < 0) continue;
-            const double apart = unevenness(model.system, boundary);
-            if (apart <= uneven * length) continue;
-            model.warnings.push_back(
-                fmt::format("the platen on '{}' is laid on sides that lie up to {:.3g} m apart, and presses all of "
-                            "them from the start as if it had been cast on them",
-                            model.system.boundaries[boundary].name, apart));
-        }
+        warn_of_uneven_platen(stage.motion->boundary, model);
+        warn_of_narrow_platen(stage.motion->boundary, model);
     }
 }
 
@@ -437,8 +437,7 @@ Model build_model(BlockSystem system, const ModelInput& input) {
         fracture_laws.push_back(&model.laws[model.fracture_law[law_of(interface)]]);
     model.overlap_points = overlap_points(system, fracture_laws);
     model.system = std::move(system);
-    warn_of_uneven_platens(model);
-    warn_of_narrow_platens(model);
+    warn_of_platens(model);
     warn_of_unmeasured_sides(model);
     refuse_contradicting_supports(model);
     return model;
