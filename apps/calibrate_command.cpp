@@ -22,6 +22,7 @@ ExitCode calibrate(const CalibrateArguments& arguments) {
     namespace fs = std::filesystem;
     const fs::path directory = arguments.directory.empty() ? fs::path("results") / fs::path(arguments.target).stem()
                                                            : fs::path(arguments.directory);
+    require_no_file(directory);
     const int jobs = arguments.jobs > 0 ? arguments.jobs : number_of_processors();
     become_calibrator({this_program("calibrate"), arguments.target, directory, std::to_string(jobs),
                        arguments.quiet ? "quiet" : "tell"});

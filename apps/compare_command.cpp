@@ -39,8 +39,7 @@ ExitCode compare(const CompareArguments& arguments) {
     const double tolerance = tolerance_of(arguments.tolerance);
     const fs::path directory =
         arguments.output.empty() ? default_directory(arguments.directories) : fs::path(arguments.output);
-    if (fs::exists(directory) && !fs::is_directory(directory))
-        throw InputError(directory.string() + ": expected a directory for the comparison, found a file");
+    require_no_file(directory);
     const auto names = run_names(arguments.directories);
     for (const auto& name : arguments.directories) require_results(name);
     const FinishedRun a = read_finished_run(arguments.directories.front(), names.front());

@@ -1,4 +1,5 @@
 // kluft envelope DIR|TABLE.csv...
+#include <algorithm>
 #include <filesystem>
 #include <numbers>
 #include <string>
@@ -13,6 +14,7 @@
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/output/atomic_file.hpp"
 #include "kluft/output/envelope.hpp"
+#include "kluft/output/run_writer.hpp"
 #include "kluft/scene/quantity.hpp"
 #include "kluft/studies/strength_tests.hpp"
 #include "standard_output.hpp"
@@ -48,13 +50,27 @@ PeakPoint tension_test(const std::string& text) {
     return {.run = "tension " + text, .sigma_3 = -*strength};
 }
 
-/// The table beside the picture must not take the place of one that it is made from.
-void keep_tables(const fs::path& table, const std::vector<std::string>& sources) {
+/// The picture, and the table and the numbers beside it.
+std::vector<fs::path> files_of(const fs::path& picture) {
+    return {picture, fs::path(picture).replace_extension(".csv"), fs::path(picture).replace_extension(".json")};
+}
+
+/// None of the files may take the place of a table that they are made from, or of a result of a run.
+void keep_tests(const std::vector<fs::path>& files, const std::vector<std::string>& sources) {
     std::error_code ignored;
-    for (const auto& source : sources)
-        if (fs::equivalent(table, source, ignored))
-            throw InputError(fmt::format("-o: {} is one of the tests and would be overwritten; expected another name",
-                                         table.string()));
+    const auto results = result_names();
+    for (const fs::path& file : files) {
+        for (const auto& source : sources)
+            if (fs::equivalent(file, source, ignored))
+                throw InputError(fmt::format(
+                    "-o: {} is one of the tests and would be overwritten; expected another name", file.string()));
+        const bool is_of_run = fs::exists(file.parent_path() / "history.csv", ignored) &&
+                               std::ranges::find(results, file.filename().string()) != results.end();
+        if (is_of_run && fs::exists(file, ignored))
+            throw InputError(fmt::format(
+                "-o: {} is a result of the run in that directory and would be overwritten; expected another name",
+                file.string()));
+    }
 }
 
 /// The peaks of a directory of results or of a table.
@@ -81,13 +97,12 @@ ExitCode envelope(const EnvelopeArguments& arguments) {
     for (const auto& source : arguments.sources) add_peaks(source, peaks);
     for (const auto& text : arguments.tension) peaks.push_back(tension_test(text));
     const StrengthFit fit = fit_strength(peaks);
-    const fs::path picture = arguments.picture;
-    fs::path beside = picture;
-    keep_tables(beside.replace_extension(".csv"), arguments.sources);
-    write_envelope(picture, arguments.title, peaks, fit, others);
-    write_file(beside, envelope_csv(peaks, fit));
-    write_file(beside.replace_extension(".json"), envelope_json(peaks, fit));
-    say("{}{}\n", envelope_text(peaks, fit), picture.string());
+    const auto files = files_of(arguments.picture);
+    keep_tests(files, arguments.sources);
+    write_envelope(files[0], arguments.title, peaks, fit, others);
+    write_file(files[1], envelope_csv(peaks, fit));
+    write_file(files[2], envelope_json(peaks, fit));
+    say("{}{}\n", envelope_text(peaks, fit), files[0].string());
     return ExitCode::done;
 }
 

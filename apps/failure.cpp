@@ -80,6 +80,12 @@ ExitCode tell_failure() noexcept {
     }
 }
 
+void require_no_file(const fs::path& directory) {
+    std::error_code error;
+    if (fs::exists(directory, error) && !fs::is_directory(directory, error))
+        throw InputError(directory.string() + ": expected a directory for the results, found a file");
+}
+
 void require_possible_output(const std::string& path) {
     const auto refuse = [&](int error) {
         throw InputError("-o: expected a name for the results, found " + path + " (" +

@@ -17,6 +17,9 @@ namespace kluft {
 /// nearest directory above it may not be written to.
 void require_possible_output(const std::string& path);
 
+/// Throws InputError where what is to be the directory of the results is a file.
+void require_no_file(const std::filesystem::path& directory);
+
 /// Throws InputError where the directory of a file that -o names is not there.
 void require_directory_of(const std::string& file);
 

@@ -147,8 +147,7 @@ ExitCode run(const RunArguments& arguments) {
     const Scene scene = read_scene(arguments.scene, arguments.overrides);
     const fs::path directory =
         arguments.directory.empty() ? fs::path("results") / scene.name : fs::path(arguments.directory);
-    if (fs::exists(directory) && !fs::is_directory(directory))
-        throw InputError(directory.string() + ": expected a directory for the results, found a file");
+    require_no_file(directory);
     if (arguments.resume && scene.integrator == Integrator::explicit_motion)
         throw InputError("--resume: expected analysis.integrator: implicit, found explicit; a saved state has no "
                          "velocities to go on with");

@@ -18,6 +18,7 @@
 #include "kluft/core/nearest_name.hpp"
 #include "kluft/output/atomic_file.hpp"
 #include "kluft/output/directory_lock.hpp"
+#include "kluft/studies/earlier_results.hpp"
 #include "kluft/studies/ready_made_studies.hpp"
 #include "kluft/studies/study.hpp"
 #include "kluft/studies/study_emit.hpp"
@@ -170,6 +171,8 @@ ExitCode study(const StudyArguments& arguments) {
     require_possible_output(arguments.directory);
     const StudyPlace place = place_of(arguments);
     const fs::path directory = fs::absolute(place.directory).lexically_normal();
+    require_no_file(directory);
+    require_no_run_in(directory);
     const std::string holder = "kluft study " + arguments.words.back();
     std::optional<DirectoryLock> lock;
     if (!place.ready_made.empty()) {

@@ -127,7 +127,7 @@ private:
         problem.groups = groups_;
         problem.n_noisy = runs_.n_rows;
         problem.evaluate = [&](const std::vector<Eigen::VectorXd>& places) {
-            return evaluate_by_runs(calibration_, runs_, options_.place, places, stop_);
+            return evaluate(places);
         };
         if (!elastic_->targets().empty()) problem.exact = [&](const Eigen::VectorXd& x) { return remembered(x); };
         problem.expected = [&](const Eigen::VectorXd& x) { return expected_slopes(x); };
@@ -135,6 +135,31 @@ private:
         options.most_evaluations = calibration_.most_evaluations;
         options.show = [&](const Evaluation& each, double worst) { show(each, worst); };
         return search_responses(problem, options);
+    }
+
+    /// By runs of what the scenes said when the calibration began: values found with two scenes would be those of none.
+    [[nodiscard]] std::optional<std::vector<Evaluation>> evaluate(const std::vector<Eigen::VectorXd>& places) const {
+        try {
+            auto found = evaluate_by_runs(calibration_, runs_, options_.place, places, stop_);
+            require_same_scenes();
+            return found;
+        } catch (const ResourceError&) {
+            require_same_scenes();
+            throw;
+        }
+    }
+
+    void require_same_scenes() const {
+        std::string now;
+        try {
+            now = scenes_digest(calibration_);
+        } catch (const InputError&) {
+            now.clear(); // another one, whatever it says
+        }
+        if (now != scenes_)
+            throw InputError(calibration_.scene.string() +
+                             ": expected the scenes that the calibration began with, found that one of them has changed "
+                             "since; the same command runs what they say now");
     }
 
     /// Where theory meets the targets, and the file's own start where that is another place.
@@ -393,6 +418,7 @@ private:
     const Calibration& calibration_;
     const CalibrationOptions& options_;
     const std::atomic<bool>& stop_;
+    std::string scenes_ = scenes_digest(calibration_); ///< as the calibration began
     RunTargets runs_;
     std::unique_ptr<ElasticTargets> elastic_;
     std::vector<RowGroup> groups_; ///< of the run targets, then of the elastic ones

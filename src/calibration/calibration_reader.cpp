@@ -128,9 +128,10 @@ private:
         fs::path named = fs::absolute(file_.parent_path() / node.text).lexically_normal();
         std::error_code error;
         if (fs::is_regular_file(named, error)) return named;
-        errors_.add(
-            node.at, path,
-            fmt::format("expected a file, found {}, which is no file{}", in_quotes(node.text), nearest_file(named)));
+        const bool is_directory = fs::is_directory(named, error);
+        errors_.add(node.at, path,
+                    fmt::format("expected a file, found {}, which is {}", in_quotes(node.text),
+                                is_directory ? "a directory" : "no file" + nearest_file(named)));
         return {};
     }
 
@@ -326,10 +327,11 @@ private:
         if (!set.is_mapping())
             return errors_.add(set.at, path, "expected a mapping of keys of the scene, found " + found_text(set));
         for (std::size_t i = 0; i < set.items.size(); ++i) {
-            if (used_keys_.contains(set.keys[i].text))
-                errors_.add(set.keys[i].at, path,
-                            "expected keys that no parameter moves, found " + in_quotes(set.keys[i].text));
             target.set.push_back({set.keys[i].text, write_scene_value(set.items[i]), set.items[i].at});
+            const auto moved = std::ranges::find_if(
+                used_keys_, [&](const std::string& key) { return sets_key(target.set.back(), key); });
+            if (moved != used_keys_.end())
+                errors_.add(set.keys[i].at, path, "expected keys that no parameter moves, found " + in_quotes(*moved));
         }
     }
 

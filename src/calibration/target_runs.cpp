@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <map>
 #include <set>
 
 #include <fmt/format.h>
 
 #include "kluft/core/diagnostics.hpp"
+#include "kluft/core/digest.hpp"
 #include "kluft/output/history_table.hpp"
 #include "kluft/output/summary.hpp"
 #include "kluft/scene/scene_reader.hpp"
@@ -37,12 +37,11 @@ std::vector<fs::path> scenes_of(const Calibration& calibration) {
     return scenes;
 }
 
-/// FNV-1a of all settings: a run with the same ones is the same run.
+/// From all settings: a run with the same ones is the same run.
 std::string name_of(const std::vector<StudySetting>& set) {
-    std::uint64_t state = 0xCBF29CE484222325U;
-    for (const StudySetting& each : set)
-        for (const char c : each.assignment() + '\n') state = (state ^ static_cast<unsigned char>(c)) * 0x100000001B3U;
-    return fmt::format("{:016x}", state);
+    Digest digest;
+    for (const StudySetting& each : set) digest.add(each.assignment());
+    return digest.text();
 }
 
 /// Stage 0 of the scene presses these boundaries.
@@ -228,6 +227,16 @@ std::optional<Eigen::VectorXd> rows_of_copy(const Calibration& calibration, cons
 }
 
 } // namespace
+
+std::string scenes_digest(const Calibration& calibration) {
+    std::string digests;
+    for (const CalibrationTarget& target : calibration.targets) {
+        std::vector<StudySetting> set = settings_at(calibration, start_of(calibration));
+        set.insert(set.end(), target.set.begin(), target.set.end());
+        digests += scene_digest(target.scene, assignments(set)) + ' ';
+    }
+    return digests;
+}
 
 RunTargets run_targets(const Calibration& calibration) {
     RunTargets result;

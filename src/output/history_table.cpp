@@ -110,7 +110,7 @@ template <class Number> bool parse_number(std::string_view text, Number& value) 
 /// Each returns what was expected when the text is something else, otherwise nothing.
 std::string_view parse(std::string_view text, int& value) { return parse_number(text, value) ? "" : "an integer"; }
 std::string_view parse(std::string_view text, double& value) {
-    return parse_number(text, value) && !std::isnan(value) ? "" : "a number";
+    return parse_number(text, value) && std::isfinite(value) ? "" : "a finite number";
 }
 std::string_view parse(std::string_view text, bool& value) {
     value = text == "1";
@@ -155,9 +155,11 @@ std::vector<std::size_t> column_order(const std::string& path, const Names& name
         }
         order.push_back(no_column);
         if (needed == nullptr || contains(*needed, name))
-            missing.push_back(fmt::format("{}:1: no column '{}'", path, name));
+            missing.push_back(fmt::format("'{}'", name));
     });
-    if (!missing.empty()) throw InputError(missing);
+    if (!missing.empty())
+        throw InputError(fmt::format("{}:1: no {} {}", path, missing.size() == 1 ? "column" : "columns",
+                                     fmt::join(missing, ", ")));
     return order;
 }
 
@@ -184,6 +186,8 @@ Record parse_row(const std::string& place, std::string_view line, std::size_t n_
 template <class Header, class Row> void visit_lines(const std::filesystem::path& path, Header&& header, Row&& row) {
     const std::string content = read_file(path);
     std::string_view rest = content;
+    constexpr std::string_view mark_of_encoding = "\xEF\xBB\xBF"; // that some programs begin a table with
+    if (rest.starts_with(mark_of_encoding)) rest.remove_prefix(mark_of_encoding.size());
     if (rest.find('\n') == std::string_view::npos)
         throw InputError(fmt::format("{}:1: expected a line of column names", path.string()));
     header(split(rest.substr(0, rest.find('\n'))));

@@ -151,12 +151,16 @@ bool is_due(int step, int every) { return every > 0 && step % every == 0; }
 
 } // namespace
 
-std::string first_result_in(const fs::path& directory) {
+std::vector<std::string> result_names() {
     std::vector<std::string> names(table_names.begin(), table_names.end());
     names.insert(names.end(), summary_and_pictures.begin(), summary_and_pictures.end());
     names.insert(names.end(), {"state.h5", "fields.pvd"});
+    return names;
+}
+
+std::string first_result_in(const fs::path& directory) {
     std::error_code error;
-    for (const std::string& name : names)
+    for (const std::string& name : result_names())
         if (fs::exists(fs::symlink_status(directory / name, error))) return name;
     return {};
 }

@@ -63,6 +63,18 @@ void require_no_other_results(const fs::path& directory, const Scene& scene) {
     if (!difference.empty()) refuse(directory, "results of another one: " + difference);
 }
 
+void require_no_run_in(const fs::path& directory) {
+    std::error_code error;
+    if (fs::exists(directory / "history.csv", error))
+        throw InputError(directory.string() + ": expected another directory than that of a run, found a history.csv in it; "
+                                              "-o names another one");
+}
+
+std::string difference_from_scene_file(const fs::path& directory, const Scene& of_state) {
+    const std::optional<std::string> as_run = scene_as_run_in(directory);
+    return as_run ? body_difference(*as_run, of_state) : "";
+}
+
 bool has_own_scene_file(const fs::path& directory, const Scene& scene) {
     const fs::path file = scene_file(directory);
     std::error_code error;

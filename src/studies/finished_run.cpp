@@ -13,6 +13,7 @@
 #include "kluft/scene/scene_model.hpp"
 #include "kluft/scene/scene_reader.hpp"
 #include "kluft/simulation/measurements.hpp"
+#include "kluft/studies/earlier_results.hpp"
 
 namespace kluft {
 
@@ -55,6 +56,8 @@ void read_model(FinishedRun& run, Plane& plane) {
     }
     try {
         const Scene scene = read_scene_text(read_state_scene(saved), {}, saved);
+        if (const std::string difference = difference_from_scene_file(run.directory, scene); !difference.empty())
+            throw InputError(saved.string() + " is of another scene than scene.yaml: " + difference);
         run.model = build_scene_model(scene).model;
         plane = scene.plane;
     } catch (const InputError& error) {

@@ -67,11 +67,6 @@ std::vector<std::string> short_labels(const Study& study) {
     }
 }
 
-/// With eight digits that tell it apart from others.
-std::string told_apart(const std::string& name, const std::string& wanted) {
-    return name + "-" + Digest().add(wanted).text().substr(0, 8);
-}
-
 /// A name for a directory, without blanks; what cannot be in one, and what is too long, is told apart by digits.
 std::string directory_name(const std::string& wanted) {
     constexpr std::string_view allowed = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._+-=,";

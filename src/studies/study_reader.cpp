@@ -139,7 +139,8 @@ private:
         std::error_code error;
         if (!fs::is_regular_file(study_.scene, error))
             fail(*root_.find("scene"), "scene",
-                 fmt::format("expected the file of a scene, found {}, which is no file", in_quotes(*name)));
+                 fmt::format("expected the file of a scene, found {}, which is {}", in_quotes(*name),
+                             fs::is_directory(study_.scene, error) ? "a directory" : "no file"));
     }
 
     std::vector<StudySetting> settings(const SceneNode& node, const std::string& path) {
@@ -667,27 +668,42 @@ private:
     std::set<std::string> said_;
 };
 
-bool varies(const StudyVariant& variant, const std::string& key) {
-    const auto found = std::ranges::find(variant.vary, key, &StudyParameter::key);
-    return found != variant.vary.end() && found->values.size() > 1;
+/// The parameter of the variant that sets the key after it was set; nullptr if none does.
+const StudyParameter* parameter_that_sets(const StudyVariant& variant, const std::string& key, std::size_t from = 0) {
+    for (std::size_t p = from; p < variant.vary.size(); ++p)
+        for (const auto& value : variant.vary[p].values)
+            if (sets_key(value, key)) return &variant.vary[p];
+    return nullptr;
 }
 
 /// Several settings of one key hide each other.
 void refuse_hidden(const Study& study, SceneErrors& errors) {
+    const auto by = [](const StudyParameter& parameter, const std::string& key) {
+        return parameter.key == key ? std::string{} : ", which " + in_quotes(parameter.key) + " sets too";
+    };
     for (const auto& variant : study.variants) {
-        std::set<std::string> varied;
-        for (const auto& parameter : variant.vary)
-            if (!varied.insert(parameter.key).second)
-                errors.add(parameter.values.front().at, "variant " + variant.name,
-                           "expected keys that do not vary in the whole study, found " + in_quotes(parameter.key));
+        const std::string place = variant.name.empty() ? "vary" : "variant " + variant.name;
+        for (std::size_t p = 0; p < variant.vary.size(); ++p) {
+            const std::string& key = variant.vary[p].key;
+            const StudyParameter* const other = parameter_that_sets(variant, key, p + 1);
+            if (other == nullptr) continue;
+            errors.add(other->values.front().at, place,
+                       other->key == key ? "expected keys that do not vary in the whole study, found " + in_quotes(key)
+                                         : "expected keys that do not set each other's values, found " + in_quotes(key) +
+                                               by(*other, key));
+        }
         for (const auto& setting : variant.set)
-            if (varied.contains(setting.key))
-                errors.add(setting.at, "variant " + variant.name,
-                           "expected keys that do not vary, found " + in_quotes(setting.key));
+            if (const auto* const parameter = parameter_that_sets(variant, setting.key))
+                errors.add(setting.at, place,
+                           "expected keys that do not vary, found " + in_quotes(setting.key) +
+                               by(*parameter, setting.key));
     }
     // A value for those variants in which a key does not vary.
     for (const auto& setting : study.set)
-        if (std::ranges::all_of(study.variants, [&](const auto& variant) { return varies(variant, setting.key); }))
+        if (std::ranges::all_of(study.variants, [&](const auto& variant) {
+                const auto* const parameter = parameter_that_sets(variant, setting.key);
+                return parameter != nullptr && parameter->values.size() > 1;
+            }))
             errors.add(setting.at, setting.at.source == 0 ? "set" : "",
                        "expected a key that does not vary, found " + in_quotes(setting.key));
 }
@@ -729,6 +745,27 @@ std::string bytes_of_scene(const Study& study, const SceneNode& named, SceneErro
 }
 
 } // namespace
+
+bool sets_key(const StudySetting& setting, std::string_view key) {
+    if (setting.key == key) return true;
+    if (!key.starts_with(setting.key + '.')) return false;
+    SceneSources sources;
+    SceneErrors errors(sources); // what is wrong with the value is said where the scene is read
+    const SceneNode value = parse_scene_tree(setting.value, 0, {0, 1, 1}, errors);
+    const SceneNode* node = &value;
+    std::string_view rest = key.substr(setting.key.size() + 1);
+    while (!rest.empty()) {
+        const SceneNode* const child = child_of(*node, rest.substr(0, rest.find('.')));
+        if (child == nullptr) return !node->is_mapping(); // mappings merge, everything else takes the place of what was
+        node = child;
+        rest = rest.find('.') == std::string_view::npos ? "" : rest.substr(rest.find('.') + 1);
+    }
+    return true;
+}
+
+std::string scene_digest(const fs::path& scene, const std::vector<std::string>& overrides) {
+    return digest_of(read_scene(scene, overrides));
+}
 
 ReadStudy read_study(const fs::path& file, const std::vector<std::string>& overrides) {
     return read_study_text(read_scene_bytes(file, "a study file"), overrides, file);

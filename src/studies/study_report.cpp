@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "kluft/core/diagnostics.hpp"
+#include "kluft/core/digest.hpp"
 #include "kluft/core/nearest_name.hpp"
 #include "kluft/core/shell_line.hpp"
 #include "kluft/core/units.hpp"
@@ -61,14 +62,16 @@ std::string status_text(CaseStatus status) {
     return name;
 }
 
-/// "kept-letters-only" for the name of a file.
+/// "kept-letters-only" for the name of a file; a long one is cut and told apart by digits.
 std::string file_word(const std::string& text) {
+    constexpr std::size_t longest = 100;
+    constexpr std::size_t kept = 60;
     std::string word;
     for (const char c : text) {
         const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
         word += plain || c == '_' ? c : '-';
     }
-    return word;
+    return word.size() <= longest ? word : told_apart(word.substr(0, kept), text);
 }
 
 /// A text in which every number is the same.

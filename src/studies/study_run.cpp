@@ -87,12 +87,30 @@ private:
         results_[i].status = CaseStatus::running;
     }
 
+    /// Whether the scene, which the process of a case has read by itself, is no longer what the case was planned with.
+    [[nodiscard]] bool has_changed(const PlannedCase& one) const {
+        std::vector<std::string> overrides;
+        for (const auto& setting : one.set) overrides.push_back(setting.assignment());
+        try {
+            return scene_digest(read_.study.scene, overrides) != one.digest;
+        } catch (const InputError&) {
+            return true;
+        }
+    }
+
     void finish(const EndedProcess& ended) {
         const std::size_t i = ended.tag;
         // A saved state that cannot be gone on from: once more from the start.
         if (resumed_.erase(i) > 0 && ended.exit_code == bad_input && !stop_) {
             afresh_.insert(i);
             waiting_.push_front(i);
+            return;
+        }
+        if (has_changed(read_.cases[i])) {
+            results_[i] = {};
+            results_[i].status = CaseStatus::failed;
+            results_[i].reason = "the scene has changed since the study began; the same command runs what it says now";
+            changed_ = true;
             return;
         }
         const auto earlier = read_outcome(place(i)).value_or(CaseOutcome{});

@@ -1686,6 +1686,32 @@ TEST_F(CommandLine, EnvelopeRefusesBadTables) {
     EXPECT_FALSE(fs::exists(path("good.png")));
 }
 
+// The table and the numbers beside a picture have names that a run gives its own.
+TEST_F(CommandLine, EnvelopeTakesNoResultsPlace) {
+    write("tiny.yaml", tiny_scene);
+    write("good.csv", "sigma_3,sigma_1\n0,1e6\n1e6,5e6\n");
+    ASSERT_EQ(kluft({"run", "tiny.yaml", "-o", "r", "--quiet"}).code, 0);
+    for (const auto& [picture, result] : {std::pair{"r/history.png", "history.csv"}, {"r/summary.svg", "summary.json"},
+                                          {"r/cracks.png", "cracks.csv"}}) {
+        const std::string before = content_of(path(std::string("r/") + result));
+        expect_refused({"envelope", "good.csv", "-o", picture}, HasSubstr(std::string(result) + " is a result of the run"));
+        EXPECT_EQ(content_of(path(std::string("r/") + result)), before);
+    }
+    EXPECT_EQ(kluft({"envelope", "good.csv", "-o", "r/envelope.png"}).code, 0);
+    EXPECT_EQ(kluft({"envelope", "good.csv", "-o", "r/envelope.png"}).code, 0);
+}
+
+// Of another scene, whose body is the same: no fingerprint tells them apart.
+TEST_F(CommandLine, AStateOfAnotherRunIsTold) {
+    write("tiny.yaml", tiny_scene);
+    ASSERT_EQ(kluft({"run", "tiny.yaml", "-o", "r", "--quiet"}).code, 0);
+    ASSERT_EQ(kluft({"run", "tiny.yaml", "-o", "other", "--quiet", "--set", "stages.1.strain.value=0.5 %"}).code, 0);
+    fs::copy_file(path("other/state.h5"), path("r/state.h5"), fs::copy_options::overwrite_existing);
+    const auto told = HasSubstr("found one of another: stages.1.strain.value");
+    expect_refused({"report", "r"}, told);
+    expect_refused({"draw", "r", "--step", "last", "-o", "r.png"}, told);
+}
+
 TEST_F(CommandLine, EnvelopeRefusesWhatIsNoRun) {
     write("file", "");
     fs::create_directory(path("empty"));

@@ -131,6 +131,33 @@ TEST_F(CalibrateProgram, BadInputEndsWithTwo) {
     EXPECT_FALSE(fs::exists(path("out") / "calibration.json"));
 }
 
+// What a run, a calibration of another scene, or the user has left there is nobody's to replace.
+TEST_F(CalibrateProgram, ReplacesItsLikeOnly) {
+    fs::create_directory(path("out"));
+    const auto refused = [&](const std::string& file, const std::string& content, const std::string& found) {
+        write_text(path("out") / file, content);
+        EXPECT_EQ(run(moduli + elasticity), 2);
+        EXPECT_THAT(told_, HasSubstr(found));
+        EXPECT_EQ(text_of(path("out") / file), content);
+        fs::remove(path("out") / file);
+    };
+    refused("history.csv", "step\n", "expected another directory than that of a run");
+    refused("calibrated.yaml", "kluft: 1\n", "expected a calibrated.yaml that a calibration wrote or none");
+    refused("calibration.json", R"({"scene": "/other.yaml"})", "found those of one of the scene \"/other.yaml\"");
+    EXPECT_EQ(run(moduli + elasticity), 0) << told_;
+    EXPECT_EQ(run(moduli + elasticity), 0) << told_;
+}
+
+// Values found by runs of two scenes are those of none.
+TEST_F(CalibrateProgram, ASceneThatChangesMeanwhileEndsIt) {
+    const std::string target = moduli + cohesion + elasticity + peak;
+    const std::string changes =
+        "(until [ -e out/runs/0/cases ]; do sleep 0.01; done; echo 'cracks: {strength_noise: 0.001}' >>scene.yaml) & ";
+    EXPECT_EQ(run(target, "cd '" + directory_.path().string() + "'; " + changes), 2);
+    EXPECT_THAT(told_, HasSubstr("expected the scenes that the calibration began with"));
+    EXPECT_FALSE(fs::exists(path("out") / "calibrated.yaml"));
+}
+
 // No file may grow beyond some tens of kilobytes, which a saved state does.
 TEST_F(CalibrateProgram, StopsWhereARunHasNoRoomAndGoesOnFromThere) {
     const std::string target = moduli + cohesion + elasticity + peak;

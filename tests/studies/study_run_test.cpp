@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 #include <optional>
+#include <regex>
 #include <sstream>
 #include <thread>
 
@@ -55,7 +56,7 @@ output: {pictures: false, fields: false}
 )";
 
 // Stands in for the program: says in `starts` that it was started and in summary.json a peak that is the number of load
-// steps. 66 steps kill it, 77 end as bad input, 88 take longer than anyone waits, 99 save a state when they are stopped.
+// steps. 55 steps change the scene, 66 kill it, 77 end as bad input, 88 take longer than anyone waits, 99 save a state when they are stopped.
 const char* const stand_in = R"(#!/bin/bash
 for ((i = 1; i <= $#; ++i)); do
     case ${!i} in
@@ -65,6 +66,7 @@ for ((i = 1; i <= $#; ++i)); do
 done
 echo "$steps ${*: -1}" >>"$(dirname "$0")/starts"
 case $steps in
+55) echo 'cracks: {update: all}' >>"$(dirname "$0")/scene.yaml" ;;
 66) kill -9 $$ ;;
 77) echo 'the scene is wrong' >&2; exit 2 ;;
 88) sleep 100 & trap 'kill $!; exit 130' INT; wait ;;
@@ -151,6 +153,19 @@ TEST_F(StudyRuns, ChangedScenesAndSettingsAreRunAgain) {
     EXPECT_EQ(collect_study(read(steps("10, 20")), results_).cases[0].status, CaseStatus::waiting);
     (void)run(steps("10, 20"));
     EXPECT_THAT(starts(), SizeIs(2));
+}
+
+// A table with cases of two scenes would be nobody's study. The 55 steps of the stand-in change the scene.
+TEST_F(StudyRuns, CasesOfASceneThatChangesMeanwhileFail) {
+    const StudyTable table = run(read(steps("10, 55, 20")), directory_ / "program", 1);
+    EXPECT_THAT(statuses_of(table), ElementsAre(CaseStatus::done, CaseStatus::failed, CaseStatus::failed));
+    EXPECT_THAT(table.cases[1].reason, HasSubstr("the scene has changed since the study began"));
+    (void)starts();
+    fs::remove(directory_ / "program");
+    std::ofstream(directory_ / "program") << std::regex_replace(stand_in, std::regex("\n55\\)[^\n]*"), "");
+    fs::permissions(directory_ / "program", fs::perms::owner_all);
+    EXPECT_THAT(statuses_of(run(steps("10, 55, 20"))), ::testing::Each(CaseStatus::done));
+    EXPECT_THAT(starts(), SizeIs(3));
 }
 
 TEST_F(StudyRuns, KilledAndRefusedCasesAreToldAndTheOthersGoOn) {
@@ -366,6 +381,18 @@ TEST_F(StudyRuns, TradeStudyRefusesNoCaseOfTheOtherIntegrator) {
     const ReadStudy study = read_study(directory_ / "made.yaml");
     EXPECT_TRUE(std::ranges::any_of(study.cases, [](const auto& one) { return one.variant == "explicit"; }));
     for (const auto& one : study.cases) EXPECT_EQ(one.refusal, "") << one.name;
+}
+
+// A study's report among a run's files would take the place of the run's own.
+TEST_F(StudyRuns, CommandStandsNotAmongTheFilesOfARun) {
+    std::ofstream(directory_ / "study.yaml") << "scene: scene.yaml\n" << steps("2, 4");
+    const std::string into = "cd '" + directory_.path().string() + "' && '" KLUFT_PROGRAM "' study study.yaml --quiet -o ";
+    fs::create_directory(directory_ / "run");
+    std::ofstream(directory_ / "run" / "history.csv") << "step\n";
+    EXPECT_EQ(exit_code_of(into + "run 2>told"), 2);
+    EXPECT_THAT(content_of(directory_ / "told"), HasSubstr("expected another directory than that of a run"));
+    EXPECT_EQ(exit_code_of(into + "study.yaml 2>told"), 2);
+    EXPECT_THAT(content_of(directory_ / "told"), HasSubstr("expected a directory for the results, found a file"));
 }
 
 TEST_F(StudyRuns, CommandWritesTheTableAndAnswersMistakesWithTheirPlace) {

@@ -1,5 +1,6 @@
 """What a check.py works with: runs of the program, expected against found values, a figure."""
 
+import errno
 import json
 import math
 import shutil
@@ -16,6 +17,7 @@ from suite.fields import Fields
 from kluft.tables import read_table as Table
 
 NO_EQUILIBRIUM = 3
+OUT_OF_RESOURCES = 4
 DEFAULT_TOLERANCE = 5e-3  # of rows with the program's defaults
 NUMERICAL_KEYS = ("contact_rounding", "friction_rounding", "cohesion_onset")  # of interfaces
 
@@ -131,6 +133,8 @@ class Case:
         done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
         self.seconds += time.monotonic() - start
         (target / "output.txt").write_text(done.stdout, encoding="utf-8")
+        if done.returncode == OUT_OF_RESOURCES:
+            raise OSError(errno.ENOSPC, done.stdout.strip()[-600:], str(target))
         allowed = (0, NO_EQUILIBRIUM) if may_fail else (0,)
         if done.returncode not in allowed or not (target / "summary.json").exists():
             raise RunFailed(f"{name}: exit code {done.returncode}: {done.stdout.strip()[-600:]}")

@@ -26,6 +26,9 @@ struct RunTargets {
 };
 [[nodiscard]] RunTargets run_targets(const Calibration& calibration);
 
+/// Digest of all scenes of the calibration, with the starts and the settings of each target.
+[[nodiscard]] std::string scenes_digest(const Calibration& calibration);
+
 /// Where and how scenes are run.
 struct RunPlace {
     std::filesystem::path directory; ///< runs stand in directory/runs/<number of the scene>/cases/<name>

@@ -24,4 +24,7 @@ private:
     std::uint64_t state_ = 0xCBF29CE484222325U;
 };
 
+/// The name with eight digits of what was wanted behind it: a short name that differs from those of others with the same beginning.
+[[nodiscard]] std::string told_apart(const std::string& name, std::string_view wanted);
+
 } // namespace kluft

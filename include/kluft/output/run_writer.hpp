@@ -115,6 +115,9 @@ private:
     Clock::time_point saved_ = Clock::now();   ///< when the last state was
 };
 
+/// The files of a run's directory that remove_results removes there, folders and what is in them excepted.
+[[nodiscard]] std::vector<std::string> result_names();
+
 /// The first file in the directory that remove_results would remove; "" if there is none.
 [[nodiscard]] std::string first_result_in(const std::filesystem::path& directory);
 

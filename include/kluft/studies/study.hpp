@@ -24,6 +24,9 @@ struct StudySetting {
     [[nodiscard]] std::string assignment() const { return key + "=" + value; }
 };
 
+/// Whether the setting gives the key a value, by itself or within a mapping or list: stages.1={steps: 3} sets stages.1.steps.
+[[nodiscard]] bool sets_key(const StudySetting& setting, std::string_view key);
+
 struct StudyParameter {
     std::string key;
     std::vector<StudySetting> values; ///< all of this key
@@ -111,6 +114,9 @@ inline constexpr std::size_t most_cases = 10000;
 /// The same for a study in memory.
 [[nodiscard]] ReadStudy read_study_text(std::string_view text, const std::vector<std::string>& overrides,
                                         const std::filesystem::path& file);
+
+/// Digest of a scene with settings ("key.path=value") and of the files that it names. Throws InputError as read_scene does.
+[[nodiscard]] std::string scene_digest(const std::filesystem::path& scene, const std::vector<std::string>& overrides);
 
 /// The cases in the order variant, parameters (the last one changes first), replica. Names and settings only; without
 /// the settings of replicas, which depend on the scene.
