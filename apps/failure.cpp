@@ -41,6 +41,15 @@ bool is_shortage(const std::error_code& error) {
     return std::ranges::any_of(shortages, [&](std::errc shortage) { return error == shortage; });
 }
 
+/// Of a mistake that is made many times (a range whose values are all refused) the first ones are enough.
+ExitCode told(const InputError& error) noexcept {
+    constexpr std::size_t most = 20;
+    const auto& messages = error.messages();
+    for (std::size_t i = 0; i < std::min(messages.size(), most); ++i) tell_line(messages[i].c_str());
+    if (messages.size() > most) std::fprintf(stderr, "and %zu more\n", messages.size() - most);
+    return ExitCode::bad_input;
+}
+
 ExitCode told(const std::filesystem::filesystem_error& error) {
     const std::string message = error.path1().string() + ": " + error.code().message();
     return told(message.c_str(), is_shortage(error.code()) ? ExitCode::out_of_resources : ExitCode::bad_input);
@@ -57,7 +66,7 @@ ExitCode tell_failure() noexcept {
     try {
         throw;
     } catch (const InputError& error) {
-        return told(error.what(), ExitCode::bad_input);
+        return told(error);
     } catch (const NoEquilibriumError& error) {
         return told(error.what(), ExitCode::no_equilibrium);
     } catch (const ResourceError& error) {

@@ -172,7 +172,7 @@ ExitCode study(const StudyArguments& arguments) {
     const StudyPlace place = place_of(arguments);
     const fs::path directory = fs::absolute(place.directory).lexically_normal();
     require_no_file(directory);
-    require_no_run_in(directory);
+    if (!is_locked(directory)) require_no_run_in(directory); // a run that holds it is named below
     const std::string holder = "kluft study " + arguments.words.back();
     std::optional<DirectoryLock> lock;
     if (!place.ready_made.empty()) {

@@ -126,9 +126,7 @@ private:
         problem.starts = starts_from(from, other, moves);
         problem.groups = groups_;
         problem.n_noisy = runs_.n_rows;
-        problem.evaluate = [&](const std::vector<Eigen::VectorXd>& places) {
-            return evaluate(places);
-        };
+        problem.evaluate = [&](const std::vector<Eigen::VectorXd>& places) { return evaluate(places); };
         if (!elastic_->targets().empty()) problem.exact = [&](const Eigen::VectorXd& x) { return remembered(x); };
         problem.expected = [&](const Eigen::VectorXd& x) { return expected_slopes(x); };
         SearchOptions options;
@@ -157,9 +155,10 @@ private:
             now.clear(); // another one, whatever it says
         }
         if (now != scenes_)
-            throw InputError(calibration_.scene.string() +
-                             ": expected the scenes that the calibration began with, found that one of them has changed "
-                             "since; the same command runs what they say now");
+            throw InputError(
+                calibration_.scene.string() +
+                ": expected the scenes that the calibration began with, found that one of them has changed "
+                "since; the same command runs what they say now");
     }
 
     /// Where theory meets the targets, and the file's own start where that is another place.

@@ -352,15 +352,17 @@ void require_no_other_results(const Calibration& calibration, const fs::path& di
     const fs::path scene = directory / "calibrated.yaml";
     std::error_code error;
     if (!fs::exists(earlier, error) && fs::exists(scene, error))
-        throw InputError(scene.string() + ": expected a calibrated.yaml that a calibration wrote or none, found another "
-                                          "one, which would be lost; -o names another directory");
+        throw InputError(scene.string() +
+                         ": expected a calibrated.yaml that a calibration wrote or none, found another "
+                         "one, which would be lost; -o names another directory");
     if (!fs::exists(earlier, error)) return;
     const Json json = Json::parse(read_file(earlier), nullptr, false);
     const std::string of = json.is_object() ? json.value("scene", Json()).dump() : "";
     if (!of.empty() && of != Json(calibration.scene.string()).dump())
-        throw InputError(fmt::format("{}: expected results of this calibration or none, found those of one of the scene {}; -o "
-                                     "names another directory",
-                                     directory.string(), of));
+        throw InputError(
+            fmt::format("{}: expected results of this calibration or none, found those of one of the scene {}; -o "
+                        "names another directory",
+                        directory.string(), of));
 }
 
 void write_calibration(const Calibration& calibration, const CalibrationResult& result, const fs::path& directory) {

@@ -154,12 +154,11 @@ std::vector<std::size_t> column_order(const std::string& path, const Names& name
             return;
         }
         order.push_back(no_column);
-        if (needed == nullptr || contains(*needed, name))
-            missing.push_back(fmt::format("'{}'", name));
+        if (needed == nullptr || contains(*needed, name)) missing.push_back(fmt::format("'{}'", name));
     });
     if (!missing.empty())
-        throw InputError(fmt::format("{}:1: no {} {}", path, missing.size() == 1 ? "column" : "columns",
-                                     fmt::join(missing, ", ")));
+        throw InputError(
+            fmt::format("{}:1: no {} {}", path, missing.size() == 1 ? "column" : "columns", fmt::join(missing, ", ")));
     return order;
 }
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <sys/resource.h>
 
@@ -279,6 +280,8 @@ RunStatus status_of(const std::string& name) {
 
 std::optional<double> optional_number(const Json& json, const char* key) {
     const Json& value = json.at(key);
+    if (!value.is_null() && !value.is_number())
+        throw InputError(fmt::format("{}: expected a number or null, found {}", key, value.dump().substr(0, 40)));
     return value.is_null() ? std::nullopt : std::optional(value.get<double>());
 }
 
@@ -356,8 +359,12 @@ std::vector<StepRecord> platen_rows(const std::vector<StepRecord>& rows, int pla
 }
 
 double platen_sense(const std::vector<StepRecord>& rows, std::optional<int> platen_stage) {
-    if (!platen_stage) return 1.0;
     const Rows loaded = loaded_rows(rows, platen_stage);
+    if (!platen_stage) { // given loads press or pull
+        const auto size = [](const StepRecord& row) { return std::abs(row.axial_stress); };
+        const auto largest = std::ranges::max_element(loaded, {}, size);
+        return largest == loaded.end() ? 1.0 : std::copysign(1.0, largest->axial_stress);
+    }
     const auto fails = [&](double sense) {
         const auto peak = largest_row(rows_with_bonds(loaded), sense);
         return peak && sense * peak->axial_stress > 0.0 && falls_after_peak(rows, *peak, sense);

@@ -4,9 +4,9 @@
 
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/output/state_file.hpp"
+#include "kluft/scene/scene_as_run.hpp"
 #include "kluft/scene/scene_reader.hpp"
 #include "kluft/simulation/fingerprint.hpp"
-#include "kluft/studies/earlier_results.hpp"
 
 namespace kluft {
 
@@ -19,8 +19,9 @@ RunOfResults run_of_results(const std::filesystem::path& directory) {
     RunOfResults run;
     run.scene = read_scene_text(read_state_scene(saved), {}, saved);
     if (const std::string difference = difference_from_scene_file(directory, run.scene); !difference.empty())
-        throw InputError(fmt::format("{}: expected a state of the run whose scene.yaml lies beside it, found one of another: {}",
-                                     saved.string(), difference));
+        throw InputError(
+            fmt::format("{}: expected a state of the run whose scene.yaml lies beside it, found one of another: {}",
+                        saved.string(), difference));
     run.built = build_scene_model(run.scene);
     if (fingerprint(run.built.model) != read_state_fingerprint(saved))
         throw InputError(directory.string() +

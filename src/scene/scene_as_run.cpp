@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <filesystem>
 #include <map>
+#include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -174,6 +176,22 @@ std::vector<std::string> geometry_files(const Scene& scene) {
 }
 
 bool is_scene_as_run(std::string_view text) { return text.starts_with(heading.substr(0, heading.find('\n'))); }
+
+std::optional<std::string> scene_as_run_in(const std::filesystem::path& directory) {
+    constexpr std::size_t largest = 100'000'000; // bytes
+    try {
+        std::string text = read_input_file(directory / "scene.yaml", "a scene", largest);
+        if (is_scene_as_run(text)) return text;
+    } catch (const InputError&) {
+        return std::nullopt;
+    }
+    return std::nullopt;
+}
+
+std::string difference_from_scene_file(const std::filesystem::path& directory, const Scene& of_state) {
+    const std::optional<std::string> as_run = scene_as_run_in(directory);
+    return as_run ? body_difference(*as_run, of_state) : "";
+}
 
 std::string scene_difference(std::string_view earlier, const Scene& scene) {
     const SceneNode tree = tree_of_text(earlier);

@@ -97,7 +97,8 @@ private:
         };
         const auto base = (file.parent_path() / extends->text).lexically_normal();
         std::error_code error;
-        if (!std::filesystem::is_regular_file(base, error)) return fail(std::filesystem::is_directory(base, error) ? ", which is a directory" : ", which is no file");
+        if (!std::filesystem::is_regular_file(base, error))
+            return fail(std::filesystem::is_directory(base, error) ? ", which is a directory" : ", which is no file");
         if (std::find(chain_.begin(), chain_.end(), std::filesystem::weakly_canonical(base)) != chain_.end())
             return fail(", which leads back to itself");
         if (chain_.size() >= longest_chain) return fail(fmt::format(" after a chain of {} scenes", longest_chain));

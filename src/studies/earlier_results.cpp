@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "kluft/core/diagnostics.hpp"
-#include "kluft/core/input_file.hpp"
 #include "kluft/output/run_writer.hpp"
 #include "kluft/output/state_file.hpp"
 #include "kluft/scene/scene_as_run.hpp"
@@ -20,18 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 
 fs::path scene_file(const fs::path& directory) { return directory / "scene.yaml"; }
-
-/// The text of scene.yaml where a run wrote it.
-std::optional<std::string> scene_as_run_in(const fs::path& directory) {
-    constexpr std::size_t largest = 100'000'000; // bytes
-    try {
-        std::string text = read_input_file(scene_file(directory), "a scene", largest);
-        if (is_scene_as_run(text)) return text;
-    } catch (const InputError&) {
-        return std::nullopt;
-    }
-    return std::nullopt;
-}
 
 /// The scene that is saved with a state.
 std::optional<std::string> scene_of_state_in(const fs::path& directory) {
@@ -66,13 +53,9 @@ void require_no_other_results(const fs::path& directory, const Scene& scene) {
 void require_no_run_in(const fs::path& directory) {
     std::error_code error;
     if (fs::exists(directory / "history.csv", error))
-        throw InputError(directory.string() + ": expected another directory than that of a run, found a history.csv in it; "
-                                              "-o names another one");
-}
-
-std::string difference_from_scene_file(const fs::path& directory, const Scene& of_state) {
-    const std::optional<std::string> as_run = scene_as_run_in(directory);
-    return as_run ? body_difference(*as_run, of_state) : "";
+        throw InputError(directory.string() +
+                         ": expected another directory than that of a run, found a history.csv in it; "
+                         "-o names another one");
 }
 
 bool has_own_scene_file(const fs::path& directory, const Scene& scene) {

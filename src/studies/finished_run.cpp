@@ -10,10 +10,10 @@
 #include "kluft/core/nearest_name.hpp"
 #include "kluft/output/history_table.hpp"
 #include "kluft/output/state_file.hpp"
+#include "kluft/scene/scene_as_run.hpp"
 #include "kluft/scene/scene_model.hpp"
 #include "kluft/scene/scene_reader.hpp"
 #include "kluft/simulation/measurements.hpp"
-#include "kluft/studies/earlier_results.hpp"
 
 namespace kluft {
 

@@ -689,8 +689,8 @@ void refuse_hidden(const Study& study, SceneErrors& errors) {
             if (other == nullptr) continue;
             errors.add(other->values.front().at, place,
                        other->key == key ? "expected keys that do not vary in the whole study, found " + in_quotes(key)
-                                         : "expected keys that do not set each other's values, found " + in_quotes(key) +
-                                               by(*other, key));
+                                         : "expected keys that do not set each other's values, found " +
+                                               in_quotes(key) + by(*other, key));
         }
         for (const auto& setting : variant.set)
             if (const auto* const parameter = parameter_that_sets(variant, setting.key))

@@ -1628,10 +1628,11 @@ TEST_F(CommandLine, CompareRefusesWhatIsNoRun) {
                              "'results/case-3'?"));
     expect_refused({"compare", "results/case-3", "file"}, HasSubstr("file: expected a directory of results, found a"));
     expect_refused({"compare", "results/case-3", "results"}, HasSubstr("found no history.csv in it"));
-    expect_refused({"compare", "results/case-3", "results/case-3"}, HasSubstr("no column 'axial_strain'"));
+    expect_refused({"compare", "results/case-3", "results/case-3"},
+                   HasSubstr("no columns 'stage', 'axial_strain', 'axial_stress', 'differential_stress'"));
     expect_refused({"compare", "results/case-3"}, HasSubstr("directories"));
     expect_refused({"compare", "a", "b", "--tolerance", "-1"}, HasSubstr("--tolerance: expected a fraction"));
-    expect_refused({"compare", "a", "b", "-o", "file"}, HasSubstr("file: expected a directory for the comparison"));
+    expect_refused({"compare", "a", "b", "-o", "file"}, HasSubstr("file: expected a directory for the results"));
     expect_refused({"compare", "a", "b", "--tolernace", "1"}, HasSubstr("did you mean '--tolerance'?"));
 }
 
@@ -1691,10 +1692,12 @@ TEST_F(CommandLine, EnvelopeTakesNoResultsPlace) {
     write("tiny.yaml", tiny_scene);
     write("good.csv", "sigma_3,sigma_1\n0,1e6\n1e6,5e6\n");
     ASSERT_EQ(kluft({"run", "tiny.yaml", "-o", "r", "--quiet"}).code, 0);
-    for (const auto& [picture, result] : {std::pair{"r/history.png", "history.csv"}, {"r/summary.svg", "summary.json"},
+    for (const auto& [picture, result] : {std::pair{"r/history.png", "history.csv"},
+                                          {"r/summary.svg", "summary.json"},
                                           {"r/cracks.png", "cracks.csv"}}) {
         const std::string before = content_of(path(std::string("r/") + result));
-        expect_refused({"envelope", "good.csv", "-o", picture}, HasSubstr(std::string(result) + " is a result of the run"));
+        expect_refused({"envelope", "good.csv", "-o", picture},
+                       HasSubstr(std::string(result) + " is a result of the run"));
         EXPECT_EQ(content_of(path(std::string("r/") + result)), before);
     }
     EXPECT_EQ(kluft({"envelope", "good.csv", "-o", "r/envelope.png"}).code, 0);

@@ -130,7 +130,8 @@ TEST_P(MultifrontalFactorOf, UnsymmetricRigidBlocksGivesTheMatrixToSinglePrecisi
     EXPECT_LT(error_of_factor(pattern, matrix, Symmetry::unsymmetric), 10.0 * single_rounding);
 }
 
-INSTANTIATE_TEST_SUITE_P(Sides, MultifrontalFactorOf, ::testing::Values(1, 2, 3, 7, 12));
+INSTANTIATE_TEST_SUITE_P(Sides, MultifrontalFactorOf, ::testing::Values(1, 2, 3, 7));
+INSTANTIATE_TEST_SUITE_P(SlowSides, MultifrontalFactorOf, ::testing::Values(12));
 
 TEST(MultifrontalFactor, HasTheOperationsAndNonzerosOfAFullMatrixWhereAllBlocksTouch) {
     constexpr int n = 9;

@@ -130,9 +130,11 @@ TEST_F(CalibrationFiles, MistakesAreAnsweredWithPlaceAndNearestKey) {
     EXPECT_THAT(refusal("kluft_calibration: 1\nscene: folder\n" + parameters + target),
                 HasSubstr("expected a file, found 'folder', which is a directory"));
     for (const char* const set : {"materials.rock.cohesion: 3 MPa", "materials.rock: {cohesion: 3 MPa}"})
-        EXPECT_THAT(refusal(head + "parameters: {c: {keys: [materials.rock.cohesion], start: 1 MPa, from: 1 MPa, to: 2 MPa}}\n" +
-                            "targets: {peak_stress: {value: 1 MPa, tolerance: 1 %, set: {" + set + "}}}\n"),
-                    HasSubstr("expected keys that no parameter moves, found 'materials.rock.cohesion'"));
+        EXPECT_THAT(
+            refusal(head +
+                    "parameters: {c: {keys: [materials.rock.cohesion], start: 1 MPa, from: 1 MPa, to: 2 MPa}}\n" +
+                    "targets: {peak_stress: {value: 1 MPa, tolerance: 1 %, set: {" + set + "}}}\n"),
+            HasSubstr("expected keys that no parameter moves, found 'materials.rock.cohesion'"));
     EXPECT_THAT(refusal("[1, 2]\n"), HasSubstr("kluft_calibration: 1"));
 }
 

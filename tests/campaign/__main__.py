@@ -26,7 +26,7 @@ from bench import ROOT, TIME_LIMIT, Bench, Trial  # noqa: E402
 
 # Name -> (trial of a number, share of the time, how many there are or None).
 KINDS = {name: kind for module in (kills, faults, limits, signals, damage, mutations, hard, repeats) for name, kind in module.KINDS.items()}
-MINUTES, SHORT_MINUTES = 60.0, 2.0
+MINUTES, SHORT_MINUTES = 60.0, 1.0
 EPILOG = """Trial number i of a kind is the same for the same --seed; how many there are depends on the time. Kinds with a fixed number of
 trials are done completely, except with --short. Exit code 1 where a trial failed; its directory is kept in DIR/work/trials.
 
@@ -34,7 +34,7 @@ kinds: """ + ", ".join(KINDS) + """
 
 examples:
   scripts/campaign                                 an hour on two cores
-  scripts/campaign --short                         two minutes
+  scripts/campaign --short                         one minute
   scripts/campaign --kind kills --minutes 5
   scripts/campaign --kind signals --trial 17       one trial again
 """
@@ -45,7 +45,7 @@ def arguments_of_program():
     parser.add_argument("--kluft", type=Path, default=ROOT / "build/release/kluft", metavar="FILE",
                         help="the program, beside which kluft-calibrate stands (default: build/release/kluft of this repository)")
     parser.add_argument("--minutes", type=float, metavar="N", help=f"of all kinds together (default: {MINUTES:g})")
-    parser.add_argument("--short", action="store_true", help=f"{SHORT_MINUTES:g} minutes, some trials of each kind")
+    parser.add_argument("--short", action="store_true", help=f"{SHORT_MINUTES:g} minute, some trials of each kind")
     parser.add_argument("--kind", action="append", default=[], metavar="NAME", choices=list(KINDS), help="only this kind; may be given several times")
     parser.add_argument("--trial", type=int, metavar="I", help="only this trial")
     parser.add_argument("--seed", type=int, default=1, metavar="N", help="of all random choices (default: 1)")

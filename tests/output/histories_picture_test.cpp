@@ -68,7 +68,7 @@ TEST(HistoriesTable, SaysWhereItIsWrong) {
     EXPECT_THAT(message_of("step,load_factor,a\n"), HasSubstr(":1: expected the columns step,stage,load_factor"));
     EXPECT_THAT(message_of("step,stage,load_factor,a\n0,0,0\n"), HasSubstr(":2: expected 4 columns, found 3"));
     EXPECT_THAT(message_of("step,stage,load_factor,a\n0,0,0,1\n1,0,0,x\n"),
-                HasSubstr(":3: a: expected a number, found 'x'"));
+                HasSubstr(":3: a: expected a finite number, found 'x'"));
     EXPECT_EQ(message_of("step,stage,load_factor,a\n0,0,0,1\n1,0,0"), ""); // a killed run leaves a part of a line
 }
 

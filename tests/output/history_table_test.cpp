@@ -115,7 +115,8 @@ TEST(HistoryTable, SaysWhereWhatWasExpectedAndFound) {
     write_file(path, cracks_header() + "\n1,2,3\n");
     EXPECT_THAT(read, ThrowsMessage<InputError>(HasSubstr("c.csv:2: expected 9 columns, found 3")));
     write_file(path, "step,pass\n1,2\n");
-    EXPECT_THAT(read, ThrowsMessage<InputError>(HasSubstr("c.csv:1: no columns 'interface', 'x', 'y', 'mode', 'p1', 'p3', 'axial_strain'")));
+    EXPECT_THAT(read, ThrowsMessage<InputError>(
+                          HasSubstr("c.csv:1: no columns 'interface', 'x', 'y', 'mode', 'p1', 'p3', 'axial_strain'")));
     write_file(path, "");
     EXPECT_THAT(read, ThrowsMessage<InputError>(HasSubstr("expected a line of column names")));
 }

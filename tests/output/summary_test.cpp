@@ -1,6 +1,7 @@
 #include "kluft/output/summary.hpp"
 
 #include <limits>
+#include <regex>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,7 +14,9 @@
 namespace kluft {
 namespace {
 
+using ::testing::HasSubstr;
 using testing::TemporaryDirectory;
+using ::testing::ThrowsMessage;
 using Rows = std::vector<StepRecord>;
 
 StepRecord row(int step, int stage, double strain, double differential, double lateral_strain = 0.0,
@@ -54,6 +57,14 @@ TEST(Summary, FindsPeakResidualAndConstantsOfATriangle) {
     EXPECT_NEAR(*numbers.residual_stress, 0.2e6 + (1.0 - 0.4 * 0.9) * 1e6, 1e-3);
     EXPECT_EQ(numbers.steps, 102);
     EXPECT_EQ(numbers.unbalanced_steps, 0);
+}
+
+// Pulled on by pressures: no platen has a sense.
+TEST(Summary, LargestStressWithoutAPlatenIsThatOfLargestMagnitude) {
+    const Rows pulled{row(0, 0, 0, 0, 0, 0), row(1, 0, -1e-4, -0.5e6, 0, 0), row(2, 0, -5e-4, -2.4e6, 0, 0)};
+    EXPECT_DOUBLE_EQ(*curve_numbers(pulled, pulled, std::nullopt, Plane::strain).peak_stress, -2.4e6);
+    const Rows pressed{row(0, 0, 0, 0, 0, 0), row(1, 0, -1e-4, -0.5e6, 0, 0), row(2, 0, 5e-4, 2.4e6, 0, 0)};
+    EXPECT_DOUBLE_EQ(*curve_numbers(pressed, pressed, std::nullopt, Plane::strain).peak_stress, 2.4e6);
 }
 
 // E' = E/(1 - nu^2) and nu' = nu/(1 - nu) with E = 80 MPa and nu = 0.25.
@@ -453,6 +464,11 @@ TEST(Summary, IsReadBack) {
     EXPECT_EQ(summary_json(read_summary(directory / "summary.json")), summary_json(summary));
     write_file(directory / "summary.json", "{\"status\": \"done\"}");
     EXPECT_THROW((void)read_summary(directory / "summary.json"), InputError);
+    const std::string damaged =
+        std::regex_replace(summary_json(summary), std::regex("\"peak_stress\": [^,]*"), "\"peak_stress\": \"high\"");
+    write_file(directory / "summary.json", damaged);
+    EXPECT_THAT([&] { (void)read_summary(directory / "summary.json"); },
+                ThrowsMessage<InputError>(HasSubstr("peak_stress: expected a number or null, found \"high\"")));
     write_file(directory / "summary.json", "{");
     EXPECT_THROW((void)read_summary(directory / "summary.json"), InputError);
 }

@@ -80,7 +80,7 @@ INSTANTIATE_TEST_SUITE_P(LoadsAndKinematics, FirstCrack,
 
 // The strength of a body that crack after crack takes apart; the expected value is that of 100 steps. A goal beyond the strength
 // has no equilibrium, and the peak lies before it: motion to the goal at once, which passes over it, gave 12 % more in 2 steps.
-TEST(PeakStrength, IsThatOfSmallLoadStepsWhateverTheLoadStep) {
+TEST(SlowPeakStrength, IsThatOfSmallLoadStepsWhateverTheLoadStep) {
     const auto peak = [](int steps) {
         const SceneRun run = run_scene(fmt::format(R"(
 kluft: 1

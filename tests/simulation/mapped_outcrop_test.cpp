@@ -26,14 +26,14 @@ double largest_difference(const std::vector<Mat2>& a, const std::vector<Mat2>& b
 }
 
 // Nothing slides far and no bond breaks, so that only the paths of friction differ: 0.02 %.
-TEST(MappedOutcrop, HasStressesThatDoNotDependOnTheNumberOfLoadSteps) {
+TEST(SlowMappedOutcrop, HasStressesThatDoNotDependOnTheNumberOfLoadSteps) {
     const SceneRun few = outcrop_with({"stages.0.steps=10"});
     const SceneRun many = outcrop_with({"stages.0.steps=40"});
     ASSERT_TRUE(stands(few) && stands(many));
     EXPECT_LT(largest_difference(few.fields.back().stress, many.fields.back().stress), 1e-3);
 }
 
-TEST(MappedOutcrop, StandsWithSoftJointsInEveryLoadStep) {
+TEST(SlowMappedOutcrop, StandsWithSoftJointsInEveryLoadStep) {
     EXPECT_TRUE(stands(
         outcrop_with({"interfaces.joint.normal_stiffness=1 GPa/m", "interfaces.joint.shear_stiffness=0.5 GPa/m"})));
 }

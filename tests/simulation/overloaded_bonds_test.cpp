@@ -92,7 +92,7 @@ TEST(OverloadedBonds, OfATraceWithoutANetAreWarnedOf) {
 }
 
 // Cells of a net are chosen for mean stresses: its own bonds, and those of a trace through it, are none of this.
-TEST(OverloadedBonds, OfANetAreNone) {
+TEST(SlowOverloadedBonds, OfANetAreNone) {
     const std::vector<std::string> in_a_net = {
         "geometry.tessellation={triangles: {spacing: 0.25}, interface: bond}",
         "materials.rock={cohesion: 100 MPa, friction_angle: 30, tensile_strength: 100 MPa}"};

@@ -144,7 +144,7 @@ TEST(OverloadedCorners, OfFracturesOfDifferentFrictionDoNotMeet) {
 }
 
 // What the body carried before the platen moved is no strength.
-TEST(OverloadedCorners, AreFoundAfterALargerPressure) {
+TEST(SlowOverloadedCorners, AreFoundAfterALargerPressure) {
     const Specimen specimen = pressed_specimen(stepped_fracture(
         "5 MPa",
         {"stages=[{pressure: {left: 10 MPa, right: 10 MPa, top: 10 MPa}}, {pressure: {left: 1 MPa, right: 1 MPa, top: "

@@ -377,7 +377,7 @@ TEST(Platens, PressOnTheOutsideOfTheBodyOverItsOwnWidth) {
 }
 
 // Past the edge nothing but the platen behind it touches the block, and that does not carry it, however rough it is.
-TEST(Platens, DoNotHoldABlockInTheAir) {
+TEST(SlowPlatens, DoNotHoldABlockInTheAir) {
     for (const char* platens : {"smooth", "rough", "{friction_angle: 80}"}) {
         const SceneRun run = run_scene(fmt::format(R"(
 kluft: 1

@@ -50,7 +50,7 @@ SceneRun run_model(Model model, double accuracy) {
 
 // Cracks have the strain of the event that they failed at, on the way to the end of the load step, and those in a motion that
 // of the equilibrium that the motion began at; in the first load step of a resumed run as well.
-TEST(Resuming, CracksOfTheFirstLoadStepHaveTheStrainTheyWouldHaveWithoutIt) {
+TEST(SlowResuming, CracksOfTheFirstLoadStepHaveTheStrainTheyWouldHaveWithoutIt) {
     SceneRun whole;
     whole.scene = read_scene_text(R"(
 kluft: 1
@@ -192,7 +192,7 @@ TEST(Resuming, DropCountsFromALargestStressBeforeTheResume) {
 }
 
 // The stages have 1 + 30 load steps.
-TEST(Ending, NamesTheLastOfTheUnbalancedLoadSteps) {
+TEST(SlowEnding, NamesTheLastOfTheUnbalancedLoadSteps) {
     const SceneRun run = run_scene(pushed_block(3.0, 30));
     ASSERT_EQ(run.report.status, RunStatus::no_equilibrium);
     EXPECT_THAT(run.report.diagnosis, HasSubstr(fmt::format("in stage 1 at load step {}: ", run.history.back().step)));

@@ -230,7 +230,7 @@ stages:
 
 // Only the closed part of a joint has cohesion. The resultant meets the joint at e = h/2 tan(dip) from its middle; without tension
 // the closed part is L = 3 (b/2 - e) long where e > b/6, and F = (N tan(phi) + c L)/T.
-TEST(StrengthReduction, PartlyOpenJointHasTheCohesionOfItsClosedPart) {
+TEST(SlowStrengthReduction, PartlyOpenJointHasTheCohesionOfItsClosedPart) {
     struct Case {
         double width, height, dip;
     };

@@ -47,7 +47,7 @@ geometry:
 
 // An equilibrium lies near by, and is found without following a motion, for joints soft and stiff, a turned wall, and
 // whatever the number of load steps.
-TEST(Wall, ComesToRestWithoutAMotion) {
+TEST(SlowWall, ComesToRestWithoutAMotion) {
     for (const double stiffness : {10.0, 50.0}) {
         for (const int steps : {1, 10}) {
             for (const double angle : {0.0, 0.4}) {

@@ -386,7 +386,8 @@ TEST_F(StudyRuns, TradeStudyRefusesNoCaseOfTheOtherIntegrator) {
 // A study's report among a run's files would take the place of the run's own.
 TEST_F(StudyRuns, CommandStandsNotAmongTheFilesOfARun) {
     std::ofstream(directory_ / "study.yaml") << "scene: scene.yaml\n" << steps("2, 4");
-    const std::string into = "cd '" + directory_.path().string() + "' && '" KLUFT_PROGRAM "' study study.yaml --quiet -o ";
+    const std::string into =
+        "cd '" + directory_.path().string() + "' && '" KLUFT_PROGRAM "' study study.yaml --quiet -o ";
     fs::create_directory(directory_ / "run");
     std::ofstream(directory_ / "run" / "history.csv") << "step\n";
     EXPECT_EQ(exit_code_of(into + "run 2>told"), 2);

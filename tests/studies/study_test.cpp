@@ -292,14 +292,16 @@ TEST_F(StudyFile, KeysThatSetEachOthersValuesAreRefused) {
     EXPECT_TRUE(sets_key({"stages", "[{steps: 3}]", {}}, "stages.1.steps"));
     EXPECT_TRUE(sets_key({"geometry.tessellation.triangles", "null", {}}, "geometry.tessellation.triangles.seed"));
 
-    EXPECT_THAT(refusals("vary: {stages.1.steps: [5, 8], stages.1: [{steps: 3}, {steps: 4}]}\n"),
-                ElementsAre(HasSubstr("vary: expected keys that do not set each other's values, found 'stages.1.steps', "
-                                      "which 'stages.1' sets too")));
+    EXPECT_THAT(
+        refusals("vary: {stages.1.steps: [5, 8], stages.1: [{steps: 3}, {steps: 4}]}\n"),
+        ElementsAre(HasSubstr("vary: expected keys that do not set each other's values, found 'stages.1.steps', "
+                              "which 'stages.1' sets too")));
     EXPECT_THAT(refusals("vary: {stages.1: [{steps: 3}, {steps: 4}]}\nset: {stages.1.steps: 3}\n"),
                 ElementsAre(HasSubstr("set: expected a key that does not vary")));
-    EXPECT_THAT(refusals("variants: [{name: a, set: {stages.1.steps: 7}, vary: {stages.1: [{steps: 3}, {steps: 4}]}}]\n"),
-                ElementsAre(HasSubstr("variant a: expected keys that do not vary, found 'stages.1.steps', which "
-                                      "'stages.1' sets too")));
+    EXPECT_THAT(
+        refusals("variants: [{name: a, set: {stages.1.steps: 7}, vary: {stages.1: [{steps: 3}, {steps: 4}]}}]\n"),
+        ElementsAre(HasSubstr("variant a: expected keys that do not vary, found 'stages.1.steps', which "
+                              "'stages.1' sets too")));
     EXPECT_EQ(read("vary: {stages.1.steps: [5, 8], stages.1: [{name: a}, {name: b}]}\n").cases.size(), 4U);
 }
 

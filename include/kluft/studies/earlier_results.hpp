@@ -14,10 +14,6 @@ void require_no_other_results(const std::filesystem::path& directory, const Scen
 /// Throws InputError where the directory is that of a run, whose files those of a study or calibration would stand among.
 void require_no_run_in(const std::filesystem::path& directory);
 
-/// What differs between scene.yaml, where a run wrote it into the directory, and the scene of the state that is saved there: the
-/// first key of the body, its laws or its loads; "" where there is none, or no such file.
-[[nodiscard]] std::string difference_from_scene_file(const std::filesystem::path& directory, const Scene& of_state);
-
 /// Whether scene.yaml in the directory is a file of the user's own that says the same scene, so that it can stay as it is;
 /// not where there is none, or one that a run wrote. Throws InputError where it is of the user's own and says another scene.
 [[nodiscard]] bool has_own_scene_file(const std::filesystem::path& directory, const Scene& scene);
