@@ -96,7 +96,7 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 # The shared library that BLAS resolves to is chosen at run time; without this the slow reference BLAS would satisfy it.
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS libopenblas0-pthread)
 # The suite behind `kluft validate`, and the font of the pictures.
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "python3, python3-numpy, python3-yaml, python3-matplotlib, fonts-dejavu-core")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "python3, python3-numpy, python3-yaml, python3-matplotlib, python3-scipy, fonts-dejavu-core")
 # Loaded where a map needs it, so that no link tells of it.
 if(KLUFT_GDAL)
   string(REGEX REPLACE "^libgdal\\.so\\.([0-9]+)$" "libgdal\\1" _gdal_package ${KLUFT_GDAL_NAME})

@@ -167,7 +167,7 @@ def main(words):
         for name in chosen:
             print(f"{name:24} {title_of(name)}")
         return 0
-    for module in ("numpy", "matplotlib"):
+    for module in ("numpy", "matplotlib", "scipy"):
         if importlib.util.find_spec(module) is None:
             return refuse(f"the Python module {module} is missing: install python3-{module} (scripts/install-packages)")
     if not options.kluft.is_file() or not os.access(options.kluft, os.X_OK):
