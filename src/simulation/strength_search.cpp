@@ -96,14 +96,37 @@ Failure failure_by_motion(const StepBench& bench, const Step& step, const Eigen:
             .moving = moved_blocks(bench.model.system, step.end.body.displacement - before, farthest)};
 }
 
+/// A corner that holds a block after a load step and did not before it; nothing if there is none.
+std::optional<CornerContact> caught_corner(const Model& model, const State& before, const State& after) {
+    const auto earlier = corner_contacts(model, before);
+    for (const CornerContact& corner : corner_contacts(model, after)) {
+        const auto same = [&](const CornerContact& each) {
+            return each.block_a == corner.block_a && each.block_b == corner.block_b;
+        };
+        if (std::ranges::none_of(earlier, same)) return corner;
+    }
+    return std::nullopt;
+}
+
+/// Of a step whose body has given way and has come to rest where a corner has caught.
+Failure failure_by_corner(const StepBench& bench, const Step& step, const Eigen::VectorXd& before,
+                          const CornerContact& corner) {
+    const Eigen::VectorXd moved = step.end.body.displacement - before;
+    Failure failure = failure_by_motion(bench, step, before, 0.5 * relative_motion(bench.model.system, moved));
+    failure.what = "the body has given way, and " + description(bench.model, corner) + ", which rock would lose";
+    return failure;
+}
+
 /// Where a load step goes to, and how far a body that stands moves on the way (motion_scale).
 struct TrialGoal {
     double load_factor = 0.0;
     double farthest = jump_motion;
+    double displaced_by_loads = 0.0; ///< before strengths were reduced, as motions are measured
     StepKind kind;
 };
 
-/// Tries a load step and commits it, after the equilibria found before, if the body stands at its end where it stood (32b).
+/// Tries a load step and commits it, after the equilibria found before, if the body stands at its end where it stood (32b), and not
+/// because a corner has caught.
 Trial try_factor(const StepBench& bench, const TrialGoal& goal, State& state, Eigen::VectorXd& forces,
                  std::vector<StepRecord>& before) {
     begin_load_step(bench);
@@ -113,8 +136,11 @@ Trial try_factor(const StepBench& bench, const TrialGoal& goal, State& state, Ei
         return {step.failure, step.failure->kind == FailureKind::falling || fails_before};
     }
     const Eigen::VectorXd& start = state.body.displacement;
-    if (relative_motion(bench.model.system, step.end.body.displacement - start) > goal.farthest)
-        return {failure_by_motion(bench, step, start, goal.farthest), true};
+    const double moved = relative_motion(bench.model.system, step.end.body.displacement - start);
+    if (moved > goal.farthest) return {failure_by_motion(bench, step, start, goal.farthest), true};
+    if (moved > goal.displaced_by_loads)
+        if (const auto corner = caught_corner(bench.model, state, step.end))
+            return {failure_by_corner(bench, step, start, *corner), true};
     forces = std::move(step.forces);
     step.equilibria.insert(step.equilibria.begin(), before.begin(), before.end());
     before.clear();
@@ -196,6 +222,7 @@ StageEnd find_strength_limit(const StepBench& bench, State& state) {
     const StrengthReduction& reduction = *bench.stage(state).strength_reduction;
     const int n_steps = bench.stage(state).steps;
     StageEnd end;
+    const double displaced_by_loads = relative_motion(bench.model.system, state.body.displacement);
     Doubts doubts(bench.model, state);
     doubts.look_at(state, bench.journal.last_row(), reduction.factor_at(state.at.load_factor));
     std::vector<StepRecord> before; // equilibria that are not told yet
@@ -219,6 +246,7 @@ StageEnd find_strength_limit(const StepBench& bench, State& state) {
         const bool last = at == next && state.at.step_in_stage + 1 == n_steps;
         const TrialGoal goal{.load_factor = at,
                              .farthest = is_enclosed ? share_of_jump * jump_motion : jump_motion,
+                             .displaced_by_loads = displaced_by_loads,
                              .kind = {.regular = at == next, .last_of_stage = last}};
         const Trial trial = try_factor(bench, goal, state, end.forces, before);
         if (!trial.failure) {

@@ -61,6 +61,13 @@ TEST(SlowJointedSlope, HasTheFactorOfSafetyOfRigidBlocksWhateverTheStepsOfItsRed
     }
 }
 
+// The bound is that of limit analysis with rigid blocks; while the corner held, the factor was above 5, the largest tried.
+TEST(SlowJointedSlope, WhoseCornerCatchesOnceItHasGivenWayHasFailed) {
+    const SceneRun run = run_scene(read_scene(KLUFT_SOURCE_DIR "/tests/support/slope_whose_corner_catches.yaml"));
+    ASSERT_TRUE(run.report.results.factor_of_safety) << run.report.diagnosis;
+    EXPECT_NEAR(*run.report.results.factor_of_safety, 4.1993, 5e-3 * 4.1993) << run.report.diagnosis;
+}
+
 // A slope of weak rock that circles of slip give a factor near 1.5, with a coarse net of triangles: its cells come loose at that and then
 // hold each other by their shapes. The factor that they have is no factor of the rock, and the run says from where on.
 TEST(SlowJointedSlope, WhoseNetLocksSaysSo) {

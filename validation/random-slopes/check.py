@@ -1,14 +1,13 @@
 """Factors of safety of slopes of random joints against limit analysis by linear programming."""
 
 import math
-import re
 
 import numpy as np
 from scipy.optimize import linprog
 from scipy.sparse import coo_matrix
 
 from suite import figures
-from suite.case import bisect
+from suite.case import DEFAULT_TOLERANCE, bisect
 
 SEEDS = range(1, 13)
 BASE, HEIGHT, TOE, CREST = 5.0, 10.0, 6.0, 14.0
@@ -100,31 +99,19 @@ def bound_of(run, width, friction):
     return bisect(lambda factor: analysis.stands(friction / factor), 0.3, 6.0, 2e-4)[0]
 
 
-def told_factor(run):
-    """Where a corner holds what would slide, the factor that the warning names: that of the last load step before. Else None."""
-    for warning in run.summary["warnings"]:
-        found = re.search(r"a corner holds .*; ([0-9.]+) is the factor of the last load step before", warning)
-        if found:
-            return float(found.group(1))
-    return None
-
-
 def check(case):
-    bounds, factors, n_told = [], [], 0
+    bounds, factors = [], []
     for seed in SEEDS:
         polygon, traces, angle = slope(seed)
         run = case.run(f"seed-{seed}", {"geometry.domain.polygon": polygon, "interfaces.joint.friction_angle": angle,
                                         "geometry.fractures": [{"name": f"joint {i}", "trace": trace, "interface": "joint"}
                                                                for i, trace in enumerate(traces)]})
-        told = told_factor(run)
-        n_told += told is not None
         bounds.append(bound_of(run, polygon[1][0], math.tan(math.radians(angle))))
-        factors.append(told or run.summary["factor_of_safety"])
+        factors.append(run.summary["factor_of_safety"])
     ratios = np.array(factors) / np.array(bounds)
-    case.expect_same("slopes more than 0.1 % above the bound", 0, int((ratios > 1.001).sum()))
-    case.expect("factor over bound, median", 1.0, float(np.median(ratios)), 2e-3)
+    case.expect("factor over bound, largest of 12, defaults", 1.0, float(ratios.max()), DEFAULT_TOLERANCE)
+    case.expect("factor over bound, median, defaults", 1.0, float(np.median(ratios)), 2e-3)
     case.expect_same("slopes more than 20 % below the bound", 0, int((ratios < 0.8).sum()))
-    case.expect_same("at least ten of twelve without a corner that holds", True, n_told <= 2)
     figure, (sketch, plot) = case.figure()
     for corners in polygons_of(run).values():
         figures.block(sketch, corners.tolist())
