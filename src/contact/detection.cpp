@@ -23,6 +23,10 @@ constexpr double doubtful_penetration = 0.01;
 /// Deeper than this part of it, other faces are in contact only if what lies between them is inside both blocks, and a vertex and a face
 /// only if the vertex is inside the block; less is round-off.
 constexpr double least_penetration = 1e-9;
+/// Sides of a block that turn by less (rad) are one; more is not round-off.
+constexpr double straight = 1e-4;
+/// A corner is round over this part of the shorter edge: where two corners meet, the direction in which they touch is between the faces'.
+constexpr double corner_rounding = 1e-3;
 /// Two points of a fracture that were nearer than this part of its edge were one point; what is between is round-off.
 constexpr double same_point = 1e-12;
 /// Deeper than this part of the smaller block, edges that were no neighbours are not in contact ...
@@ -39,6 +43,7 @@ struct CurrentEdge {
     int arriving = 0; ///< the edge before it in its loop
     Vec2 before;      ///< where that one starts
     Vec2 start, end;
+    Vec2 beyond; ///< where the edge after it ends
     Vec2 direction;
     double length = 0.0;
 };
@@ -67,10 +72,21 @@ bool is_bonded(const ContactSurfaces& surfaces, const Edge& edge) {
     return edge.interface >= 0 && surfaces.bonded[edge.interface];
 }
 
-CurrentEdge current_edge(int edge, int arriving, const Vec2& before, const Vec2& start, const Vec2& end) {
-    CurrentEdge current{edge, arriving, before, start, end, Vec2::Zero(), (end - start).norm()};
+CurrentEdge current_edge(int edge, int arriving, const Vec2& before, const Vec2& start, const Vec2& end,
+                         const Vec2& beyond) {
+    CurrentEdge current{edge, arriving, before, start, end, beyond, Vec2::Zero(), (end - start).norm()};
     current.direction = (end - start) / current.length;
     return current;
+}
+
+/// Whether the block has a notch there, and not a corner or a vertex on a straight side.
+bool starts_in_notch(const CurrentEdge& edge) {
+    const Vec2 arriving = edge.start - edge.before;
+    return cross(arriving, edge.direction) < -straight * arriving.norm();
+}
+bool ends_in_notch(const CurrentEdge& edge) {
+    const Vec2 leaving = edge.beyond - edge.end;
+    return cross(edge.direction, leaving) < -straight * leaving.norm();
 }
 
 void append_surface(const BlockSystem& system, const ContactSurfaces& contact_surfaces, const Eigen::VectorXd& q, int b,
@@ -91,7 +107,9 @@ void append_surface(const BlockSystem& system, const ContactSurfaces& contact_su
             surface.separated = surface.separated || block.edges[e].interface >= 0;
             const int before = e > first ? e - 1 : last - 1;
             const int after = e + 1 < last ? e + 1 : first;
-            surfaces.edges.push_back(current_edge(e, before, corners[before], corners[e], corners[after]));
+            const int next = after + 1 < last ? after + 1 : first;
+            surfaces.edges.push_back(
+                current_edge(e, before, corners[before], corners[e], corners[after], corners[next]));
         }
     }
     surface.last = surfaces.edges.size();
@@ -267,16 +285,33 @@ private:
         overlapping_.emplace_back(edge_a.edge, edge_b.edge);
         const std::size_t first = points_.size();
         const OverlapRule rule = overlap_rule(points_between(side_a, reference(b, edge_b.edge)));
+        const auto [along_low, along_high] =
+            directions_at_ends(edge_a, edge_b, start_b, extent_a - (start_b + extent_b));
         for (std::size_t k = 0; k < rule.positions.size(); ++k) {
             const double tau = low + rule.positions[k] * overlap;
             ContactPoint point = point_between(a, edge_a, tau / extent_a, b, edge_b, 1.0 - (tau - start_b) / extent_b);
             point.weight = rule.weights[k] * overlap;
             point.along = rule.positions[k];
             point.key.point = static_cast<int>(k);
-            finish(point, along);
+            finish(point, (along_low + rule.positions[k] * (along_high - along_low)).normalized());
             points_.push_back(point);
         }
         set_pieces(rule, std::span(points_).subspan(first));
+    }
+
+    /// Along the faces that the corners at the two ends of an overlap touch: at its start the corner of b on the face of a where b begins
+    /// `later` along a (m), that of a on the face of b where it is less than zero; at its end the corner of b where a goes on `farther`. The vertex
+    /// of a notch touches nothing: there the face itself counts.
+    static std::pair<Vec2, Vec2> directions_at_ends(const CurrentEdge& edge_a, const CurrentEdge& edge_b, double later,
+                                                    double farther) {
+        const double rounding = corner_rounding * std::min(edge_a.length, edge_b.length);
+        const auto along = [&](double on_a, bool a_in_notch, bool b_in_notch) -> Vec2 {
+            double share_of_a = std::clamp(0.5 + 0.5 * on_a / rounding, 0.0, 1.0);
+            if (a_in_notch != b_in_notch) share_of_a = a_in_notch ? 1.0 : 0.0;
+            return (share_of_a * edge_a.direction - (1.0 - share_of_a) * edge_b.direction).normalized();
+        };
+        return {along(later, starts_in_notch(edge_a), ends_in_notch(edge_b)),
+                along(farther, ends_in_notch(edge_a), starts_in_notch(edge_b))};
     }
 
     /// The pieces of an overlap are as long as the weights of its points (15).
@@ -333,9 +368,11 @@ private:
 
     /// Whether a vertex that lies `depth` behind a face of the target has come in through another one, behind which it lies less
     /// deep: as a vertex of its own, or as the end of an edge that overlaps that face. A foot beside a corner is not pushed off by the side.
-    [[nodiscard]] bool has_come_in_elsewhere(const CurrentEdge& leaving, double depth,
+    [[nodiscard]] bool has_come_in_elsewhere(const CurrentEdge& leaving, const CurrentEdge& edge, double depth,
                                              std::span<const CurrentEdge> edges, bool swapped) const {
         return std::ranges::any_of(edges, [&](const CurrentEdge& face) {
+            if (are_notch(face, edge) || are_notch(edge, face))
+                return false; // both sides of a notch hold what lies in it
             const Vec2 outward = right_normal(face.direction);
             const Vec2 from_face = leaving.start - face.start;
             const double behind = -outward.dot(from_face);
@@ -344,6 +381,27 @@ private:
             return points_at(leaving, outward) || overlap_covers(leaving.edge, face.edge, swapped) ||
                    overlap_covers(leaving.arriving, face.edge, swapped);
         });
+    }
+
+    /// Whether x, behind the edge and before its start or behind its end, lies behind the face on the other side of a notch there too, and
+    /// no other face is nearer to x than the vertex of the notch: what is pressed into a notch may lie beyond the ends of both of its faces.
+    [[nodiscard]] bool is_in_notch(const Vec2& x, const CurrentEdge& edge, bool at_start,
+                                   std::span<const CurrentEdge> edges) const {
+        if (at_start ? !starts_in_notch(edge) : !ends_in_notch(edge)) return false;
+        const Vec2 from_vertex = x - (at_start ? edge.start : edge.end);
+        const double distance = from_vertex.norm();
+        const Vec2 other = at_start ? edge.start - edge.before : edge.beyond - edge.end;
+        if (distance > -deepest_ || right_normal(other.normalized()).dot(from_vertex) >= shallow_) return false;
+        return std::ranges::none_of(edges, [&](const CurrentEdge& face) {
+            if (face.edge == edge.edge || are_notch(face, edge) || are_notch(edge, face)) return false;
+            const double along = std::clamp(face.direction.dot(x - face.start), 0.0, face.length);
+            return (x - face.start - along * face.direction).norm() < distance;
+        });
+    }
+
+    /// Whether the second edge follows the first one around a notch.
+    [[nodiscard]] static bool are_notch(const CurrentEdge& first, const CurrentEdge& second) {
+        return second.arriving == first.edge && starts_in_notch(second);
     }
 
     /// Whether a vertex is a tip, and no edge of it goes farther into a face with this outward normal. The vertex of a notch touches nothing.
@@ -379,7 +437,7 @@ private:
         const double gap = outward.dot(from_edge);
         if (gap > reach_ || gap < deepest_) return;
         const double s = edge.direction.dot(from_edge) / edge.length;
-        if (s < 0.0 || s > 1.0) return;
+        if ((s < 0.0 || s > 1.0) && (gap >= shallow_ || !is_in_notch(leaving.start, edge, s < 0.0, edges))) return;
         if (!points_at(leaving, outward)) return;
         if (is_carried_around_corner(leaving, edge, edges, swapped)) return;
         const Edge& target_edge = reference(target, edge.edge);
@@ -389,7 +447,7 @@ private:
         if (overlap_covers(leaving.edge, edge.edge, swapped) || overlap_covers(leaving.arriving, edge.edge, swapped))
             return;
         if (gap < shallow_ && !is_inside(target, leaving.start)) return; // what takes longest comes last
-        if (gap < 0.0 && has_come_in_elsewhere(leaving, -gap, edges, swapped)) return;
+        if (gap < 0.0 && has_come_in_elsewhere(leaving, edge, -gap, edges, swapped)) return;
         ContactPoint point = point_between(owner, leaving, 0.0, target, edge, s);
         point.weight = vertex_weight * std::min(edge.length, system_.blocks[owner].size);
         finish(point, -edge.direction);

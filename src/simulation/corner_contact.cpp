@@ -22,12 +22,12 @@ namespace {
 constexpr double short_contact = 0.02; ///< of the spacing of a hexagon as large as the smaller block
 constexpr double large_share = 0.05;   ///< of what acts on a block (measured: below 0.01, or above 0.1)
 
-/// Two blocks and the direction in which they touch, which is one along an overlap.
+/// Two blocks and the edges with which they touch.
 struct Overlap {
     int block_a = 0;
     int block_b = 0;
-    double normal_x = 0.0;
-    double normal_y = 0.0;
+    int edge_a = 0;
+    int edge_b = 0;
     auto operator<=>(const Overlap&) const = default;
 };
 
@@ -46,7 +46,7 @@ Overlaps pressed_overlaps(const LoadedBody& body, const Eigen::VectorXd& q) {
     for (const ContactPoint& point : body.placement->contacts) {
         const PointTraction traction = contact_traction(*body.laws, point, q);
         if (traction.normal >= 0.0) continue;
-        Touching& touching = overlaps[{point.block_a, point.block_b, point.normal.x(), point.normal.y()}];
+        Touching& touching = overlaps[{point.block_a, point.block_b, point.key.edge_a, point.key.edge_b}];
         touching.length += point.weight;
         touching.pressing -= point.weight * traction.normal;
         touching.acting += point.weight * Vec2(traction.normal, traction.shear).norm();

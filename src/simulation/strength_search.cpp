@@ -117,11 +117,17 @@ Failure failure_by_corner(const StepBench& bench, const Step& step, const Eigen:
     return failure;
 }
 
+/// How far the loads have displaced blocks before strengths are reduced, as motions are measured; 0 if the body has jumped, for then it
+/// has moved as well.
+double displaced_by_loads(const Model& model, const State& start, const StepRecord& row) {
+    return row.jumps > 0 ? 0.0 : relative_motion(model.system, start.body.displacement);
+}
+
 /// Where a load step goes to, and how far a body that stands moves on the way (motion_scale).
 struct TrialGoal {
     double load_factor = 0.0;
     double farthest = jump_motion;
-    double displaced_by_loads = 0.0; ///< before strengths were reduced, as motions are measured
+    double displaced_by_loads = 0.0;
     StepKind kind;
 };
 
@@ -152,9 +158,9 @@ Trial try_factor(const StepBench& bench, const TrialGoal& goal, State& state, Ei
 /// one.
 class Doubts {
 public:
-    Doubts(const Model& model, const State& start)
+    Doubts(const Model& model, const State& start, double displaced_by_loads)
         : model_(model), start_(start.body.displacement), corners_(corner_contacts(model, start)),
-          far_(std::max(jump_motion, relative_motion(model.system, start_))) {}
+          far_(std::max(jump_motion, displaced_by_loads)) {}
 
     /// `row`: of the state.
     void look_at(const State& state, const StepRecord& row, double factor) {
@@ -222,8 +228,8 @@ StageEnd find_strength_limit(const StepBench& bench, State& state) {
     const StrengthReduction& reduction = *bench.stage(state).strength_reduction;
     const int n_steps = bench.stage(state).steps;
     StageEnd end;
-    const double displaced_by_loads = relative_motion(bench.model.system, state.body.displacement);
-    Doubts doubts(bench.model, state);
+    const double displaced = displaced_by_loads(bench.model, state, bench.journal.last_row());
+    Doubts doubts(bench.model, state, displaced);
     doubts.look_at(state, bench.journal.last_row(), reduction.factor_at(state.at.load_factor));
     std::vector<StepRecord> before; // equilibria that are not told yet
     if (state.at.load_factor == 0.0) end.failure = find_initial_equilibrium(bench, state, before);
@@ -246,7 +252,7 @@ StageEnd find_strength_limit(const StepBench& bench, State& state) {
         const bool last = at == next && state.at.step_in_stage + 1 == n_steps;
         const TrialGoal goal{.load_factor = at,
                              .farthest = is_enclosed ? share_of_jump * jump_motion : jump_motion,
-                             .displaced_by_loads = displaced_by_loads,
+                             .displaced_by_loads = displaced,
                              .kind = {.regular = at == next, .last_of_stage = last}};
         const Trial trial = try_factor(bench, goal, state, end.forces, before);
         if (!trial.failure) {

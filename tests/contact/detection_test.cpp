@@ -196,7 +196,7 @@ TEST(ContactDetection, BlockThatSlidesPastAJointOfTheFloorRestsOnAllOfIt) {
 }
 
 // A floor that rises by 10 degrees beyond its joint: the block that slides 0.1 m past it meets the rise. Along the
-// bisector the overlap there is 0.1 cos(5) long and, at the block's corner, 2 * 0.1 sin(5) deep.
+// bisector the overlap there is 0.1 cos(5) long, and the block's corner lies 0.1 sin(10) behind the rise.
 TEST(ContactDetection, BlockThatSlidesAgainstARisingFloorMeetsIt) {
     const double rise = std::tan(10 * std::numbers::pi / 180);
     CutRectangle body(2.0, 2.0, {{{-1, 1}, {1, 1}, {3, 1 + 2 * rise}}, {{1, 1}, {1, 3}}});
@@ -209,7 +209,7 @@ TEST(ContactDetection, BlockThatSlidesAgainstARisingFloorMeetsIt) {
         length += point.weight;
     }
     const double half = 5 * std::numbers::pi / 180;
-    EXPECT_NEAR(deepest, -0.2 * std::sin(half), 1e-12);
+    EXPECT_NEAR(deepest, -0.1 * std::sin(2 * half), 1e-12);
     EXPECT_NEAR(length, 0.9 + 0.1 * std::cos(half), 1e-12);
 }
 

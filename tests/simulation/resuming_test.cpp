@@ -91,10 +91,11 @@ RunReport expect_same_end(const SceneRun& run) {
     const SceneRun again = resumed(run, run.state);
     EXPECT_EQ(again.report.status, run.report.status);
     EXPECT_EQ(again.report.results.factor_of_safety, run.report.results.factor_of_safety);
-    EXPECT_EQ(again.report.falling.size(), run.report.falling.size());
+    EXPECT_EQ(again.report.falling.size(),
+              run.report.falling.size()); // that were followed as far as it took to see that they fall
     for (std::size_t i = 0; i < std::min(again.report.falling.size(), run.report.falling.size()); ++i) {
         EXPECT_EQ(again.report.falling[i].block, run.report.falling[i].block);
-        EXPECT_LT((again.report.falling[i].direction - run.report.falling[i].direction).norm(), 1e-6);
+        EXPECT_LT((again.report.falling[i].direction - run.report.falling[i].direction).norm(), 1e-5);
         EXPECT_EQ(again.report.falling[i].turn, run.report.falling[i].turn);
     }
     EXPECT_TRUE(again.history.empty());

@@ -1,0 +1,147 @@
+// Given blocks that do not lie on each other flush: corners touch faces along the face, and a tip in a notch is held by both of its sides.
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "kluft/blocks/block_search.hpp"
+
+#include "support/scene_run.hpp"
+#include "support/units.hpp"
+
+namespace kluft {
+namespace {
+
+/// Blocks under gravity that is turned by `dip` (degrees); `stages` after the weight.
+std::string blocks_on_a_slope(double dip, double friction_angle, const std::string& blocks, const std::string& stages) {
+    const double angle = dip * std::numbers::pi / 180.0;
+    return fmt::format(R"(kluft: 1
+analysis: {{gravity: [{:.15g}, {:.15g}]}}
+materials: {{rock: {{density: 2600, youngs_modulus: 20 GPa, poissons_ratio: 0.25}}}}
+interfaces:
+  joint: {{kind: fracture, normal_stiffness: 10 GPa/m, shear_stiffness: 5 GPa/m, friction_angle: {}}}
+geometry:
+  blocks:
+{}
+stages: [{}]
+)",
+                       10.0 * std::sin(angle), -10.0 * std::cos(angle), friction_angle, blocks, stages);
+}
+
+const std::string floor_of_rock =
+    "    - {name: floor, polygon: [[-6, -2], [9, -2], [9, 0], [-6, 0]], support: fixed}\n";
+
+double factor_of_safety(double dip, double friction_angle, const std::string& blocks) {
+    const SceneRun run = run_scene(blocks_on_a_slope(
+        dip, friction_angle, blocks, "{name: weight}, {strength_reduction: {from: 1, to: 8}, steps: 20}"));
+    EXPECT_TRUE(run.report.results.factor_of_safety) << run.report.diagnosis;
+    return run.report.results.factor_of_safety.value_or(0.0);
+}
+
+/// A table on two feet whose tips have this angle (degrees), a tenth of a millimetre above the floor.
+std::string table_on_tips(double tip) {
+    const double h = 1e-4 + 0.25 / std::tan(0.5 * tip * std::numbers::pi / 180.0);
+    return fmt::format("    - {{name: table, polygon: [[0, {0:.12g}], [0.25, 1e-4], [0.5, {0:.12g}], [3.5, {0:.12g}], "
+                       "[3.75, 1e-4], [4, "
+                       "{0:.12g}], [4, {1:.12g}], [0, {1:.12g}]]}}\n",
+                       h, h + 0.5);
+}
+
+/// A flat block whose lower corners are cut off at an angle (degrees), at a height above the floor.
+std::string chamfered_block(double chamfer, double height) {
+    const double top = height + 0.3 * std::tan(chamfer * std::numbers::pi / 180.0);
+    return fmt::format("    - {{name: block, polygon: [[0, {0:.12g}], [2, {0:.12g}], [2.3, {1:.12g}], [2.3, 1], [-0.3, "
+                       "1], [-0.3, {1:.12g}]]}}\n",
+                       height, top);
+}
+
+// tan(phi)/tan(dip), whatever the shape of what stands on the floor: along the bisectors of its edges and the floor's it was up to
+// above 8.
+TEST(CornersOnFaces, SlideAlongTheFace) {
+    const double expected = std::tan(30 * degree) / std::tan(20 * degree);
+    for (const double tip : {160.0, 120.0, 100.0, 80.0})
+        EXPECT_NEAR(factor_of_safety(20, 30, floor_of_rock + table_on_tips(tip)), expected, 2e-3 * expected) << tip;
+    for (const auto& [chamfer, height] : {std::pair{20.0, 2e-8}, {20.0, 1e-4}, {10.0, 1e-4}, {30.0, 1e-4}, {3.0, 1e-4}})
+        EXPECT_NEAR(factor_of_safety(20, 30, floor_of_rock + chamfered_block(chamfer, height)), expected,
+                    2e-3 * expected)
+            << chamfer << " " << height;
+}
+
+TEST(CornersOnFaces, PolygonsSlideOnTheirSides) {
+    const double expected = std::tan(30 * degree) / std::tan(9 * degree);
+    for (const int sides : {6, 8, 12}) {
+        std::string corners;
+        const double radius = 1.0 / std::cos(std::numbers::pi / sides);
+        for (int i = 0; i < sides; ++i) {
+            const double at = -0.5 * std::numbers::pi + (2 * i + 1) * std::numbers::pi / sides;
+            corners += fmt::format("{}[{:.12g}, {:.12g}]", i == 0 ? "" : ", ", radius * std::cos(at),
+                                   1.001 + radius * std::sin(at));
+        }
+        EXPECT_NEAR(factor_of_safety(9, 30, floor_of_rock + "    - {name: block, polygon: [" + corners + "]}\n"),
+                    expected, 2e-3 * expected)
+            << sides;
+    }
+}
+
+// A slab leans on a wall: friction m at both ends, its weight in the middle; it slides where tan(angle) = (1 - m^2)/(2 m) for a thin
+// one. This one is 0.2 m thick and 4 m long: forces and moments of its own corners.
+TEST(CornersOnFaces, SlabLeansOnAWall) {
+    for (const double angle : {60.0, 70.0}) {
+        const double c = std::cos(angle * degree), s = std::sin(angle * degree);
+        // Foot at (4 c, 0), the back's upper corner at (0, 4 s); the middle is off the line of these by half of the thickness.
+        const double foot = 4.0 * c, top = 4.0 * s, middle = 2.0 * c + 0.1 * s;
+        // N_w = T_f = m N_f, T_w = m N_w, N_f + T_w = W; moments about the foot: W (foot - middle) = N_w top + T_w foot.
+        const auto unbalanced = [&](double m) { return (foot - middle) * (1.0 + m * m) - m * (top + m * foot); };
+        double low = 0.0, high = 1.0;
+        for (int i = 0; i < 60; ++i) (unbalanced(0.5 * (low + high)) > 0.0 ? low : high) = 0.5 * (low + high);
+        const double expected = std::tan(30 * degree) / low;
+        const std::string blocks =
+            "    - {name: base, polygon: [[-1, -1], [6, -1], [6, 0], [0, 0], [0, 6], [-1, 6]], support: fixed}\n" +
+            fmt::format("    - {{name: slab, polygon: [[{:.12g}, {:.12g}], [{:.12g}, {:.12g}], [1e-6, {:.12g}], "
+                        "[{:.12g}, 1e-6]]}}\n",
+                        foot + 0.2 * s, 0.2 * c, 0.2 * s, top + 0.2 * c, top, foot);
+        EXPECT_NEAR(factor_of_safety(0, 30, blocks), expected, 5e-3 * expected) << angle;
+    }
+}
+
+/// How far the block with this name has moved (m).
+double motion_of(const SceneRun& run, const std::string& name) {
+    const BlockSystem& system = run.model.system;
+    for (int b = 0; b < system.n_blocks(); ++b)
+        if (block_label(system, b) == "'" + name + "'")
+            return run.state.body.displacement.segment<2>(n_block_unknowns * b).norm();
+    ADD_FAILURE() << name;
+    return 0.0;
+}
+
+// Two tips in valleys: below the vertex of a valley lies a place that is beyond the ends of both of its sides, into which a foot sank by half a
+// metre, in balance.
+TEST(TipsInNotches, AreHeldByBothSides) {
+    const std::string valleys = "    - {name: base, polygon: [[-1, -2], [5, -2], [5, 0], [4, 0], [3.25, -0.132245], "
+                                "[2.5, 0], [1, 0], [0.25, -0.132245], "
+                                "[-0.5, 0], [-1, 0]], support: fixed}\n"
+                                "    - {name: table, polygon: [[0, 0.554724], [0.25, -0.132145], [0.5, 0.554724], [3, "
+                                "0.554724], [3.25, -0.132145], [3.5, "
+                                "0.554724], [3.5, 1.054724], [0, 1.054724]]}\n";
+    for (const int steps : {1, 2, 5, 20}) {
+        const SceneRun run = run_scene(blocks_on_a_slope(0, 30, valleys, fmt::format("{{steps: {}}}", steps)));
+        EXPECT_TRUE(stands(run)) << run.report.diagnosis;
+        EXPECT_LT(motion_of(run, "table"), 2e-4) << steps; // what it stood above the valleys, and the joints' closure
+    }
+}
+
+// An acute front against a riser that stands on the floor, a few micrometres below its foot once it is pressed there.
+TEST(TipsInNotches, DoNotSlideThroughARiser) {
+    const std::string blocks =
+        "    - {name: base, polygon: [[-4, -3], [12, -3], [12, 1], [2.001, 1], [2.001, 0], [-4, 0]], support: fixed}\n"
+        "    - {name: slider, polygon: [[0, 0], [2, 0], [0.614359, 0.8], [0, 0.8]]}\n";
+    const SceneRun run = run_scene(blocks_on_a_slope(40, 20, blocks, "{steps: 5}"));
+    EXPECT_TRUE(stands(run)) << run.report.diagnosis;
+    EXPECT_NEAR(motion_of(run, "slider"), 1e-3, 1e-4);
+}
+
+} // namespace
+} // namespace kluft
