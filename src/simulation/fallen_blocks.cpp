@@ -19,16 +19,22 @@ namespace {
 constexpr double large_turn = 5.0 / degrees;
 constexpr double large_motion = 0.25; ///< of the smaller block's motion_scale
 
-/// How two neighbours of the body as cut lie otherwise beside each other than before.
+/// How a block lies otherwise than before beside a neighbour of the body as cut, or in space if it has none.
 struct Parting {
+    int block = -1;
+    int beside = -1;     ///< -1: nothing
     double turn = 0.0;   ///< rad
-    double motion = 0.0; ///< of the middle of what they had in common (m)
+    double motion = 0.0; ///< of the middle of what the two had in common, or of the block's (m)
     double share = 0.0;  ///< the larger of both, over what is large
 };
 
 double turn_of(const BlockSystem& system, const Eigen::VectorXd& before, const Eigen::VectorXd& now, int b) {
     const double size = system.blocks[b].size;
     return rotation_of(now, b, size) - rotation_of(before, b, size);
+}
+
+double share_of(double turn, double motion, double scale) {
+    return std::max(turn / large_turn, motion / (large_motion * scale));
 }
 
 Parting parting(const BlockSystem& system, const Eigen::VectorXd& before, const Eigen::VectorXd& now,
@@ -41,13 +47,28 @@ Parting parting(const BlockSystem& system, const Eigen::VectorXd& before, const 
         const Vec2 xi = block_coordinates(system.blocks[block], middle);
         return Vec2(displacement_at(now, block, xi) - displacement_at(before, block, xi));
     };
-    Parting found;
+    const auto way = [&](int block) { return (now - before).segment<2>(n_block_unknowns * block).norm(); };
+    const bool a_moved = way(a) > way(b);
+    Parting found{.block = a_moved ? a : b, .beside = a_moved ? b : a};
     found.turn = std::abs(
         std::remainder(turn_of(system, before, now, b) - turn_of(system, before, now, a), 2.0 * std::numbers::pi));
     found.motion = (moved(b) - moved(a)).norm();
     const double scale = std::min(motion_scale(system, system.blocks[a]), motion_scale(system, system.blocks[b]));
-    found.share = std::max(found.turn / large_turn, found.motion / (large_motion * scale));
+    found.share = share_of(found.turn, found.motion, scale);
     return found;
+}
+
+/// Of a block that is no neighbour of any.
+Parting parting(const BlockSystem& system, const Eigen::VectorXd& before, const Eigen::VectorXd& now, int block) {
+    Parting found{.block = block};
+    found.turn = std::abs(std::remainder(turn_of(system, before, now, block), 2.0 * std::numbers::pi));
+    found.motion = (now - before).segment<2>(n_block_unknowns * block).norm();
+    found.share = share_of(found.turn, found.motion, motion_scale(system, system.blocks[block]));
+    return found;
+}
+
+bool lies_alone(const Block& block) {
+    return !block.fixed && std::ranges::all_of(block.edges, [](const Edge& edge) { return edge.interface < 0; });
 }
 
 } // namespace
@@ -56,25 +77,18 @@ std::string description_of_fall(const Model& model, const Eigen::VectorXd& befor
     if (state.jumps == 0) return {};
     const BlockSystem& system = model.system;
     const Eigen::VectorXd& now = state.body.displacement;
-    const Interface* farthest = nullptr;
     Parting most{.share = 1.0};
-    for (const Interface& interface : system.interfaces) {
-        const Parting each = parting(system, before, now, interface);
-        if (each.share <= most.share) continue;
-        most = each;
-        farthest = &interface;
-    }
-    if (farthest == nullptr) return {};
-    const auto way = [&](int b) {
-        const int first = n_block_unknowns * b;
-        return (now.segment<2>(first) - before.segment<2>(first)).norm();
+    const auto look_at = [&](const Parting& each) {
+        if (each.share > most.share) most = each;
     };
-    const bool a_moved = way(farthest->block_a) > way(farthest->block_b);
-    const int moved = a_moved ? farthest->block_a : farthest->block_b;
-    const int beside = a_moved ? farthest->block_b : farthest->block_a;
-    return fmt::format("block {} at {} has turned by {:.3g} degrees and moved by {:.3g} m beside block {}",
-                       block_label(system, moved), place_text(system.origin + system.blocks[moved].centroid),
-                       most.turn * degrees, most.motion, block_label(system, beside));
+    for (const Interface& interface : system.interfaces) look_at(parting(system, before, now, interface));
+    for (int b = 0; b < system.n_blocks(); ++b)
+        if (lies_alone(system.blocks[b])) look_at(parting(system, before, now, b));
+    if (most.block < 0) return {};
+    const std::string beside = most.beside < 0 ? "" : " beside block " + block_label(system, most.beside);
+    return fmt::format("block {} at {} has turned by {:.3g} degrees and moved by {:.3g} m{}",
+                       block_label(system, most.block), place_text(system.origin + system.blocks[most.block].centroid),
+                       most.turn * degrees, most.motion, beside);
 }
 
 } // namespace kluft

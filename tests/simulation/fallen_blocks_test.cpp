@@ -43,6 +43,16 @@ TEST(FallenBlocks, BodyThatHasFallenBeforeHasNoFactorOfSafety) {
     EXPECT_THAT(run.report.diagnosis, AllOf(HasSubstr("has given way under its loads"), HasSubstr("'slab'")));
 }
 
+// The same without a neighbour: it lies a tenth of a millimetre above the pedestal.
+TEST(FallenBlocks, BlockThatLiesOnNothingAsCutHasFallenToo) {
+    const SceneRun run =
+        run_scene(overhanging_slab,
+                  {"geometry.blocks.2.polygon=[[0.26, 0.5001], [1.76, 0.5001], [1.76, 1.0001], [0.26, 1.0001]]"});
+    EXPECT_EQ(run.report.status, RunStatus::no_equilibrium);
+    EXPECT_FALSE(run.report.results.factor_of_safety);
+    EXPECT_THAT(run.report.diagnosis, AllOf(HasSubstr("has given way under its loads"), HasSubstr("'slab'")));
+}
+
 // Held by friction alone it stands up to any factor, since nothing pushes it sideways.
 TEST(FallenBlocks, BodyThatStandsHasAFactorOfSafety) {
     const SceneRun run = run_scene(overhanging_slab, on_its_middle);
