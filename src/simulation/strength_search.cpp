@@ -96,10 +96,10 @@ Failure failure_by_motion(const StepBench& bench, const Step& step, const Eigen:
             .moving = moved_blocks(bench.model.system, step.end.body.displacement - before, farthest)};
 }
 
-/// A corner that holds a block after a load step and did not before it; nothing if there is none.
-std::optional<CornerContact> caught_corner(const Model& model, const State& before, const State& after) {
-    const auto earlier = corner_contacts(model, before);
-    for (const CornerContact& corner : corner_contacts(model, after)) {
+/// A corner that holds a block and is none of the earlier ones; nothing if there is none.
+std::optional<CornerContact> caught_corner(const Model& model, const std::vector<CornerContact>& earlier,
+                                           const State& now) {
+    for (const CornerContact& corner : corner_contacts(model, now)) {
         const auto same = [&](const CornerContact& each) {
             return each.block_a == corner.block_a && each.block_b == corner.block_b;
         };
@@ -117,10 +117,10 @@ Failure failure_by_corner(const StepBench& bench, const Step& step, const Eigen:
     return failure;
 }
 
-/// How far the loads have displaced blocks before strengths are reduced, as motions are measured; 0 if the body has jumped, for then it
-/// has moved as well.
+/// How far the loads have displaced blocks before strengths are reduced, as motions are measured. Of a body that has jumped, and so has
+/// moved as well, what counts as near by.
 double displaced_by_loads(const Model& model, const State& start, const StepRecord& row) {
-    return row.jumps > 0 ? 0.0 : relative_motion(model.system, start.body.displacement);
+    return row.jumps > 0 ? share_of_jump * jump_motion : relative_motion(model.system, start.body.displacement);
 }
 
 /// Where a load step goes to, and how far a body that stands moves on the way (motion_scale).
@@ -145,7 +145,7 @@ Trial try_factor(const StepBench& bench, const TrialGoal& goal, State& state, Ei
     const double moved = relative_motion(bench.model.system, step.end.body.displacement - start);
     if (moved > goal.farthest) return {failure_by_motion(bench, step, start, goal.farthest), true};
     if (moved > goal.displaced_by_loads)
-        if (const auto corner = caught_corner(bench.model, state, step.end))
+        if (const auto corner = caught_corner(bench.model, corner_contacts(bench.model, state), step.end))
             return {failure_by_corner(bench, step, start, *corner), true};
     forces = std::move(step.forces);
     step.equilibria.insert(step.equilibria.begin(), before.begin(), before.end());
@@ -189,13 +189,8 @@ private:
 
     /// Blocks that have slid a little catch with their corners, and may stand by these alone.
     [[nodiscard]] std::string of_corners(const State& state) const {
-        for (const CornerContact& corner : corner_contacts(model_, state)) {
-            const auto same = [&](const CornerContact& each) {
-                return each.block_a == corner.block_a && each.block_b == corner.block_b;
-            };
-            if (std::ranges::none_of(corners_, same)) return description(model_, corner);
-        }
-        return {};
+        const auto corner = caught_corner(model_, corners_, state);
+        return corner ? description(model_, *corner) : "";
     }
 
     /// More than (32b) in all, and more than the loads have displaced them.
