@@ -55,7 +55,7 @@ kluft::ExitCode run(const std::vector<std::string>& words) {
     const fs::path directory = fs::absolute(words[3]).lexically_normal();
     const kluft::Calibration calibration = kluft::read_calibration(words[2]);
     const kluft::DirectoryLock lock(directory, "kluft calibrate " + words[2]);
-    kluft::require_no_other_results(calibration, directory);
+    kluft::require_no_other_calibration(calibration, directory);
     kluft::listen_for_stop();
     kluft::CalibrationOptions options;
     options.place = {directory, words[1], static_cast<int>(*jobs), {}};

@@ -225,10 +225,4 @@ Eigen::VectorXd upper_bounds(const Calibration& calibration) {
     return logarithms(calibration, &CalibrationParameter::to);
 }
 
-std::vector<std::string> assignments(const std::vector<StudySetting>& settings) {
-    std::vector<std::string> all;
-    for (const StudySetting& setting : settings) all.push_back(setting.assignment());
-    return all;
-}
-
 } // namespace kluft

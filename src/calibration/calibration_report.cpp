@@ -346,7 +346,7 @@ std::string calibration_text(const Calibration& calibration, const CalibrationRe
     return text + costs_text(result) + "\n";
 }
 
-void require_no_other_results(const Calibration& calibration, const fs::path& directory) {
+void require_no_other_calibration(const Calibration& calibration, const fs::path& directory) {
     require_no_run_in(directory);
     const fs::path earlier = directory / "calibration.json";
     const fs::path scene = directory / "calibrated.yaml";

@@ -477,12 +477,6 @@ private:
 
 // ---- the cases against the scene -----------------------------------------------------------------------------------
 
-std::vector<std::string> assignments(const PlannedCase& one) {
-    std::vector<std::string> words;
-    for (const auto& setting : one.set) words.push_back(setting.assignment());
-    return words;
-}
-
 /// Names of files in the merged text of a scene: its geometry.
 void collect_files(const SceneNode& node, std::set<std::string>& files) {
     for (std::size_t i = 0; i < node.items.size(); ++i) {
@@ -544,11 +538,9 @@ std::string setting_at(const SceneNode& tree, std::string_view path) {
 }
 
 std::vector<std::string> own_settings(const Study& study) {
-    std::vector<std::string> set;
-    for (const auto& setting : study.set) set.push_back(setting.assignment());
     std::vector<std::string> own;
     try {
-        const SceneNode tree = tree_of(read_scene(study.scene, set));
+        const SceneNode tree = tree_of(read_scene(study.scene, assignments(study.set)));
         for (const auto& parameter : study.parameters) own.push_back(setting_at(tree, parameter.key));
     } catch (const InputError&) {
         return {}; // the cases may be sound all the same
@@ -587,7 +579,7 @@ public:
     void complete(PlannedCase& one) {
         if (study_.replicas.count > 0 && !add_replica(one)) return;
         try {
-            const Scene scene = read_scene_text(text_, assignments(one), study_.scene);
+            const Scene scene = read_scene_text(text_, assignments(one.set), study_.scene);
             one.digest = digest_of(scene);
             one.resumable = scene.integrator == Integrator::implicit;
             one.steps = 0;
@@ -611,7 +603,7 @@ public:
 
 private:
     bool agrees_with_schema(const PlannedCase& one) {
-        const auto messages = schema_messages(text_, study_.scene, assignments(one));
+        const auto messages = schema_messages(text_, study_.scene, assignments(one.set));
         for (const auto& message : messages) say(one, message);
         return messages.empty();
     }
@@ -632,7 +624,7 @@ private:
     bool add_replica(PlannedCase& one) {
         ReplicaNet net;
         try {
-            net = net_of(read_scene_text(text_, assignments(one), study_.scene));
+            net = net_of(read_scene_text(text_, assignments(one.set), study_.scene));
         } catch (const InputError&) {
             return true; // judged when it is read as a whole
         }
@@ -745,6 +737,12 @@ std::string bytes_of_scene(const Study& study, const SceneNode& named, SceneErro
 }
 
 } // namespace
+
+std::vector<std::string> assignments(const std::vector<StudySetting>& settings) {
+    std::vector<std::string> all;
+    for (const StudySetting& setting : settings) all.push_back(setting.assignment());
+    return all;
+}
 
 bool sets_key(const StudySetting& setting, std::string_view key) {
     if (setting.key == key) return true;

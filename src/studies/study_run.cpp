@@ -89,10 +89,8 @@ private:
 
     /// Whether the scene, which the process of a case has read by itself, is no longer what the case was planned with.
     [[nodiscard]] bool has_changed(const PlannedCase& one) const {
-        std::vector<std::string> overrides;
-        for (const auto& setting : one.set) overrides.push_back(setting.assignment());
         try {
-            return scene_digest(read_.study.scene, overrides) != one.digest;
+            return scene_digest(read_.study.scene, assignments(one.set)) != one.digest;
         } catch (const InputError&) {
             return true;
         }

@@ -98,7 +98,4 @@ struct Calibration {
 [[nodiscard]] Eigen::VectorXd lower_bounds(const Calibration& calibration);
 [[nodiscard]] Eigen::VectorXd upper_bounds(const Calibration& calibration);
 
-/// "key=value" of each setting, as read_scene takes overrides.
-[[nodiscard]] std::vector<std::string> assignments(const std::vector<StudySetting>& settings);
-
 } // namespace kluft

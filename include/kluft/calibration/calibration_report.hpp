@@ -22,7 +22,7 @@ namespace kluft {
 
 /// Throws InputError where the directory is that of a run or of a calibration of another scene, or has a calibrated.yaml that no
 /// calibration wrote: what write_calibration would take the place of.
-void require_no_other_results(const Calibration& calibration, const std::filesystem::path& directory);
+void require_no_other_calibration(const Calibration& calibration, const std::filesystem::path& directory);
 
 /// Writes calibrated.yaml, calibration.json, report.html and its pictures into the directory. Throws ResourceError.
 void write_calibration(const Calibration& calibration, const CalibrationResult& result,

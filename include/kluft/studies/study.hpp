@@ -24,6 +24,9 @@ struct StudySetting {
     [[nodiscard]] std::string assignment() const { return key + "=" + value; }
 };
 
+/// As the option --set takes them, in their order.
+[[nodiscard]] std::vector<std::string> assignments(const std::vector<StudySetting>& settings);
+
 /// Whether the setting gives the key a value, by itself or within a mapping or list: stages.1={steps: 3} sets stages.1.steps.
 [[nodiscard]] bool sets_key(const StudySetting& setting, std::string_view key);
 
