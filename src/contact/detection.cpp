@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <span>
 #include <utility>
 
@@ -23,8 +24,10 @@ constexpr double doubtful_penetration = 0.01;
 /// Deeper than this part of it, other faces are in contact only if what lies between them is inside both blocks, and a vertex and a face
 /// only if the vertex is inside the block; less is round-off.
 constexpr double least_penetration = 1e-9;
-/// Sides of a block that turn by less (rad) are one; more is not round-off.
+/// Sides of a block that turn by less (rad) are one, and corners whose angles differ by less are alike; more is not round-off.
 constexpr double straight = 1e-4;
+/// Faces of two blocks that meet in a vertex go on in one another if they turn by less (rad), as motions of blocks turn them.
+constexpr double flush = 0.02;
 /// A corner is round over this part of the shorter edge: where two corners meet, the direction in which they touch is between the faces'.
 constexpr double corner_rounding = 1e-3;
 /// Two points of a fracture that were nearer than this part of its edge were one point; what is between is round-off.
@@ -79,15 +82,15 @@ CurrentEdge current_edge(int edge, int arriving, const Vec2& before, const Vec2&
     return current;
 }
 
+/// Angle inside a block between the edge that arrives at a vertex and the one that leaves it (rad).
+double angle_between(const Vec2& arriving, const Vec2& leaving) {
+    return std::numbers::pi - std::atan2(cross(arriving, leaving), arriving.dot(leaving));
+}
+double angle_at_start(const CurrentEdge& edge) { return angle_between(edge.start - edge.before, edge.direction); }
+double angle_at_end(const CurrentEdge& edge) { return angle_between(edge.direction, edge.beyond - edge.end); }
+
 /// Whether the block has a notch there, and not a corner or a vertex on a straight side.
-bool starts_in_notch(const CurrentEdge& edge) {
-    const Vec2 arriving = edge.start - edge.before;
-    return cross(arriving, edge.direction) < -straight * arriving.norm();
-}
-bool ends_in_notch(const CurrentEdge& edge) {
-    const Vec2 leaving = edge.beyond - edge.end;
-    return cross(edge.direction, leaving) < -straight * leaving.norm();
-}
+bool is_notch(double angle) { return angle > std::numbers::pi + straight; }
 
 void append_surface(const BlockSystem& system, const ContactSurfaces& contact_surfaces, const Eigen::VectorXd& q, int b,
                     Surfaces& surfaces) {
@@ -197,12 +200,20 @@ private:
         });
     }
 
-    /// Edges of the same interface may touch. Of others, those that leave a common vertex to the same side have a block
-    /// between them; to opposite sides of it, one block slides past the vertex onto the edge of the other.
+    /// Whether two edges have the air before them: what lies between them, if they share a vertex, is a void and no block.
+    [[nodiscard]] static bool are_outlines(const Edge& a, const Edge& b) { return a.interface < 0 && b.interface < 0; }
+
+    /// Edges of the same interface may touch. Of others, those that leave a common vertex to the same side have a block between them, and do
+    /// not, unless both are outlines; to opposite sides of it, one block slides past the vertex onto the edge of the other.
     [[nodiscard]] bool may_touch(const Edge& a, const Edge& b) const {
         if (a.interface >= 0 && a.interface == b.interface) return true;
         if (bonded_pair_) return false;
-        return a.start != b.end && a.end != b.start;
+        return are_outlines(a, b) || !leave_common_vertex(a, b);
+    }
+
+    /// Whether two edges leave a vertex that they have in common to the same side.
+    [[nodiscard]] static bool leave_common_vertex(const Edge& a, const Edge& b) {
+        return a.start == b.end || a.end == b.start;
     }
 
     [[nodiscard]] int law_between(const Edge& a, const Edge& b) const {
@@ -271,6 +282,8 @@ private:
         const Edge& side_a = reference(a, edge_a.edge);
         const bool own = side_a.interface >= 0 && side_a.interface == reference(b, edge_b.edge).interface;
         if (std::min(gap_low, gap_high) > reach_) return;
+        if (!own && leave_common_vertex(side_a, reference(b, edge_b.edge)) && 0.5 * (gap_low + gap_high) > reach_)
+            return; // a wide void, at whose tip a corner touches and not a face
         if (std::min(gap_low, gap_high) < (own ? deepest_own_ : deepest_)) return;
         if (!own && -std::min(gap_low, gap_high) > overlap)
             return; // a corner that has sunk into a face beside this one
@@ -286,7 +299,7 @@ private:
         const std::size_t first = points_.size();
         const OverlapRule rule = overlap_rule(points_between(side_a, reference(b, edge_b.edge)));
         const auto [along_low, along_high] =
-            directions_at_ends(edge_a, edge_b, start_b, extent_a - (start_b + extent_b));
+            directions_at_ends(a, edge_a, b, edge_b, start_b, extent_a - (start_b + extent_b));
         for (std::size_t k = 0; k < rule.positions.size(); ++k) {
             const double tau = low + rule.positions[k] * overlap;
             ContactPoint point = point_between(a, edge_a, tau / extent_a, b, edge_b, 1.0 - (tau - start_b) / extent_b);
@@ -301,17 +314,22 @@ private:
 
     /// Along the faces that the corners at the two ends of an overlap touch: at its start the corner of b on the face of a where b begins
     /// `later` along a (m), that of a on the face of b where it is less than zero; at its end the corner of b where a goes on `farther`. The vertex
-    /// of a notch touches nothing: there the face itself counts.
-    static std::pair<Vec2, Vec2> directions_at_ends(const CurrentEdge& edge_a, const CurrentEdge& edge_b, double later,
-                                                    double farther) {
+    /// of a notch touches nothing: there the face itself counts. Of two corners that were one point beside a void the sharper one touches the face of the blunter one.
+    [[nodiscard]] std::pair<Vec2, Vec2> directions_at_ends(int a, const CurrentEdge& edge_a, int b,
+                                                           const CurrentEdge& edge_b, double later,
+                                                           double farther) const {
         const double rounding = corner_rounding * std::min(edge_a.length, edge_b.length);
-        const auto along = [&](double on_a, bool a_in_notch, bool b_in_notch) -> Vec2 {
+        const Edge& side_a = reference(a, edge_a.edge);
+        const Edge& side_b = reference(b, edge_b.edge);
+        const bool beside_void = are_outlines(side_a, side_b);
+        const auto along = [&](double on_a, bool is_common, double angle_a, double angle_b) -> Vec2 {
             double share_of_a = std::clamp(0.5 + 0.5 * on_a / rounding, 0.0, 1.0);
-            if (a_in_notch != b_in_notch) share_of_a = a_in_notch ? 1.0 : 0.0;
+            const bool is_blunter = is_common && beside_void && std::abs(angle_a - angle_b) > straight;
+            if (is_blunter || is_notch(angle_a) != is_notch(angle_b)) share_of_a = angle_a > angle_b ? 1.0 : 0.0;
             return (share_of_a * edge_a.direction - (1.0 - share_of_a) * edge_b.direction).normalized();
         };
-        return {along(later, starts_in_notch(edge_a), ends_in_notch(edge_b)),
-                along(farther, ends_in_notch(edge_a), starts_in_notch(edge_b))};
+        return {along(later, side_a.start == side_b.end, angle_at_start(edge_a), angle_at_end(edge_b)),
+                along(farther, side_a.end == side_b.start, angle_at_end(edge_a), angle_at_start(edge_b))};
     }
 
     /// The pieces of an overlap are as long as the weights of its points (15).
@@ -352,34 +370,25 @@ private:
         return std::ranges::find(overlapping_, pair) != overlapping_.end();
     }
 
-    /// Whether a vertex is carried by a face next to the given edge around a convex corner of the target: an edge of the vertex
-    /// overlaps that face. Against the edge it would catch where blocks side by side have sunk by different amounts.
-    [[nodiscard]] bool is_carried_around_corner(const CurrentEdge& leaving, const CurrentEdge& edge,
-                                                std::span<const CurrentEdge> edges, bool swapped) const {
-        const auto is_next = [&](const CurrentEdge& first, const CurrentEdge& second) {
-            return second.arriving == first.edge && cross(first.direction, second.direction) > 0.0;
-        };
+    /// Whether another face of the target than the given one holds the vertex, which lies `gap` before this one. A face next to it around a
+    /// convex corner does if an edge of the vertex overlaps that face: against the other one the vertex would catch where blocks side by
+    /// side have sunk by different amounts. Of two that the vertex lies behind that one does by which it has come in, the one
+    /// behind which it lies less deep, as a vertex of its own or as the end of an edge that overlaps that face: a foot beside a
+    /// corner is not pushed off by the side. Both sides of a notch hold what lies in it.
+    [[nodiscard]] bool is_held_by_another_face(const CurrentEdge& leaving, const CurrentEdge& edge, double gap,
+                                               std::span<const CurrentEdge> edges, bool swapped) const {
         return std::ranges::any_of(edges, [&](const CurrentEdge& face) {
-            if (!is_next(face, edge) && !is_next(edge, face)) return false;
-            return overlap_covers(leaving.edge, face.edge, swapped) ||
-                   overlap_covers(leaving.arriving, face.edge, swapped);
-        });
-    }
-
-    /// Whether a vertex that lies `depth` behind a face of the target has come in through another one, behind which it lies less
-    /// deep: as a vertex of its own, or as the end of an edge that overlaps that face. A foot beside a corner is not pushed off by the side.
-    [[nodiscard]] bool has_come_in_elsewhere(const CurrentEdge& leaving, const CurrentEdge& edge, double depth,
-                                             std::span<const CurrentEdge> edges, bool swapped) const {
-        return std::ranges::any_of(edges, [&](const CurrentEdge& face) {
-            if (are_notch(face, edge) || are_notch(edge, face))
-                return false; // both sides of a notch hold what lies in it
+            if (are_notch(face, edge) || are_notch(edge, face)) return false;
+            const bool overlaps = overlap_covers(leaving.edge, face.edge, swapped) ||
+                                  overlap_covers(leaving.arriving, face.edge, swapped);
+            if (overlaps && (is_next(face, edge) || is_next(edge, face))) return true;
             const Vec2 outward = right_normal(face.direction);
             const Vec2 from_face = leaving.start - face.start;
-            const double behind = -outward.dot(from_face);
+            const double gap_there = outward.dot(from_face);
             const double along = face.direction.dot(from_face);
-            if (behind < shallow_ || behind >= depth || along < 0.0 || along > face.length) return false;
-            return points_at(leaving, outward) || overlap_covers(leaving.edge, face.edge, swapped) ||
-                   overlap_covers(leaving.arriving, face.edge, swapped);
+            if (gap >= 0.0 || gap_there > -shallow_ || gap_there <= gap || along < 0.0 || along > face.length)
+                return false;
+            return overlaps || points_at(leaving, outward);
         });
     }
 
@@ -387,7 +396,7 @@ private:
     /// no other face is nearer to x than the vertex of the notch: what is pressed into a notch may lie beyond the ends of both of its faces.
     [[nodiscard]] bool is_in_notch(const Vec2& x, const CurrentEdge& edge, bool at_start,
                                    std::span<const CurrentEdge> edges) const {
-        if (at_start ? !starts_in_notch(edge) : !ends_in_notch(edge)) return false;
+        if (!is_notch(at_start ? angle_at_start(edge) : angle_at_end(edge))) return false;
         const Vec2 from_vertex = x - (at_start ? edge.start : edge.end);
         const double distance = from_vertex.norm();
         const Vec2 other = at_start ? edge.start - edge.before : edge.beyond - edge.end;
@@ -399,9 +408,14 @@ private:
         });
     }
 
+    /// Whether the second edge follows the first one around a corner, or straight on.
+    [[nodiscard]] static bool is_next(const CurrentEdge& first, const CurrentEdge& second) {
+        return second.arriving == first.edge && !is_notch(angle_at_start(second));
+    }
+
     /// Whether the second edge follows the first one around a notch.
     [[nodiscard]] static bool are_notch(const CurrentEdge& first, const CurrentEdge& second) {
-        return second.arriving == first.edge && starts_in_notch(second);
+        return second.arriving == first.edge && is_notch(angle_at_start(second));
     }
 
     /// Whether a vertex is a tip, and no edge of it goes farther into a face with this outward normal. The vertex of a notch touches nothing.
@@ -421,6 +435,39 @@ private:
         return std::ranges::any_of(edges, is_shared) && std::ranges::none_of(overlapping_, overlaps);
     }
 
+    /// Whether the vertex is an end of the target's edge in the body as cut.
+    [[nodiscard]] bool have_common_vertex(int owner, const CurrentEdge& leaving, int target,
+                                          const CurrentEdge& edge) const {
+        const int vertex = reference(owner, leaving.edge).start;
+        return vertex == reference(target, edge.edge).start || vertex == reference(target, edge.edge).end;
+    }
+
+    /// Whether a vertex that is an end of the target's edge too has a void between the one and the other, as the toe of a dam that ends
+    /// at a riser. Of two corners at one point the sharper one touches the face of the blunter one, and goes on to where it is pressed a
+    /// little below its end; where both stand free, tip against tip, or a face of the one goes on straight in one of the other, neither does.
+    [[nodiscard]] bool are_beside_a_void(int owner, const CurrentEdge& leaving, int target,
+                                         const CurrentEdge& edge) const {
+        const Edge& side = reference(target, edge.edge);
+        const int vertex = reference(owner, leaving.edge).start;
+        const bool at_end = vertex == side.end;
+        if (!are_outlines(side, reference(owner, at_end ? leaving.edge : leaving.arriving))) return false;
+        const double of_target = at_end ? angle_at_end(edge) : angle_at_start(edge);
+        if (angle_at_start(leaving) > of_target + straight) return false;
+        const Vec2 arriving = leaving.start - leaving.before;
+        const Vec2 other_side = at_end ? edge.beyond - edge.end : edge.start - edge.before;
+        if (go_on_straight(at_end ? arriving : leaving.direction, edge.direction) ||
+            go_on_straight(at_end ? leaving.direction : arriving, other_side))
+            return false;
+        return is_notch(of_target) || std::ranges::any_of(system_.blocks[target].edges, [&](const Edge& other) {
+                   return other.interface >= 0 && (at_end ? other.start : other.end) == vertex;
+               });
+    }
+
+    /// Whether two faces of two blocks that meet in a vertex are in one line there, and the blocks on its two sides.
+    [[nodiscard]] static bool go_on_straight(const Vec2& x, const Vec2& y) {
+        return x.dot(y) < 0.0 && std::abs(cross(x, y)) <= flush * x.norm() * y.norm();
+    }
+
     /// Vertices of `owner` (the start of each of its edges) against the edges of `target`; `swapped` if the owner is the
     /// higher block.
     void append_vertices(int owner, std::span<const CurrentEdge> leaving_edges, int target,
@@ -437,17 +484,18 @@ private:
         const double gap = outward.dot(from_edge);
         if (gap > reach_ || gap < deepest_) return;
         const double s = edge.direction.dot(from_edge) / edge.length;
-        if ((s < 0.0 || s > 1.0) && (gap >= shallow_ || !is_in_notch(leaving.start, edge, s < 0.0, edges))) return;
+        const bool is_common = have_common_vertex(owner, leaving, target, edge);
+        const bool beside_void = is_common && are_beside_a_void(owner, leaving, target, edge);
+        const double beyond = std::max(-s, s - 1.0) * edge.length;
+        const bool below_end = beside_void && beyond > 0.0 && beyond <= -doubtful_;
+        if (beyond > 0.0 && !below_end && (gap >= shallow_ || !is_in_notch(leaving.start, edge, s < 0.0, edges)))
+            return;
         if (!points_at(leaving, outward)) return;
-        if (is_carried_around_corner(leaving, edge, edges, swapped)) return;
-        const Edge& target_edge = reference(target, edge.edge);
-        const int vertex = reference(owner, leaving.edge).start;
-        const bool is_common = vertex == target_edge.start || vertex == target_edge.end;
-        if (is_common && !faces_are_apart(owner, target, swapped)) return;
+        if (is_common && !beside_void && !faces_are_apart(owner, target, swapped)) return;
         if (overlap_covers(leaving.edge, edge.edge, swapped) || overlap_covers(leaving.arriving, edge.edge, swapped))
             return;
-        if (gap < shallow_ && !is_inside(target, leaving.start)) return; // what takes longest comes last
-        if (gap < 0.0 && has_come_in_elsewhere(leaving, edge, -gap, edges, swapped)) return;
+        if (is_held_by_another_face(leaving, edge, gap, edges, swapped)) return;
+        if (gap < shallow_ && !below_end && !is_inside(target, leaving.start)) return; // what takes longest comes last
         ContactPoint point = point_between(owner, leaving, 0.0, target, edge, s);
         point.weight = vertex_weight * std::min(edge.length, system_.blocks[owner].size);
         finish(point, -edge.direction);

@@ -1,4 +1,5 @@
-// Given blocks that do not lie on each other flush: corners touch faces along the face, and a tip in a notch is held by both of its sides.
+// Given blocks that do not lie on each other flush: corners touch faces along the face, a tip in a notch is held by both of its sides, and
+// what begins at one point beside a void meets there.
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -141,6 +142,63 @@ TEST(TipsInNotches, DoNotSlideThroughARiser) {
     const SceneRun run = run_scene(blocks_on_a_slope(40, 20, blocks, "{steps: 5}"));
     EXPECT_TRUE(stands(run)) << run.report.diagnosis;
     EXPECT_NEAR(motion_of(run, "slider"), 1e-3, 1e-4);
+}
+
+const std::string corner_of_one_block =
+    "    - {name: base, polygon: [[-8, -3], [12, -3], [12, 6], [4, 6], [4, 0], [-8, 0]], support: fixed}\n";
+const std::string corner_of_two_blocks =
+    "    - {name: base, polygon: [[-8, -3], [12, -3], [12, 0], [-8, 0]], support: fixed}\n"
+    "    - {name: riser, polygon: [[4, 0], [12, 0], [12, 6], [4, 6]], support: fixed}\n";
+
+// A dam whose toe ends at the foot of a riser, its downstream face at an angle to it. Between the two is a void that begins at one point, and
+// nothing was found there: the dam slid into the riser.
+TEST(BesideVoids, AToeIsHeldByTheRiserBehindIt) {
+    for (const double lean : {5.0, 20.0, 39.0, 51.0, 60.0}) {
+        const std::string dam =
+            fmt::format("    - {{name: dam, polygon: [[0, 0], [4, 0], [{:.12g}, 1.2], [0, 1.2]]}}\n",
+                        4.0 - 1.2 * std::tan(lean * degree));
+        const SceneRun one = run_scene(blocks_on_a_slope(40, 20, corner_of_one_block + dam, "{steps: 5}"));
+        const SceneRun two = run_scene(blocks_on_a_slope(40, 20, corner_of_two_blocks + dam, "{steps: 5}"));
+        EXPECT_TRUE(stands(one)) << lean << one.report.diagnosis;
+        EXPECT_TRUE(stands(two)) << lean << two.report.diagnosis;
+        EXPECT_LT(motion_of(one, "dam"), 4e-5) << lean; // the joints' closure
+        if (lean < 45.0) {
+            EXPECT_NEAR(motion_of(two, "dam"), motion_of(one, "dam"), 1e-3 * motion_of(one, "dam")) << lean;
+        } else {
+            EXPECT_LT(motion_of(two, "dam"), 0.01)
+                << lean; // its toe, which faces the bottom of the riser, is pressed a little below it
+        }
+    }
+}
+
+// A block on its tip in the corner of floor and wall, and on a post. Its sides are more than 45 degrees from both.
+TEST(BesideVoids, ATipIsHeldInTheCornerWhereItBegins) {
+    const std::string blocks = "    - {name: spike, polygon: [[4, 0], [3, 1.73205], [2.26795, 1]]}\n"
+                               "    - {name: post, polygon: [[2, 0.01], [2.78756, 0.01], [2.78756, 0.69999], [2, "
+                               "0.69999]], support: fixed}\n";
+    for (const double friction_angle : {5.0, 20.0, 35.0}) {
+        for (const std::string& corner : {corner_of_one_block, corner_of_two_blocks}) {
+            const SceneRun run = run_scene(blocks_on_a_slope(0, friction_angle, corner + blocks, "{steps: 4}"));
+            EXPECT_TRUE(stands(run)) << friction_angle << run.report.diagnosis;
+            EXPECT_LT(motion_of(run, "spike"), 1e-4) << friction_angle;
+        }
+    }
+}
+
+// Two halves of a beam between abutments touch along 2 cm at their feet; above lies a slot, a wedge or a gap, that closes as they sag.
+TEST(BesideVoids, ASlotAboveAHingeCloses) {
+    for (const double half_width : {2e-4, 1e-3, 5e-3}) {
+        for (const int steps : {1, 2, 3, 4, 10}) {
+            const std::string blocks =
+                fmt::format("    - {{name: left, polygon: [[0, 0], [2, 0], [2, 0.02], [{:.12g}, 1], [0, 1]]}}\n"
+                            "    - {{name: right, polygon: [[2, 0], [4, 0], [4, 1], [{:.12g}, 1], [2, 0.02]]}}\n",
+                            2.0 - half_width, 2.0 + half_width) +
+                "    - {name: abutment, polygon: [[-1, -1], [0, -1], [0, 1], [-1, 1]], support: fixed}\n"
+                "    - {name: other_abutment, polygon: [[4, -1], [5, -1], [5, 1], [4, 1]], support: fixed}\n";
+            const SceneRun run = run_scene(blocks_on_a_slope(0, 60, blocks, fmt::format("{{steps: {}}}", steps)));
+            EXPECT_TRUE(stands(run)) << half_width << " " << steps << run.report.diagnosis;
+        }
+    }
 }
 
 } // namespace
