@@ -102,8 +102,10 @@ double contact_energy(const InterfaceLaw& law, double gap) {
     return 0.5 * k * (gap + g0) * (gap + g0) + k * g0 * g0 / 6.0;
 }
 
-ShearLimit shear_limit(const InterfaceLaw& law, double elastic_gap, const ContactPiece& piece) {
-    const auto pressure = contact_pressure(law, elastic_gap);
+namespace {
+
+ShearLimit limit_under(const InterfaceLaw& law, const ContactPressure& pressure, double elastic_gap,
+                       const ContactPiece& piece) {
     ShearLimit limit{pressure.value * law.tan_friction, law.tan_friction * pressure.slope, 0.0};
     if (law.cohesion == 0.0) return limit;
     const auto from = signed_pressure(law, elastic_gap + piece.from * piece.tilt);
@@ -113,6 +115,12 @@ ShearLimit shear_limit(const InterfaceLaw& law, double elastic_gap, const Contac
     limit.by_gap += law.cohesion * (share.by_from * from.slope + share.by_to * to.slope);
     limit.by_tilt = law.cohesion * (piece.from * share.by_from * from.slope + piece.to * share.by_to * to.slope);
     return limit;
+}
+
+} // namespace
+
+ShearLimit shear_limit(const InterfaceLaw& law, double elastic_gap, const ContactPiece& piece) {
+    return limit_under(law, contact_pressure(law, elastic_gap), elastic_gap, piece);
 }
 
 PointTraction fracture_traction(const InterfaceLaw& law, const PointHistory& start, double gap, double slip,
@@ -131,7 +139,7 @@ PointTraction fracture_traction(const InterfaceLaw& law, const PointHistory& sta
         law.tan_dilation != 0.0 ? plastic_slip(law, std::abs(trial), undilated, factor, limit_at) : 0.0;
     const double elastic_gap = undilated - law.tan_dilation * plastic;
     const auto pressure = contact_pressure(law, elastic_gap);
-    const auto limit = limit_at(elastic_gap);
+    const auto limit = held_limit ? ShearLimit{*held_limit, 0.0, 0.0} : limit_under(law, pressure, elastic_gap, piece);
     if (pressure.value <= 0.0 && limit.value <= 0.0) {
         result.state = ContactState::open;
         return result;

@@ -1,5 +1,6 @@
 #include "kluft/contact/overlap_rule.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -52,6 +53,13 @@ int points_for(double share_of_joint) {
     return n;
 }
 
+int points_of_net(const InterfaceLaw& law) { return std::max(law.overlap_points, least_overlap_points); }
+
+int points_along(const InterfaceLaw& law, double share_of_joint) {
+    if (law.overlap_points > 0) return law.overlap_points;
+    return law.cohesion == 0.0 ? least_overlap_points : points_for(share_of_joint);
+}
+
 double length_of(const BlockSystem& system, const Interface& interface) {
     const Edge& edge = system.blocks[interface.block_a].edges[interface.edge_a];
     return (edge_end(system, edge) - edge_start(system, edge)).norm();
@@ -65,6 +73,8 @@ OverlapRule overlap_rule(int n_points) {
     return {std::span(rules.at(n).positions).first(n), std::span(rules.at(n).weights).first(n)};
 }
 
+int overlap_points_alone(const InterfaceLaw& law) { return points_along(law, 1.0); }
+
 std::vector<int> overlap_points(const BlockSystem& system, const std::vector<const InterfaceLaw*>& laws) {
     std::map<int, double> lengths; // of the mapped fractures
     for (const Interface& i : system.interfaces) {
@@ -75,8 +85,8 @@ std::vector<int> overlap_points(const BlockSystem& system, const std::vector<con
     for (std::size_t k = 0; k < system.interfaces.size(); ++k) {
         const Interface& i = system.interfaces[k];
         const double share = i.fracture >= 0 ? length_of(system, i) / lengths[i.fracture] : 1.0;
-        const bool simple = laws[k]->cohesion == 0.0 || i.origin == EdgeOrigin::tessellation;
-        points.push_back(simple ? least_overlap_points : points_for(share));
+        const bool of_net = i.origin == EdgeOrigin::tessellation;
+        points.push_back(of_net ? points_of_net(*laws[k]) : points_along(*laws[k], share));
     }
     return points;
 }

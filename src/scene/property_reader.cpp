@@ -92,7 +92,8 @@ void read_fracture(const SceneSection& section, ReadingContext& context, Interfa
 
 void read_potential_crack(const SceneSection& section, ReadingContext& context, InterfaceType& type) {
     type.strength = read_strength(section, context);
-    for (const auto* key : {"dilation_angle", "cohesion_onset", "contact_rounding", "friction_rounding"})
+    for (const auto* key :
+         {"dilation_angle", "cohesion_onset", "contact_rounding", "friction_rounding", "overlap_points"})
         if (section.has(key))
             context.warn(section, key, "no effect on a potential crack; the fracture that it fails to has its own");
 }
@@ -111,6 +112,7 @@ InterfaceType read_interface_type(const SceneSection& section, ReadingContext& c
     type.cohesion_onset = section.given_number("cohesion_onset");
     type.contact_rounding = section.given_number("contact_rounding");
     type.friction_rounding = section.number("friction_rounding");
+    if (section.has("overlap_points")) type.overlap_points = section.count("overlap_points");
     const auto kind = kind_of(section);
     if (!kind) return type;
     type.kind = *kind;

@@ -239,6 +239,14 @@ std::vector<KeyRule> interface_rules() {
                           "one), or point force "
                           "over the size of its block",
          .doc = "g_0 k_n: normal traction over which the corner between open and closed is rounded; 0 for none."},
+        {.path = "interfaces.*.overlap_points",
+         .type = KeyType::integer,
+         .range = {.least = 3.0, .most = 15.0},
+         .fallback_note = "3, of joints with cohesion up to 15",
+         .doc = "Points along an overlap of two blocks. Three are exact where it is closed, and a hinge in the corner, "
+                "as of rigid blocks, where it is open over a part; 15 make it an elastic foundation of its normal "
+                "stiffness (rotation within 2 % while 30 % of it is closed), on which slender blocks turn over "
+                "earlier."},
         {.path = "interfaces.*.friction_rounding",
          .type = KeyType::number,
          .range = {.least = 0.0, .most = 0.5},

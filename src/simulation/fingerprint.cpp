@@ -43,7 +43,7 @@ void add_mechanics(const Model& model, Digest& digest) {
     for (const double density : model.densities) digest.add(density);
     for (const InterfaceLaw& law : model.laws) {
         digest.add(law.normal_stiffness, law.shear_stiffness, law.tan_friction, law.cohesion, law.tan_dilation,
-                   law.cohesion_onset, law.contact_rounding, law.friction_rounding);
+                   law.cohesion_onset, law.contact_rounding, law.friction_rounding, law.overlap_points);
     }
     for (const Strength& strength : model.strengths) {
         digest.add(strength.cohesion, strength.friction_angle, strength.tensile_strength);

@@ -64,6 +64,7 @@ InterfaceLaw resolve_law(const InterfaceType& type, const InterfaceStiffness& st
     law.tan_dilation = std::tan(type.dilation_angle);
     law.cohesion_onset = type.cohesion_onset.value_or(default_cohesion_onset * type.cohesion);
     law.contact_rounding = type.contact_rounding.value_or(default_contact_rounding * boundary_stress);
+    law.overlap_points = type.overlap_points.value_or(0);
     law.friction_rounding = type.friction_rounding;
     return law;
 }

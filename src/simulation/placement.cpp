@@ -37,8 +37,7 @@ DetectedContacts detected_contacts(const Model& model, const BodyState& body) {
     surfaces.default_law = fracture != model.bonds.end() ? static_cast<int>(fracture - model.bonds.begin()) : 0;
     surfaces.outlines_meet = may_outlines_meet(model);
     if (surfaces.outlines_meet) surfaces.default_law = model.fracture_law[model.system.outline_type];
-    if (surfaces.outlines_meet && model.laws[surfaces.default_law].cohesion > 0.0)
-        surfaces.outline_points = most_overlap_points;
+    if (surfaces.outlines_meet) surfaces.outline_points = overlap_points_alone(model.laws[surfaces.default_law]);
     return detect_contacts(model.system, surfaces, body.displacement, contact_reach * model.system.spacing,
                            body.contacts);
 }

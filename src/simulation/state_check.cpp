@@ -43,11 +43,11 @@ bool ends_a_run(const BlockSystem& system, const ContactPoint& point) {
 std::string deep_contact(const LoadedBody& body, const Eigen::VectorXd& q, bool ending) {
     const BlockSystem& system = *body.system;
     for (const ContactPoint& point : body.placement->contacts) {
-        if (ends_a_run(system, point) != ending) continue;
+        const double depth = -gap_and_slip(point, q).gap;
+        if (depth <= 0.0 || ends_a_run(system, point) != ending) continue;
         const bool own = is_own(point);
         const Block& a = system.blocks[point.block_a];
         const Block& b = system.blocks[point.block_b];
-        const double depth = -gap_and_slip(point, q).gap;
         const bool ends_by_extent = ending && own;
         const double deepest = ends_by_extent
                                    ? largest_overlap * std::min(extent_along(body, q, point.block_a, point.normal),

@@ -17,6 +17,7 @@
 #include "kluft/simulation/corner_contact.hpp"
 #include "kluft/simulation/fingerprint.hpp"
 #include "kluft/simulation/measurements.hpp"
+#include "kluft/simulation/rocking_joint.hpp"
 #include "kluft/simulation/simulation.hpp"
 #include "kluft/simulation/strength_reduction.hpp"
 #include "kluft/studies/earlier_results.hpp"
@@ -122,7 +123,8 @@ void warn_of_contacts(const Model& model, const State& state, const ContactWatch
     try {
         for (const std::string& warning :
              {contact_pressure_warning(model, state, watch.largest_stress()), corner_contact_warning(model, state),
-              watch.corners().warning(), watch.bonds().warning(), bond_bending_warning(model, state)})
+              watch.corners().warning(), watch.bonds().warning(), bond_bending_warning(model, state),
+              rocking_joint_warning(model, state)})
             if (!warning.empty()) report.warnings.push_back(warning);
     } catch (const std::bad_alloc&) {
         return;

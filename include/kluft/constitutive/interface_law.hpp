@@ -18,6 +18,7 @@ struct InterfaceLaw {
     double tan_dilation = 0.0;
     double cohesion_onset = 0.0;    ///< t_r: the cohesion is c min(1, p/t_r)
     double contact_rounding = 0.0;  ///< g_0 k_n: the pressure is rounded for -2 g_0 < gap < 0
+    int overlap_points = 0;         ///< of an overlap of two blocks; 0: as many as its cohesion needs (overlap_points)
     double friction_rounding = 0.0; ///< s: Coulomb's limit is rounded for |trial|/limit in 1 - s .. 1 + s
 };
 

@@ -46,6 +46,7 @@ struct InterfaceType {
     int fails_to = -1; ///< interface type of a broken potential crack; -1: this one's own law as a fracture
     std::optional<double> cohesion_onset;   ///< t_r, Pa; default 0.01 c
     std::optional<double> contact_rounding; ///< g_0 k_n, Pa; default 1e-3 of the largest boundary or self-weight stress
+    std::optional<int> overlap_points;      ///< 3 to 15; default 3, with cohesion up to 15
     double friction_rounding = 0.05;        ///< half-width of the rounding of Coulomb's limit, as a fraction of it
 };
 

@@ -21,9 +21,12 @@ struct OverlapRule {
 /// Gauss-Lobatto's rule of so many points, 3 to 15.
 [[nodiscard]] OverlapRule overlap_rule(int n_points);
 
-/// Per interface the number of points of an overlap along it. Three are enough without cohesion. How long the part of a joint
+/// Per interface the number of points of an overlap along it: what its law says, or else three without cohesion, which are a hinge in the corner. How long the part of a joint
 /// is that is closed, and has cohesion, takes more: so many that the weight of an end point is at most 0.5 % of the joint's
 /// length. Cells of a net have three. `laws`: of the fractures, by interface.
 [[nodiscard]] std::vector<int> overlap_points(const BlockSystem& system, const std::vector<const InterfaceLaw*>& laws);
+
+/// The same of an overlap that is no part of a longer joint.
+[[nodiscard]] int overlap_points_alone(const InterfaceLaw& law);
 
 } // namespace kluft
