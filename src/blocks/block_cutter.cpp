@@ -389,14 +389,9 @@ void take_outside_away(PlanarMap& map, const SourceNumbers& numbers) {
     }
 }
 
-struct FreePieces {
-    int count = 0;
-    std::optional<LoosePiece> longest;
-};
-
 /// Connected pieces of fractures in the body with the same face on both sides, each fracture on its own, that are
-/// longer than `shortest` in all.
-FreePieces count_free_pieces(const PlanarMap& map, const SourceNumbers& numbers, double shortest) {
+/// longer than `shortest` in all; the longest one first.
+std::vector<LoosePiece> pruned_pieces(const PlanarMap& map, const SourceNumbers& numbers, double shortest) {
     std::vector<int> root;                       // of each free edge, in the order found
     std::vector<double> length;                  // of the piece, at its root
     std::vector<int> source;                     // of each free edge
@@ -420,14 +415,11 @@ FreePieces count_free_pieces(const PlanarMap& map, const SourceNumbers& numbers,
             length[b] += length[a];
         }
     }
-    FreePieces free;
-    for (int i = 0; i < static_cast<int>(root.size()); ++i) {
-        if (root[i] != i || length[i] <= shortest) continue;
-        ++free.count;
-        if (!free.longest || length[i] > free.longest->length)
-            free.longest = LoosePiece{source[i] - numbers.first_fracture, length[i]};
-    }
-    return free;
+    std::vector<LoosePiece> pieces;
+    for (int i = 0; i < static_cast<int>(root.size()); ++i)
+        if (root[i] == i && length[i] > shortest) pieces.push_back({source[i] - numbers.first_fracture, length[i]});
+    std::ranges::stable_sort(pieces, std::ranges::greater(), &LoosePiece::length);
+    return pieces;
 }
 
 /// A piece below it is no block of its own (m2).
@@ -443,11 +435,6 @@ double least_width(const GeometrySpec& spec, const LocalFrame& frame) {
     if (has_triangles(spec))
         return resolution(spec, frame); // a strip would be filled with triangles as narrow as it is
     return hair * frame.box.upper.norm();
-}
-
-void note_free_pieces(const FreePieces& free, CutReport& report) {
-    report.pruned_ends = free.count;
-    report.longest_pruned = free.longest;
 }
 
 MendLimits mend_limits(const GeometrySpec& spec, const LocalFrame& frame, const SourceNumbers& numbers) {
@@ -872,7 +859,7 @@ CutBody cut(const GeometrySpec& spec, ExactCells exact) {
     insert_whole_cells(map, cuts.whole, numbers.tessellation);
     take_outside_away(map, numbers);
     std::vector<SourceSegment> free = has_triangles(spec) ? free_pieces(map) : std::vector<SourceSegment>{};
-    note_free_pieces(count_free_pieces(map, numbers, 2.0 * resolution(spec, frame)), body.report);
+    body.report.pruned = pruned_pieces(map, numbers, 2.0 * resolution(spec, frame));
     map.remove_edges_inside_faces();
 
     MendReport mended = mend(map, mend_limits(spec, frame, numbers));
@@ -880,11 +867,14 @@ CutBody cut(const GeometrySpec& spec, ExactCells exact) {
     if (has_triangles(spec)) {
         free.insert(free.end(), mended.freed.begin(), mended.freed.end());
         map = filled_with_triangles(spec, frame, numbers, std::move(map), free);
-        note_free_pieces(count_free_pieces(map, numbers, 2.0 * resolution(spec, frame)), body.report);
+        body.report.pruned = pruned_pieces(map, numbers, 2.0 * resolution(spec, frame));
         map.remove_edges_inside_faces();
     }
     body.report.collapsed_edges = mended.collapsed_edges;
-    for (const auto& piece : mended.merged) body.report.merged.push_back({frame.origin + piece.at, piece.area});
+    for (const auto& piece : mended.merged)
+        body.report.merged.push_back({frame.origin + piece.at, piece.area,
+                                      std::max(-1, piece.source - numbers.first_fracture), piece.length,
+                                      piece.at_outline});
 
     body.system = SystemBuilder(spec, frame, numbers, map).build();
     if (has_triangles(spec)) grade(body.system, side_of_triangles(spec, frame, numbers));

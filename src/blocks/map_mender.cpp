@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <queue>
@@ -128,6 +129,9 @@ public:
 
 private:
     [[nodiscard]] bool is_outline(int h) const { return map_.source(h) < limits_.first_fracture; }
+    [[nodiscard]] bool is_on_outline(int v) const {
+        return std::ranges::any_of(map_.star(v), [this](int h) { return is_outline(h); });
+    }
     [[nodiscard]] bool is_tessellation(int h) const { return map_.source(h) >= limits_.tessellation; }
 
     void straighten() {
@@ -148,10 +152,23 @@ private:
         return (p - a).dot(b - p) > 0.0 && distance_to_segment(p, a, b) <= limits_.rounding;
     }
 
-    /// Of a face's half-edges, the one across which it goes into its neighbour; -1 if none of them has one.
+    /// Whether the fracture of an edge of a face leaves the face at one of its vertices and goes on elsewhere.
+    [[nodiscard]] bool goes_on_beyond(int h, const std::vector<int>& half_edges) const {
+        const int face = map_.face(h);
+        return std::ranges::any_of(half_edges, [&](int of_face) {
+            return std::ranges::any_of(map_.star(map_.start(of_face)), [&](int k) {
+                return map_.source(k) == map_.source(h) && map_.face(k) != face && map_.face(map_.twin(k)) != face;
+            });
+        });
+    }
+
+    /// Of a face's half-edges, the one across which it goes into its neighbour; -1 if none of them has one. A fracture that goes through
+    /// to the outline stays whole where a sliver between it and the end of another one goes.
     [[nodiscard]] int way_out(const std::vector<int>& half_edges) const {
         int best = -1;
-        const auto worth = [this](int h) { return std::pair(is_tessellation(h), map_.length(h)); };
+        const auto worth = [&](int h) {
+            return std::tuple(is_tessellation(h), !goes_on_beyond(h, half_edges), map_.length(h));
+        };
         for (const int h : half_edges) {
             if (map_.face(map_.twin(h)) == outside) continue;
             if (best < 0 || worth(h) > worth(best)) best = h;
@@ -216,12 +233,19 @@ private:
         int face = map_.face(exit);
         int kept = map_.face(map_.twin(exit));
         const double area = std::max(0.0, map_.area(face));
-        report_.merged.push_back({face_centroid(map_, face), area});
+        MendReport::Merged merged{.at = face_centroid(map_, face), .area = area};
+        std::map<int, MendReport::Merged> closed; // by fracture
         for (const int h : map_.half_edges_of(face)) {
             if (map_.face(map_.twin(h)) != kept || is_outline(h) || is_tessellation(h)) continue;
             double& largest = report_.cut_off[map_.source(h)];
             largest = std::max(largest, area);
+            MendReport::Merged& piece = closed.emplace(map_.source(h), merged).first->second;
+            piece.source = map_.source(h);
+            piece.length += map_.length(h);
+            piece.at_outline = piece.at_outline || is_on_outline(map_.start(h)) || is_on_outline(map_.end(h));
+            if (piece.length > merged.length) merged = piece;
         }
+        report_.merged.push_back(merged);
         if (map_.faces[kept].size() < map_.faces[face].size()) std::swap(kept, face);
         map_.merge_faces(kept, face);
         return kept;

@@ -100,7 +100,8 @@ std::string box_text(const std::vector<Vec2>& points) {
 
 /// "expected one of a, b, found both"; counts how many of the keys are given. A misspelt one is told as a key that is not known,
 /// and no second time here.
-bool gives_one_of(const SceneSection& section, const std::vector<std::string>& keys, ReadingContext& context) {
+bool gives_one_of(const SceneSection& section, const std::vector<std::string>& keys, ReadingContext& context,
+                  std::string_view why_none = "") {
     std::vector<std::string> given;
     for (const auto& key : keys)
         if (section.has(key)) given.push_back(key);
@@ -111,7 +112,8 @@ bool gives_one_of(const SceneSection& section, const std::vector<std::string>& k
     if (given.empty() && std::ranges::any_of(section.names(), is_misspelt)) return false;
     context.fail(section, {},
                  fmt::format("expected one of {}, found {}", fmt::join(keys, ", "),
-                             given.empty() ? "none of them" : fmt::format("{}", fmt::join(given, " and "))));
+                             given.empty() ? fmt::format("none of them{}", why_none)
+                                           : fmt::format("{}", fmt::join(given, " and "))));
     return false;
 }
 
@@ -726,7 +728,9 @@ private:
 
     void name_sides(const SceneSection& section) {
         BoundarySides boundary{section.name(), {}};
-        if (section.node()->is_mapping() && gives_one_of(section, {"sides", "facing", "hole"}, context_))
+        constexpr auto names_end =
+            ": the names that sides have from where they face end where one boundary has `sides` or `facing`";
+        if (section.node()->is_mapping() && gives_one_of(section, {"sides", "facing", "hole"}, context_, names_end))
             boundary.sides = section.has("sides") ? counted_sides(section) : facing_sides(section);
         spec_.boundaries.push_back(std::move(boundary));
     }

@@ -36,15 +36,19 @@ void say_blocks(const Scene& scene, const SceneModel& built, Lines& lines) {
     }
 }
 
-void say_cut(const CutReport& cut, Lines& lines) {
+void say_cut(const CutReport& cut, const GeometrySpec& geometry, Lines& lines) {
     lines.push_back({"smallest", fmt::format("area {:.4g} m2, edge {:.4g} m, angle {:.4g} deg", cut.smallest_area,
                                              cut.smallest_edge, cut.smallest_angle * degrees)});
     lines.push_back({"mended", fmt::format("{} slivers merged, {} short edges collapsed, {} ends pruned",
-                                           cut.merged.size(), cut.collapsed_edges, cut.pruned_ends)});
+                                           cut.merged.size(), cut.collapsed_edges, cut.pruned.size())});
     constexpr std::size_t most_listed = 10;
     for (std::size_t i = 0; i < std::min(most_listed, cut.merged.size()); ++i) {
-        lines.push_back(
-            {{}, fmt::format("  merged {:.3g} m2 at {}", cut.merged[i].area, place_text(cut.merged[i].at))});
+        const CutReport::Merged& piece = cut.merged[i];
+        std::string line = fmt::format("  merged {:.3g} m2 at {}", piece.area, place_text(piece.at));
+        if (piece.fracture >= 0)
+            line += fmt::format(", with {:.3g} m of {}", piece.length,
+                                geometry.fractures[static_cast<std::size_t>(piece.fracture)].name);
+        lines.push_back({{}, line});
     }
     if (cut.merged.size() > most_listed)
         lines.push_back({{}, fmt::format("  and {} more", cut.merged.size() - most_listed)});
@@ -179,7 +183,7 @@ SceneAccount account_of(const Scene& scene, const SceneModel& built) {
     account.merged = static_cast<int>(built.cut.merged.size());
     lines.push_back({"scene", scene.name + (scene.title.empty() ? "" : ": " + scene.title)});
     say_blocks(scene, built, lines);
-    say_cut(built.cut, lines);
+    say_cut(built.cut, scene.geometry, lines);
     say_stiffness(scene, built.model, lines);
     account.memory_bytes = say_memory(scene, built.model, lines);
     for (const Stage& stage : scene.loads.stages)

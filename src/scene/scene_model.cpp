@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <string>
 #include <utility>
@@ -80,21 +81,54 @@ std::vector<std::string> lost_fractures(const GeometrySpec& geometry, const CutR
 
 /// Without a net a joint that ends inside a block does not even weaken it.
 std::vector<std::string> pruned_pieces(const GeometrySpec& geometry, const CutReport& report) {
-    if (geometry.tessellation || !report.longest_pruned) return {};
+    if (geometry.tessellation) return {};
     constexpr double large_part = 0.05; // of the trace: less is an end that was drawn too long
-    const auto& [fracture, length] = *report.longest_pruned;
-    const FractureTrace& trace = geometry.fractures[static_cast<std::size_t>(fracture)];
-    double whole = 0.0;
-    for (std::size_t i = 0; i + 1 < trace.points.size(); ++i) whole += (trace.points[i + 1] - trace.points[i]).norm();
-    const bool is_told = std::ranges::find(report.lost, fracture, &LostFracture::fracture) != report.lost.end();
-    if (is_told || length <= large_part * whole) return {};
-    const int n_others = report.pruned_ends - 1;
+    const auto trace_of = [&](const LoosePiece& piece) -> const FractureTrace& {
+        return geometry.fractures[static_cast<std::size_t>(piece.fracture)];
+    };
+    const auto is_worth_a_word = [&](const LoosePiece& piece) {
+        const std::vector<Vec2>& points = trace_of(piece).points;
+        double whole = 0.0;
+        for (std::size_t i = 0; i + 1 < points.size(); ++i) whole += (points[i + 1] - points[i]).norm();
+        const bool is_told =
+            std::ranges::find(report.lost, piece.fracture, &LostFracture::fracture) != report.lost.end();
+        return !is_told && piece.length > large_part * whole;
+    };
+    const auto longest = std::ranges::find_if(report.pruned, is_worth_a_word);
+    if (longest == report.pruned.end()) return {};
+    const FractureTrace& trace = trace_of(*longest);
+    const std::size_t n_others = report.pruned.size() - 1;
+    double all = 0.0;
+    for (const LoosePiece& piece : report.pruned) all += piece.length;
     return {fmt::format("{}: {:.3g} m of {} end inside a block and are left out{}: without potential cracks "
                         "(`geometry.tessellation`) a block is cut by what goes through it, and has no other weakness",
-                        trace.place, length, trace.name,
-                        n_others > 1    ? fmt::format(", as are {} other pieces", n_others)
+                        trace.place, longest->length, trace.name,
+                        n_others > 1    ? fmt::format(", as are {} other pieces, {:.3g} m in all", n_others, all)
                         : n_others == 1 ? ", as is another piece"
                                         : "")};
+}
+
+/// A fracture that no longer comes to the surface holds what rests on it.
+std::vector<std::string> closed_outcrops(const GeometrySpec& geometry, const CutReport& report) {
+    std::vector<CutReport::Merged> closed;
+    std::ranges::copy_if(report.merged, std::back_inserter(closed),
+                         [](const CutReport::Merged& piece) { return piece.fracture >= 0 && piece.daylights; });
+    if (closed.empty()) return {};
+    std::ranges::stable_sort(closed, std::ranges::greater(), &CutReport::Merged::length);
+    const auto trace_of = [&](const CutReport::Merged& piece) -> const FractureTrace& {
+        return geometry.fractures[static_cast<std::size_t>(piece.fracture)];
+    };
+    std::string pieces;
+    for (std::size_t i = 0; i < std::min(closed.size(), most_told); ++i)
+        pieces += fmt::format("{}{:.3g} m of {} at about {}", i > 0 ? ", " : "", closed[i].length,
+                              trace_of(closed[i]).name, place_text(closed[i].at));
+    if (closed.size() > most_told) pieces += fmt::format(" and {} more", closed.size() - most_told);
+    return {fmt::format(
+        "{}: closed where they come to the outline: {}. A piece too small for a block lies there between two "
+        "lines, and went into a neighbour; it may hold what would slide along. A finer net, or a trace that ends at "
+        "the "
+        "other one, leaves them open",
+        trace_of(closed.front()).place, pieces)};
 }
 
 std::vector<std::string> bare_net(const GeometrySpec& geometry, const BlockSystem& system) {
@@ -195,10 +229,11 @@ SceneModel build_scene_model(const Scene& scene) {
         throw located(error, scene.places);
     }
     built.cut = std::move(body.report);
-    for (const auto& warnings : {lost_fractures(scene.geometry, built.cut), fine_details(scene.geometry, built.cut),
-                                 pruned_pieces(scene.geometry, built.cut), bare_net(scene.geometry, built.model.system),
-                                 empty_regions(scene.geometry, built.model.system),
-                                 coarse_places(scene.geometry, built.cut, scene.interface_types)})
+    for (const auto& warnings :
+         {lost_fractures(scene.geometry, built.cut), fine_details(scene.geometry, built.cut),
+          pruned_pieces(scene.geometry, built.cut), closed_outcrops(scene.geometry, built.cut),
+          bare_net(scene.geometry, built.model.system), empty_regions(scene.geometry, built.model.system),
+          coarse_places(scene.geometry, built.cut, scene.interface_types)})
         built.model.warnings.insert(built.model.warnings.end(), warnings.begin(), warnings.end());
     require_memory();
     return built;

@@ -89,7 +89,7 @@ TEST(TriangleNet, FollowsFracturesToTheirEnds) {
     add_trace(spec, {{0.5, 6.0}, {4.5, 5.5}});             // crosses it
     const CutBody body = cut_blocks(spec);
     EXPECT_EQ(faults(spec, body), "");
-    EXPECT_EQ(body.report.pruned_ends, 0);
+    EXPECT_EQ(body.report.pruned.size(), 0);
     EXPECT_GE(body.report.smallest_angle, smallest_triangle_angle);
     EXPECT_NEAR(cut_scenes::interface_length(body.system, EdgeOrigin::fracture, 0), std::hypot(3.0, 1.5), 1e-12);
     EXPECT_NEAR(cut_scenes::interface_length(body.system, EdgeOrigin::fracture, 1),

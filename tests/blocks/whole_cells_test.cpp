@@ -28,9 +28,9 @@ bool same_report(const CutReport& a, const CutReport& b) {
         return p.fracture == q.fracture && p.cause == q.cause && p.other == q.other && p.length == q.length;
     };
     return std::ranges::equal(a.merged, b.merged, same_piece) && std::ranges::equal(a.lost, b.lost, same_loss) &&
-           a.collapsed_edges == b.collapsed_edges && a.joined_ends == b.joined_ends && a.pruned_ends == b.pruned_ends &&
-           a.resolution == b.resolution && a.smallest_area == b.smallest_area && a.smallest_edge == b.smallest_edge &&
-           a.smallest_angle == b.smallest_angle;
+           a.collapsed_edges == b.collapsed_edges && a.joined_ends == b.joined_ends &&
+           a.pruned.size() == b.pruned.size() && a.resolution == b.resolution && a.smallest_area == b.smallest_area &&
+           a.smallest_edge == b.smallest_edge && a.smallest_angle == b.smallest_angle;
 }
 
 bool same_boundaries(const BlockSystem& a, const BlockSystem& b) {

@@ -36,7 +36,7 @@ TEST(Outcrop, IsCutByItsTracesAlone) {
     // Without carrying ends on to what they miss by rounding there would be 13 blocks.
     EXPECT_GT(body.system.n_blocks(), 35);
     EXPECT_GT(body.report.joined_ends, 50);
-    EXPECT_GT(body.report.pruned_ends, 100);
+    EXPECT_GT(body.report.pruned.size(), 100);
 }
 
 TEST(Outcrop, IsCutWithHexagons) {

@@ -47,12 +47,15 @@ struct CutReport {
     struct Merged {
         Vec2 at = Vec2::Zero(); ///< centroid of the piece, scene coordinates (m)
         double area = 0.0;      ///< m2
+        int fracture = -1;      ///< that lost the longest piece with it; -1 without one
+        double length = 0.0;    ///< of that piece (m)
+        bool daylights = false; ///< that piece ends at the outline
     };
     std::vector<Merged> merged; ///< pieces below the minimum area that went into a neighbour
     int collapsed_edges = 0;    ///< short edges collapsed to a point
     int joined_ends = 0;        ///< ends of traces that were carried on to what they nearly met
-    int pruned_ends = 0;        ///< pieces of traces that separate nothing (dangling ends, isolated traces)
-    std::optional<LoosePiece> longest_pruned; ///< of these
+    std::vector<LoosePiece>
+        pruned; ///< pieces of traces that separate nothing (dangling ends, isolated traces), the longest first
     std::vector<LostFracture> lost;
     std::vector<FineDetail> fine_details; ///< of a body with triangles
     double resolution = 0.0;              ///< the smallest length that the cut resolves (m)

@@ -24,6 +24,9 @@ struct MendReport {
     struct Merged {
         Vec2 at = Vec2::Zero(); ///< centroid (m)
         double area = 0.0;      ///< m2
+        int source = -1; ///< of the fracture that lost the longest piece, the one between the two faces; -1 without one
+        double length = 0.0;     ///< of that piece (m)
+        bool at_outline = false; ///< that piece ends at the outline
     };
     std::vector<Merged> merged;
     std::map<int, double> cut_off;    ///< of fractures, by their source, the largest merged face that they cut off (m2)
@@ -33,7 +36,7 @@ struct MendReport {
 
 /// Until nothing changes any more:
 /// 1. each face below `limits.area` or `limits.width`, smallest first, is merged with the neighbour across its longest tessellation edge,
-///    otherwise across its longest interior edge; all edges between the two disappear. A face that is merged away
+///    otherwise across its longest interior edge of a fracture that does not go on beyond the face, otherwise of one that does; all edges between the two disappear. A face that is merged away
 ///    has one side less: the edges that go on from that edge up to a sharp turn, or two turns within 2 `limits.edge`.
 ///    Where its other sides lie in the same neighbour they separate nothing any more, and are `freed`;
 /// 2. each edge below `limits.edge`, shortest first, is collapsed to the end that is worth more (corner of the domain,
