@@ -74,6 +74,14 @@ bool LuFactor::factorize() {
     return status == UMFPACK_OK && std::isfinite(u.info[UMFPACK_RCOND]);
 }
 
+bool LuFactor::has_negative_determinant() const {
+    double mantissa = 0.0;
+    double exponent = 0.0;
+    Umfpack& u = *umfpack_;
+    const auto status = umfpack_dl_get_determinant(&mantissa, &exponent, u.numeric, u.info);
+    return status == UMFPACK_OK && mantissa < 0.0;
+}
+
 void LuFactor::solve(std::vector<double>& b, std::vector<double>& x) {
     Umfpack& u = *umfpack_;
     x.resize(b.size());

@@ -20,12 +20,6 @@ constexpr double least_mass_share = 0.01;       ///< of the tangent's trace (mea
 constexpr int most_vectors_without_factor = 30; ///< of a solution, which takes 9 to 20
 constexpr double travel_residual = 1e-8;        ///< of the border's column
 
-/// Takes the prescribed motions out of a tangent.
-void make_free(const Constraints& constraints, BlockMatrix& matrix) {
-    const BlockPattern& pattern = *matrix.pattern;
-    project(constraints, matrix, matrix.trace() / (pattern.block_unknowns() * pattern.n_blocks()));
-}
-
 /// Adds lambda M to the tangent (29c).
 void add_damping(const EquilibriumProblem& problem, double damping, BlockMatrix& matrix) {
     if (damping == 0.0) return;
@@ -67,6 +61,11 @@ double linear_residual(const NewtonPoint& at, double right_side) {
 }
 
 } // namespace
+
+void make_free(const Constraints& constraints, BlockMatrix& matrix) {
+    const BlockPattern& pattern = *matrix.pattern;
+    project(constraints, matrix, matrix.trace() / (pattern.block_unknowns() * pattern.n_blocks()));
+}
 
 /// Sets up the right side and the tangent at q with the prescribed motions taken out, and the border if there is one.
 void NewtonIncrement::assemble(const NewtonPoint& at, TangentKind kind) {

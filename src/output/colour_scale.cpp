@@ -64,9 +64,10 @@ void draw_colour_bar(Canvas& canvas, const ColourScale& scale, const Vec2& corne
         canvas.text({right + 6.0, y}, axis.label(tick), numbers);
         widest = std::max(widest, canvas.text_width(axis.label(tick), numbers));
     }
-    if (scale.largest() > axis.high)
+    const double shade = (axis.high - axis.low) / n_bands; // what is beyond the axis by less looks like its end
+    if (scale.largest() > axis.high + shade)
         canvas.text(corner - Vec2(0.0, 6.0), fmt::format("to {:.3g}", scale.largest()), {.size = 8.0});
-    if (scale.least() < axis.low)
+    if (scale.least() < axis.low - shade)
         canvas.text(corner + Vec2(0.0, size.y() + 6.0), fmt::format("from {:.3g}", scale.least()),
                     {.size = 8.0, .down = Align::low});
     const TextStyle upward{.size = 8.5, .across = Align::middle, .down = Align::low, .angle = -0.5 * std::numbers::pi};

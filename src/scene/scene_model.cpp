@@ -79,6 +79,11 @@ std::vector<std::string> lost_fractures(const GeometrySpec& geometry, const CutR
     return warnings;
 }
 
+/// Whether a fracture is told as left out, as a whole or in part.
+bool is_told(const CutReport& report, int fracture) {
+    return std::ranges::find(report.lost, fracture, &LostFracture::fracture) != report.lost.end();
+}
+
 /// Without a net a joint that ends inside a block does not even weaken it.
 std::vector<std::string> pruned_pieces(const GeometrySpec& geometry, const CutReport& report) {
     if (geometry.tessellation) return {};
@@ -90,9 +95,7 @@ std::vector<std::string> pruned_pieces(const GeometrySpec& geometry, const CutRe
         const std::vector<Vec2>& points = trace_of(piece).points;
         double whole = 0.0;
         for (std::size_t i = 0; i + 1 < points.size(); ++i) whole += (points[i + 1] - points[i]).norm();
-        const bool is_told =
-            std::ranges::find(report.lost, piece.fracture, &LostFracture::fracture) != report.lost.end();
-        return !is_told && piece.length > large_part * whole;
+        return !is_told(report, piece.fracture) && piece.length > large_part * whole;
     };
     const auto longest = std::ranges::find_if(report.pruned, is_worth_a_word);
     if (longest == report.pruned.end()) return {};
@@ -111,8 +114,9 @@ std::vector<std::string> pruned_pieces(const GeometrySpec& geometry, const CutRe
 /// A fracture that no longer comes to the surface holds what rests on it.
 std::vector<std::string> closed_outcrops(const GeometrySpec& geometry, const CutReport& report) {
     std::vector<CutReport::Merged> closed;
-    std::ranges::copy_if(report.merged, std::back_inserter(closed),
-                         [](const CutReport::Merged& piece) { return piece.fracture >= 0 && piece.daylights; });
+    std::ranges::copy_if(report.merged, std::back_inserter(closed), [&](const CutReport::Merged& piece) {
+        return piece.fracture >= 0 && piece.daylights && !is_told(report, piece.fracture);
+    });
     if (closed.empty()) return {};
     std::ranges::stable_sort(closed, std::ranges::greater(), &CutReport::Merged::length);
     const auto trace_of = [&](const CutReport::Merged& piece) -> const FractureTrace& {

@@ -19,6 +19,7 @@
 #include "kluft/simulation/measurements.hpp"
 #include "kluft/simulation/rocking_joint.hpp"
 #include "kluft/simulation/simulation.hpp"
+#include "kluft/simulation/stability.hpp"
 #include "kluft/simulation/strength_reduction.hpp"
 #include "kluft/studies/earlier_results.hpp"
 
@@ -124,7 +125,8 @@ void warn_of_contacts(const Model& model, const State& state, const ContactWatch
         for (const std::string& warning :
              {contact_pressure_warning(model, state, watch.largest_stress()), corner_contact_warning(model, state),
               watch.corners().warning(), watch.bonds().warning(), bond_bending_warning(model, state),
-              rocking_joint_warning(model, state)})
+              rocking_joint_warning(model, state),
+              report.status == RunStatus::done ? unstable_equilibrium_warning(model, state) : ""})
             if (!warning.empty()) report.warnings.push_back(warning);
     } catch (const std::bad_alloc&) {
         return;

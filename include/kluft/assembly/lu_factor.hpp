@@ -23,6 +23,8 @@ public:
     void gather(const BlockMatrix& matrix);
     /// False if the gathered matrix is singular. Throws ResourceError out of memory.
     [[nodiscard]] bool factorize();
+    /// Of the last factorization.
+    [[nodiscard]] bool has_negative_determinant() const;
     /// x = K^-1 b, sizes 6 n_blocks.
     void solve(std::vector<double>& b, std::vector<double>& x);
     /// Gives the memory back; the next factorization needs `analyze` no more than before.

@@ -27,6 +27,9 @@ struct NewtonPoint {
     double damping = 0.0; ///< lambda: the tangent is that at q plus lambda M (29c), of affine blocks (Pa/m2)
 };
 
+/// Takes the unknowns that constraints prescribe out of a matrix over the unknowns: their rows and columns are those of a diagonal.
+void make_free(const Constraints& constraints, BlockMatrix& matrix);
+
 struct NewtonOptions {
     bool reuse = true;          ///< of the factor; false: the tangent itself is factorized anew
     double motion_limit = 0.04; ///< largest relative motion of neighbours, and distortion, of the motion_scale (28a)

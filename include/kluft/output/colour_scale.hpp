@@ -32,7 +32,8 @@ private:
 /// of the values. Values that are not finite numbers are left out.
 [[nodiscard]] ColourScale scale_for(std::vector<double> values);
 
-/// An upright bar with ticks to its right and its name beyond them. Values outside the axis are told above it and below.
+/// An upright bar with ticks to its right and its name beyond them. Values that lie outside the axis by more than a shade are told
+/// above it and below.
 void draw_colour_bar(Canvas& canvas, const ColourScale& scale, const Vec2& corner, const Vec2& size,
                      const std::string& name);
 
