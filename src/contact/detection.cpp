@@ -487,7 +487,8 @@ private:
         const bool is_common = have_common_vertex(owner, leaving, target, edge);
         const bool beside_void = is_common && are_beside_a_void(owner, leaving, target, edge);
         const double beyond = std::max(-s, s - 1.0) * edge.length;
-        const bool below_end = beside_void && beyond > 0.0 && beyond <= -doubtful_;
+        const bool at_end = reference(owner, leaving.edge).start == reference(target, edge.edge).end;
+        const bool below_end = beside_void && (at_end ? s > 1.0 : s < 0.0) && beyond <= -doubtful_;
         if (beyond > 0.0 && !below_end && (gap >= shallow_ || !is_in_notch(leaving.start, edge, s < 0.0, edges)))
             return;
         if (!points_at(leaving, outward)) return;
