@@ -82,15 +82,23 @@ CurrentEdge current_edge(int edge, int arriving, const Vec2& before, const Vec2&
     return current;
 }
 
-/// Angle inside a block between the edge that arrives at a vertex and the one that leaves it (rad).
-double angle_between(const Vec2& arriving, const Vec2& leaving) {
-    return std::numbers::pi - std::atan2(cross(arriving, leaving), arriving.dot(leaving));
+/// The edges of a block that arrive at a vertex and leave it.
+struct Corner {
+    Vec2 arriving, leaving;
+};
+Corner corner_at_start(const CurrentEdge& edge) { return {edge.start - edge.before, edge.direction}; }
+Corner corner_at_end(const CurrentEdge& edge) { return {edge.direction, edge.beyond - edge.end}; }
+
+/// Inside the block (rad).
+double angle_of(const Corner& at) {
+    return std::numbers::pi - std::atan2(cross(at.arriving, at.leaving), at.arriving.dot(at.leaving));
 }
-double angle_at_start(const CurrentEdge& edge) { return angle_between(edge.start - edge.before, edge.direction); }
-double angle_at_end(const CurrentEdge& edge) { return angle_between(edge.direction, edge.beyond - edge.end); }
 
 /// Whether the block has a notch there, and not a corner or a vertex on a straight side.
-bool is_notch(double angle) { return angle > std::numbers::pi + straight; }
+bool is_notch(const Corner& at) {
+    const double turn = cross(at.arriving, at.leaving);
+    return turn < 0.0 && turn < -straight * at.arriving.norm() * at.leaving.norm();
+}
 
 void append_surface(const BlockSystem& system, const ContactSurfaces& contact_surfaces, const Eigen::VectorXd& q, int b,
                     Surfaces& surfaces) {
@@ -322,14 +330,17 @@ private:
         const Edge& side_a = reference(a, edge_a.edge);
         const Edge& side_b = reference(b, edge_b.edge);
         const bool beside_void = are_outlines(side_a, side_b);
-        const auto along = [&](double on_a, bool is_common, double angle_a, double angle_b) -> Vec2 {
+        const auto along = [&](double on_a, bool is_common, const Corner& of_a, const Corner& of_b) -> Vec2 {
             double share_of_a = std::clamp(0.5 + 0.5 * on_a / rounding, 0.0, 1.0);
-            const bool is_blunter = is_common && beside_void && std::abs(angle_a - angle_b) > straight;
-            if (is_blunter || is_notch(angle_a) != is_notch(angle_b)) share_of_a = angle_a > angle_b ? 1.0 : 0.0;
+            if (is_notch(of_a) != is_notch(of_b)) share_of_a = is_notch(of_a) ? 1.0 : 0.0;
+            if (is_common && beside_void) {
+                const double blunter = angle_of(of_a) - angle_of(of_b);
+                if (std::abs(blunter) > straight) share_of_a = blunter > 0.0 ? 1.0 : 0.0;
+            }
             return (share_of_a * edge_a.direction - (1.0 - share_of_a) * edge_b.direction).normalized();
         };
-        return {along(later, side_a.start == side_b.end, angle_at_start(edge_a), angle_at_end(edge_b)),
-                along(farther, side_a.end == side_b.start, angle_at_end(edge_a), angle_at_start(edge_b))};
+        return {along(later, side_a.start == side_b.end, corner_at_start(edge_a), corner_at_end(edge_b)),
+                along(farther, side_a.end == side_b.start, corner_at_end(edge_a), corner_at_start(edge_b))};
     }
 
     /// The pieces of an overlap are as long as the weights of its points (15).
@@ -378,10 +389,12 @@ private:
     [[nodiscard]] bool is_held_by_another_face(const CurrentEdge& leaving, const CurrentEdge& edge, double gap,
                                                std::span<const CurrentEdge> edges, bool swapped) const {
         return std::ranges::any_of(edges, [&](const CurrentEdge& face) {
-            if (are_notch(face, edge) || are_notch(edge, face)) return false;
+            const bool is_beside = face.arriving == edge.edge || edge.arriving == face.edge;
+            if (!is_beside && gap >= 0.0) return false;
+            if (is_beside && (are_notch(face, edge) || are_notch(edge, face))) return false;
             const bool overlaps = overlap_covers(leaving.edge, face.edge, swapped) ||
                                   overlap_covers(leaving.arriving, face.edge, swapped);
-            if (overlaps && (is_next(face, edge) || is_next(edge, face))) return true;
+            if (overlaps && is_beside) return true;
             const Vec2 outward = right_normal(face.direction);
             const Vec2 from_face = leaving.start - face.start;
             const double gap_there = outward.dot(from_face);
@@ -396,7 +409,7 @@ private:
     /// no other face is nearer to x than the vertex of the notch: what is pressed into a notch may lie beyond the ends of both of its faces.
     [[nodiscard]] bool is_in_notch(const Vec2& x, const CurrentEdge& edge, bool at_start,
                                    std::span<const CurrentEdge> edges) const {
-        if (!is_notch(at_start ? angle_at_start(edge) : angle_at_end(edge))) return false;
+        if (!is_notch(at_start ? corner_at_start(edge) : corner_at_end(edge))) return false;
         const Vec2 from_vertex = x - (at_start ? edge.start : edge.end);
         const double distance = from_vertex.norm();
         const Vec2 other = at_start ? edge.start - edge.before : edge.beyond - edge.end;
@@ -408,14 +421,9 @@ private:
         });
     }
 
-    /// Whether the second edge follows the first one around a corner, or straight on.
-    [[nodiscard]] static bool is_next(const CurrentEdge& first, const CurrentEdge& second) {
-        return second.arriving == first.edge && !is_notch(angle_at_start(second));
-    }
-
     /// Whether the second edge follows the first one around a notch.
     [[nodiscard]] static bool are_notch(const CurrentEdge& first, const CurrentEdge& second) {
-        return second.arriving == first.edge && is_notch(angle_at_start(second));
+        return second.arriving == first.edge && is_notch(corner_at_start(second));
     }
 
     /// Whether a vertex is a tip, and no edge of it goes farther into a face with this outward normal. The vertex of a notch touches nothing.
@@ -451,10 +459,10 @@ private:
         const int vertex = reference(owner, leaving.edge).start;
         const bool at_end = vertex == side.end;
         if (!are_outlines(side, reference(owner, at_end ? leaving.edge : leaving.arriving))) return false;
-        const double of_target = at_end ? angle_at_end(edge) : angle_at_start(edge);
-        if (angle_at_start(leaving) > of_target + straight) return false;
+        const Corner of_target = at_end ? corner_at_end(edge) : corner_at_start(edge);
+        if (angle_of(corner_at_start(leaving)) > angle_of(of_target) + straight) return false;
         const Vec2 arriving = leaving.start - leaving.before;
-        const Vec2 other_side = at_end ? edge.beyond - edge.end : edge.start - edge.before;
+        const Vec2 other_side = at_end ? of_target.leaving : of_target.arriving;
         if (go_on_straight(at_end ? arriving : leaving.direction, edge.direction) ||
             go_on_straight(at_end ? leaving.direction : arriving, other_side))
             return false;
