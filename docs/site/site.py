@@ -21,7 +21,7 @@ import yaml
 
 ROOT = Path(__file__).resolve().parents[2]
 KATEX = Path("/usr/share/javascript/katex")
-TRIED = ["docs/start.md", *(f"docs/tutorials/{name}.md" for name in ("triaxial", "own-map", "slope", "study", "calibration"))]
+TRIED = ["docs/start.md", *(f"docs/tutorials/{name}.md" for name in ("triaxial", "own-map", "slope", "tunnel", "study", "calibration"))]
 FENCE = re.compile(r'^```(\w+)(?: title="([^"]+)")?\n(.*?)^```$', re.MULTILINE | re.DOTALL)
 
 
