@@ -522,9 +522,11 @@ std::vector<KeyRule> cut_rules() {
          .type = KeyType::number,
          .range = {.least = 0.0, .most = 0.5},
          .fallback = "0.05",
-         .doc = "Pieces smaller than this fraction of a hexagon, of a mean Voronoi cell or triangle, or of the body "
-                "where that is "
-                "smaller, are merged with a neighbour."},
+         .doc =
+             "Pieces smaller than this fraction of a hexagon, of a mean Voronoi cell or triangle, or of the body "
+             "where that is "
+             "smaller, are merged with a neighbour. Between fractures a net of triangles also merges what is narrower "
+             "than 0.05 of its smallest side, whatever this is."},
         {.path = "geometry.material",
          .type = KeyType::text,
          .fallback_note = "the only material",
