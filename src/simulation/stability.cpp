@@ -15,7 +15,8 @@ namespace kluft {
 
 namespace {
 
-constexpr int most_unknowns = 30'000;    ///< a factorization with pivoting takes a second or two
+constexpr int most_unknowns =
+    3'000; ///< its factorization with pivoting takes little memory beside the run; of 30 000 four times as much
 constexpr double small_viscosity = 1e-6; ///< an equilibrium that is left more slowly than with this one is neutral
 
 BlockPattern pattern_of(const Model& model, const LoadedBody& body) {

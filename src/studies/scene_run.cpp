@@ -130,6 +130,8 @@ void warn_of_contacts(const Model& model, const State& state, const ContactWatch
             if (!warning.empty()) report.warnings.push_back(warning);
     } catch (const std::bad_alloc&) {
         return;
+    } catch (const ResourceError&) {
+        return;
     }
 }
 
