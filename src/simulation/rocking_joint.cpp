@@ -32,11 +32,22 @@ double height_above(const BlockSystem& system, const Eigen::VectorXd& q, int blo
     return std::abs(normal.dot(current_position(system, q, block, Vec2::Zero()) - place));
 }
 
+/// A platen holds what leans, and cells of a net turn by little: there a joint's stiffness along a part of it decides nothing.
+bool may_turn_over(const Model& model, const State& state) {
+    const auto& stages = model.loads.stages;
+    const bool has_platen = state.at.stage < static_cast<int>(stages.size()) &&
+                            stages[static_cast<std::size_t>(state.at.stage)].motion.has_value();
+    return !has_platen && std::ranges::none_of(model.system.interfaces, [](const Interface& interface) {
+        return interface.origin == EdgeOrigin::tessellation;
+    });
+}
+
 } // namespace
 
 RockingJoint softest_rocking_joint(const Model& model, const State& state) {
     const Eigen::VectorXd& q = state.body.displacement;
     RockingJoint softest;
+    if (!may_turn_over(model, state)) return softest;
     with_body_of_state(model, state, [&](const LoadedBody& body) {
         const auto& points = body.placement->contacts;
         for (std::size_t i = 0; i + 2 < points.size(); ++i) {

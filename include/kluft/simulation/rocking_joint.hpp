@@ -20,7 +20,8 @@ struct RockingJoint {
 };
 
 /// The joint of a committed state whose three points, a hinge in the corner, carry most beside what its stiffness would let it carry (18a).
-/// The moment of the weight is that of a load in the centroid of the block that is farther from the joint.
+/// The moment of the weight is that of a load in the centroid of the block that is farther from the joint. None in a body with a net, and in a
+/// stage whose platen moves.
 [[nodiscard]] RockingJoint softest_rocking_joint(const Model& model, const State& state);
 
 /// What is to be said of one with a shortfall of more than a tenth; "" where there is none.
