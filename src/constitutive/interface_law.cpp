@@ -85,6 +85,19 @@ struct MeanShare {
     double by_to = 0.0;
 };
 
+ShearLimit limit_under(const InterfaceLaw& law, const ContactPressure& pressure, double elastic_gap,
+                       const ContactPiece& piece) {
+    ShearLimit limit{pressure.value * law.tan_friction, law.tan_friction * pressure.slope, 0.0};
+    if (law.cohesion == 0.0) return limit;
+    const auto from = signed_pressure(law, elastic_gap + piece.from * piece.tilt);
+    const auto to = signed_pressure(law, elastic_gap + piece.to * piece.tilt);
+    const MeanShare share(from.value, to.value, law.cohesion_onset);
+    limit.value += law.cohesion * share.value;
+    limit.by_gap += law.cohesion * (share.by_from * from.slope + share.by_to * to.slope);
+    limit.by_tilt = law.cohesion * (piece.from * share.by_from * from.slope + piece.to * share.by_to * to.slope);
+    return limit;
+}
+
 } // namespace
 
 ContactPressure contact_pressure(const InterfaceLaw& law, double gap) {
@@ -101,23 +114,6 @@ double contact_energy(const InterfaceLaw& law, double gap) {
     if (gap > -2.0 * g0) return -k * gap * gap * gap / (12.0 * g0);
     return 0.5 * k * (gap + g0) * (gap + g0) + k * g0 * g0 / 6.0;
 }
-
-namespace {
-
-ShearLimit limit_under(const InterfaceLaw& law, const ContactPressure& pressure, double elastic_gap,
-                       const ContactPiece& piece) {
-    ShearLimit limit{pressure.value * law.tan_friction, law.tan_friction * pressure.slope, 0.0};
-    if (law.cohesion == 0.0) return limit;
-    const auto from = signed_pressure(law, elastic_gap + piece.from * piece.tilt);
-    const auto to = signed_pressure(law, elastic_gap + piece.to * piece.tilt);
-    const MeanShare share(from.value, to.value, law.cohesion_onset);
-    limit.value += law.cohesion * share.value;
-    limit.by_gap += law.cohesion * (share.by_from * from.slope + share.by_to * to.slope);
-    limit.by_tilt = law.cohesion * (piece.from * share.by_from * from.slope + piece.to * share.by_to * to.slope);
-    return limit;
-}
-
-} // namespace
 
 ShearLimit shear_limit(const InterfaceLaw& law, double elastic_gap, const ContactPiece& piece) {
     return limit_under(law, contact_pressure(law, elastic_gap), elastic_gap, piece);

@@ -1,6 +1,5 @@
 #include "kluft/contact/overlap_rule.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -53,11 +52,9 @@ int points_for(double share_of_joint) {
     return n;
 }
 
-int points_of_net(const InterfaceLaw& law) { return std::max(law.overlap_points, least_overlap_points); }
-
-int points_along(const InterfaceLaw& law, double share_of_joint) {
+int points_along(const InterfaceLaw& law, double share_of_joint, bool is_of_net) {
     if (law.overlap_points > 0) return law.overlap_points;
-    return law.cohesion == 0.0 ? least_overlap_points : points_for(share_of_joint);
+    return law.cohesion == 0.0 || is_of_net ? least_overlap_points : points_for(share_of_joint);
 }
 
 double length_of(const BlockSystem& system, const Interface& interface) {
@@ -73,7 +70,7 @@ OverlapRule overlap_rule(int n_points) {
     return {std::span(rules.at(n).positions).first(n), std::span(rules.at(n).weights).first(n)};
 }
 
-int overlap_points_alone(const InterfaceLaw& law) { return points_along(law, 1.0); }
+int overlap_points_alone(const InterfaceLaw& law) { return points_along(law, 1.0, false); }
 
 std::vector<int> overlap_points(const BlockSystem& system, const std::vector<const InterfaceLaw*>& laws) {
     std::map<int, double> lengths; // of the mapped fractures
@@ -85,8 +82,7 @@ std::vector<int> overlap_points(const BlockSystem& system, const std::vector<con
     for (std::size_t k = 0; k < system.interfaces.size(); ++k) {
         const Interface& i = system.interfaces[k];
         const double share = i.fracture >= 0 ? length_of(system, i) / lengths[i.fracture] : 1.0;
-        const bool of_net = i.origin == EdgeOrigin::tessellation;
-        points.push_back(of_net ? points_of_net(*laws[k]) : points_along(*laws[k], share));
+        points.push_back(points_along(*laws[k], share, i.origin == EdgeOrigin::tessellation));
     }
     return points;
 }

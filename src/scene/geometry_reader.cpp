@@ -728,8 +728,7 @@ private:
 
     void name_sides(const SceneSection& section) {
         BoundarySides boundary{section.name(), {}};
-        constexpr auto names_end =
-            ": the names that sides have from where they face end where one boundary has `sides` or `facing`";
+        constexpr auto names_end = ": once one boundary has `sides` or `facing`, each says its own";
         if (section.node()->is_mapping() && gives_one_of(section, {"sides", "facing", "hole"}, context_, names_end))
             boundary.sides = section.has("sides") ? counted_sides(section) : facing_sides(section);
         spec_.boundaries.push_back(std::move(boundary));

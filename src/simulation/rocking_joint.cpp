@@ -34,9 +34,7 @@ double height_above(const BlockSystem& system, const Eigen::VectorXd& q, int blo
 
 /// A platen holds what leans, and cells of a net turn by little: there a joint's stiffness along a part of it decides nothing.
 bool may_turn_over(const Model& model, const State& state) {
-    const auto& stages = model.loads.stages;
-    const bool has_platen = state.at.stage < static_cast<int>(stages.size()) &&
-                            stages[static_cast<std::size_t>(state.at.stage)].motion.has_value();
+    const bool has_platen = model.loads.stages[static_cast<std::size_t>(state.at.stage)].motion.has_value();
     return !has_platen && std::ranges::none_of(model.system.interfaces, [](const Interface& interface) {
         return interface.origin == EdgeOrigin::tessellation;
     });

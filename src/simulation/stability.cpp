@@ -30,9 +30,8 @@ BlockPattern pattern_of(const Model& model, const LoadedBody& body) {
 
 bool is_unstable(const Model& model, const State& state) {
     const int unknowns = unknowns_per_block(model.kinematics) * model.system.n_blocks();
-    const bool is_given = state.at.stage < static_cast<int>(model.loads.stages.size()) &&
-                          !model.loads.stages[static_cast<std::size_t>(state.at.stage)].motion;
-    if (!is_given || unknowns > most_unknowns) return false;
+    const bool has_platen = model.loads.stages[static_cast<std::size_t>(state.at.stage)].motion.has_value();
+    if (has_platen || unknowns > most_unknowns) return false;
     bool unstable = false;
     with_body_of_state(model, state, [&](const LoadedBody& body) {
         const Eigen::VectorXd& q = state.body.displacement;
