@@ -229,12 +229,26 @@ void find_idle(const LoadedBody& body, const std::vector<Meeting>& meetings, Own
         forces.has_shed_its_load ? std::vector<char>(supported.size(), 1) : blocks_aside(body, supported, meetings);
 }
 
-/// The own forces of what carries nothing (27c).
-void raise_to_negligible(const LoadedBody& body, OwnForces& forces) {
+/// Of blocks that no other load acts on, whether the friction of a platen does.
+std::vector<char> rubbed_by_platens(const LoadedBody& body, const std::vector<double>& load_magnitudes) {
+    std::vector<double> friction(load_magnitudes.size(), 0.0);
+    for (const PointLoad& each : body.loads->friction) friction[each.block] += each.force.norm();
+    std::vector<char> rubbed(load_magnitudes.size());
+    for (std::size_t b = 0; b < rubbed.size(); ++b)
+        rubbed[b] = friction[b] > 0.0 && load_magnitudes[b] <= friction[b] ? 1 : 0;
+    return rubbed;
+}
+
+/// The own forces of what carries nothing (27c), beside which the friction of a platen that hardly touches is no load.
+void raise_to_negligible(const LoadedBody& body, const std::vector<char>& rubbed, OwnForces& forces) {
     for (std::size_t b = 0; b < forces.idle.size(); ++b) {
+        if (forces.idle[b] == 0) continue;
         const double negligible = negligible_force(body.carried_stress, body.system->blocks[b].area);
-        if (forces.idle[b] != 0 && !forces.loaded[b] && forces.own[b] > 0.0)
-            forces.own[b] = std::max(forces.own[b], negligible);
+        if (rubbed[b] != 0 && forces.own[b] < negligible) {
+            forces.loaded[b] = 0;
+            forces.own[b] = std::max(forces.own[b], forces.of_contacts[b]);
+        }
+        if (!forces.loaded[b] && forces.own[b] > 0.0) forces.own[b] = std::max(forces.own[b], negligible);
     }
 }
 
@@ -268,7 +282,7 @@ OwnForces own_forces(const LoadedBody& body, const Eigen::VectorXd& q, const std
     const std::vector<Neighbours> neighbours = neighbours_of(meetings);
     keep_below_neighbours(neighbours, result);
     find_idle(body, meetings, result);
-    raise_to_negligible(body, result);
+    raise_to_negligible(body, rubbed_by_platens(body, magnitudes), result);
     result.around = result.own;
     const auto take = [&](int block,
                           int other) { // a fixed one carries whatever stands on it, and is disturbed by nothing
