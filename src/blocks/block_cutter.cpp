@@ -263,9 +263,10 @@ double resolution(const GeometrySpec& spec, const LocalFrame& frame) {
     constexpr double of_diagonal = 1e-9;
     constexpr double of_position = 16.0 * std::numeric_limits<double>::epsilon();
     const double farthest = frame.origin.cwiseAbs().maxCoeff() + frame.box.upper.maxCoeff();
-    return std::max({has_triangles(spec) ? of_side * smallest_side(*spec.tessellation->triangles)
-                                         : of_spacing * lattice_spacing(spec),
-                     of_diagonal * frame.box.upper.norm(), of_position * farthest});
+    const double spacing = std::min(lattice_spacing(spec), frame.box.upper.minCoeff());
+    return std::max(
+        {has_triangles(spec) ? of_side * smallest_side(*spec.tessellation->triangles) : of_spacing * spacing,
+         of_diagonal * frame.box.upper.norm(), of_position * farthest});
 }
 
 std::vector<SourceTrace> local_traces(const GeometrySpec& spec, const LocalFrame& frame, const SourceNumbers& numbers) {

@@ -9,6 +9,7 @@
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/core/nearest_name.hpp"
 #include "kluft/maps/gdal.hpp"
+#include "shapefile_records.hpp"
 #include "spatial_reference.hpp"
 
 namespace kluft {
@@ -48,6 +49,13 @@ void require_files(const fs::path& file) {
         if (!fs::is_regular_file(each, error))
             throw InputError(fmt::format("{}: expected {} beside it, which is a part of the shapefile, found none",
                                          file.string(), each.filename().string()));
+}
+
+/// Of a shapefile that GDAL can read: it leaves out shapes that have no record in the index or in the table, without a word.
+void require_whole(const fs::path& file) {
+    if (!is_shapefile(file)) return;
+    const auto beside = companions(file);
+    require_equal_records(file, beside[0], beside[1]);
 }
 
 OpenMap open_map(const fs::path& file, const GdalMessages& messages) {
@@ -344,6 +352,7 @@ MapLayer read_map_layer(const fs::path& file, const std::string& name) {
     if (messages.has_failure())
         throw InputError(fmt::format("{}: expected a sound layer '{}', found damage: {}", file.string(), read.name,
                                      messages.text()));
+    require_whole(file);
     return read;
 }
 

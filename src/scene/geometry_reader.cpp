@@ -134,7 +134,7 @@ public:
         look_for_traces_outside(geometry);
         if (geometry.has("tessellation")) read_tessellation(geometry.section("tessellation"));
         read_construction_lines(geometry);
-        spec_.reference_spacing = geometry.number("reference_spacing");
+        read_reference_spacing(geometry);
         spec_.minimum_area = geometry.number("minimum_area");
         if (!materials_.empty() && geometry.node() != nullptr)
             spec_.material = context_.reference(geometry, "material", materials_, "a material").value_or(-1);
@@ -145,6 +145,11 @@ public:
     }
 
 private:
+    void read_reference_spacing(const SceneSection& geometry) {
+        spec_.reference_spacing = geometry.number("reference_spacing");
+        spec_.places.reference_spacing = context_.place(geometry, "reference_spacing");
+    }
+
     // ---- given blocks ----------------------------------------------------------------------------------------
 
     GeometrySpec read_given(const SceneSection& geometry) {
@@ -154,7 +159,7 @@ private:
                 context_.fail(
                     geometry, key,
                     fmt::format("expected nothing beside blocks, found {}", found_text(*geometry.value(key))));
-        spec_.reference_spacing = geometry.number("reference_spacing");
+        read_reference_spacing(geometry);
         spec_.minimum_area = geometry.number("minimum_area");
         spec_.places.blocks = context_.place(geometry, "blocks");
         const auto sections = geometry.sections("blocks");

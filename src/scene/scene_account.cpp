@@ -80,8 +80,14 @@ void say_stiffness(const Scene& scene, const Model& model, Lines& lines) {
         const auto lattice = model.kinematics == Kinematics::rigid
                                  ? rigid_lattice_moduli(stiffness, model.net, model.plane)
                                  : lattice_moduli(model.moduli[m], stiffness, model.net, model.plane);
-        lines.push_back({"lattice", fmt::format("{}: E {:.4g} Pa, nu {:.4g}", scene.materials[m].name,
-                                                lattice.youngs_modulus, lattice.poissons_ratio)});
+        const std::string& name = scene.materials[m].name;
+        lines.push_back(
+            {"lattice",
+             lattice.poissons_ratio > -1.0
+                 ? fmt::format("{}: E {:.4g} Pa, nu {:.4g}", name, lattice.youngs_modulus, lattice.poissons_ratio)
+                 : fmt::format(
+                       "{}: K {:.4g} Pa, G {:.4g} Pa in the plane, as of no isotropic material: k_s is far above k_n",
+                       name, lattice.bulk_modulus, lattice.shear_modulus)});
     }
 }
 

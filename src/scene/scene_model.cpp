@@ -20,7 +20,8 @@ namespace kluft {
 
 namespace {
 
-constexpr std::size_t most_told = 3; ///< warnings of one kind
+constexpr std::size_t most_told = 3;     ///< warnings of one kind
+constexpr double least_reference = 3e-3; ///< spacing over the size of a block
 
 /// Why nothing is left of a fracture.
 std::string reason(const LostFracture& lost, const GeometrySpec& geometry, const CutReport& report) {
@@ -197,6 +198,18 @@ void blame_coarse_net(const GeometrySpec& geometry, const InputError& error) {
                     geometry.places.spacing, spacing, width, error.what()));
 }
 
+/// Where the length that motions are measured by is small beside the blocks.
+std::vector<std::string> small_reference(const GeometrySpec& geometry, const BlockSystem& system) {
+    if (geometry.tessellation || geometry.reference_spacing == 0.0) return {};
+    const double size = std::sqrt(area_of(system) / system.n_blocks());
+    if (geometry.reference_spacing >= least_reference * size) return {};
+    return {fmt::format(
+        "{}: {:.3g} m is little beside the blocks, which are {:.3g} m wide on the average: gaps and motions are "
+        "measured by it, and an equilibrium to which blocks have to move by more than a hundredth of it may not be "
+        "found; without it the blocks' size is taken",
+        geometry.places.reference_spacing, geometry.reference_spacing, size)};
+}
+
 /// The blocks of the scene's body.
 CutBody cut_body(const Scene& scene) {
     try {
@@ -236,7 +249,8 @@ SceneModel build_scene_model(const Scene& scene) {
     for (const auto& warnings :
          {lost_fractures(scene.geometry, built.cut), fine_details(scene.geometry, built.cut),
           pruned_pieces(scene.geometry, built.cut), closed_outcrops(scene.geometry, built.cut),
-          bare_net(scene.geometry, built.model.system), empty_regions(scene.geometry, built.model.system),
+          small_reference(scene.geometry, built.model.system), bare_net(scene.geometry, built.model.system),
+          empty_regions(scene.geometry, built.model.system),
           coarse_places(scene.geometry, built.cut, scene.interface_types)})
         built.model.warnings.insert(built.model.warnings.end(), warnings.begin(), warnings.end());
     require_memory();

@@ -326,6 +326,14 @@ LatticeModuli moduli_of_body(const ElasticModuli& blocks, const ModelInput& inpu
     return lattice_moduli(blocks, net, model.net, input.plane);
 }
 
+/// E, or half of E/(1 - nu^2) = 4 K G/(K + G) where that is more: a net with a shear stiffness far above its normal one has no
+/// positive E in plane strain.
+double modulus_for_scale(const LatticeModuli& body) {
+    const double bulk = body.bulk_modulus;
+    const double shear = body.shear_modulus;
+    return std::max(body.youngs_modulus, 2.0 * bulk * shear / (bulk + shear));
+}
+
 /// Platens are laid on what they press as it lies, which a gap to some of it may not mean.
 void warn_of_uneven_platen(int moved, Model& model) {
     const double length = distance_across(model.system, moved);
@@ -411,7 +419,7 @@ Model build_model(BlockSystem system, const ModelInput& input) {
                                 ? moduli_of_blocks(material, input, model.net)
                                 : plane_moduli(material.youngs_modulus, material.poissons_ratio, input.plane);
         const auto effective = moduli_of_body(moduli, input, model);
-        model.effective_modulus = std::max(model.effective_modulus, effective.youngs_modulus);
+        model.effective_modulus = std::max(model.effective_modulus, modulus_for_scale(effective));
         model.moduli.push_back(moduli);
     }
     // One soft joint across a stiff body makes it as soft as k_n H.

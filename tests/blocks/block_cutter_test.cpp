@@ -759,6 +759,21 @@ std::vector<BadSpec> bad_specs() {
     return all;
 }
 
+// A length far beyond the body is nothing that is lost in it: the joint became the diagonal of the body.
+TEST(BlockCutter, AReferenceBeyondTheBodyMovesNoFracture) {
+    GeometrySpec spec = rectangle(1, 2);
+    spec.fractures = {{{{-1, 1}, {2, 1}}, 0, "joint"}};
+    for (const double reference : {3.0, 100.0, 1e6}) {
+        spec.reference_spacing = reference;
+        const CutBody body = cut_blocks(spec);
+        ASSERT_EQ(body.system.n_blocks(), 2) << reference;
+        for (const Block& block : body.system.blocks) {
+            EXPECT_DOUBLE_EQ(block.area, 1.0) << reference;
+            EXPECT_EQ(block.edges.size(), 4U) << reference;
+        }
+    }
+}
+
 TEST(BlockCutter, NamesWhatIsWrongWithItsInput) {
     for (const BadSpec& bad : bad_specs()) {
         try {

@@ -2,7 +2,9 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -38,6 +40,33 @@ std::string refusal_of_traces(const MapRequest& request) {
 
 const std::string two_lines_of_munich = "[[[691400.125, 5334600.25], [691420.5, 5334611.0]], "
                                         "[[691500, 5334700], [691510, 5334700], [691510, 5334720]]]";
+
+// A file that is left of another state of the map: GDAL leaves out the shapes that have no record there, and says nothing.
+TEST_F(MapFilesOfGdal, PartsOfAShapefileHaveAsManyRecords) {
+    const auto lines = [](int n) {
+        std::string all;
+        for (int i = 0; i < n; ++i)
+            all +=
+                (i > 0 ? "," : "") + feature("LineString", fmt::format("[[0, {0}], [5, {0}]]", i), R"({"set": "A"})");
+        return geojson(all);
+    };
+    write("few.geojson", lines(1));
+    write("many.geojson", lines(3));
+    ogr2ogr("few.shp few.geojson");
+    ogr2ogr("many.shp many.geojson");
+    EXPECT_EQ(read_map_traces({.file = path("many.shp")}).traces.size(), 3U);
+    for (const auto& [ending, found] : {std::pair(".shx", "found 3, 1 and 3"), std::pair(".dbf", "found 3, 3 and 1")}) {
+        const std::string name = std::string("many") + ending;
+        const std::string whole = content(name);
+        write(name, content(std::string("few") + ending));
+        EXPECT_THAT(refusal_of_traces({.file = path("many.shp")}),
+                    AllOf(HasSubstr("many.shp: expected as many shapes as many.shx and many.dbf have records"),
+                          HasSubstr(found)));
+        write(name, whole);
+    }
+    write("few.shp", content("many.shp"));
+    EXPECT_THAT(refusal_of_traces({.file = path("few.shp")}), HasSubstr("found 3, 1 and 1"));
+}
 
 TEST_F(MapFilesOfGdal, TracesKeepTheirPlacesPartsAndAttributes) {
     write("t.geojson", geojson(feature("MultiLineString", two_lines_of_munich, R"({"set": "A", "no": 1})") + "," +

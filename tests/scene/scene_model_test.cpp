@@ -164,5 +164,15 @@ TEST(SceneModel, NamesTheSpacingThatMakesTooManyTriangles) {
                 AllOf(HasSubstr("--set " + grading + ".region_spacing=1e-6"), HasSubstr("about 2.3e+12")));
 }
 
+// Two blocks of 1 m2: the mean size is 1 m.
+TEST(SceneModel, WarnsOfAReferenceThatIsLittleBesideTheBlocks) {
+    const auto warnings = [](const char* spacing) {
+        return warnings_of({"geometry.tessellation=null", std::string("geometry.reference_spacing=") + spacing});
+    };
+    EXPECT_THAT(warnings("2.9e-3"),
+                ElementsAre(AllOf(HasSubstr("reference_spacing"), HasSubstr("0.0029 m is little beside the blocks"))));
+    EXPECT_THAT(warnings("3.1e-3"), IsEmpty());
+}
+
 } // namespace
 } // namespace kluft

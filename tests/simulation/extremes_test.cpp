@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "kluft/constitutive/block_elasticity.hpp"
+#include "kluft/constitutive/lattice_stiffness.hpp"
 #include "kluft/contact/detection.hpp"
 #include "kluft/core/diagnostics.hpp"
 #include "support/scene_run.hpp"
@@ -244,6 +245,38 @@ stages: [{strain: {boundary: top, value: 1e-13}, steps: 5}]
         EXPECT_NEAR(run.history[step].axial_stress, modulus * run.history[step].axial_strain, 1e-9 * modulus * 1e-13)
             << step;
     }
+}
+
+// Hexagons whose edges resist shear 500 times as much as closing have moduli in the plane that no isotropic material has in plane strain:
+// G is more than 3 K, and E is below zero. Under a pressure p on two sides the body is as stiff as 4 K G/(K + G), (20); one that turns and that nothing holds has no
+// equilibrium, and says so. (With a scale of forces below zero its load step never ended.)
+TEST(Extremes, NetLikeNoIsotropicMaterial) {
+    const auto scene = [](const char* loads) {
+        return fmt::format(R"(
+kluft: 1
+analysis: {{plane: strain}}
+materials: {{rock: {{youngs_modulus: 5 GPa, poissons_ratio: 0.25, cohesion: 1 MPa, friction_angle: 40, tensile_strength: 0.3 MPa}}}}
+interfaces:
+  crack: {{kind: fracture, normal_stiffness: 10 GPa/m, shear_stiffness: 5 GPa/m, friction_angle: 20}}
+  bond: {{kind: potential_crack, fails_to: crack, normal_stiffness: 0.1 GPa/m, shear_stiffness: 50 GPa/m}}
+geometry: {{domain: {{rectangle: {{width: 10, height: 10}}}}, tessellation: {{hexagons: {{spacing: 1}}, interface: bond}}}}
+{}
+)",
+                           loads);
+    };
+    const SceneRun pressed =
+        run_scene(scene("boundaries: {bottom: {support: smooth}}\nstages: [{pressure: {top: 10 kPa}}]"));
+    ASSERT_TRUE(stands(pressed)) << pressed.report.diagnosis;
+    EXPECT_GT(pressed.model.effective_modulus, 0.0);
+    const ElasticModuli rock = plane_moduli(5e9, 0.25, Plane::strain);
+    const double bulk = 0.5 / (0.5 / (rock.lambda + rock.mu) + 1.0 / 0.1e9);
+    const double shear = 0.5 / (0.5 / rock.mu + 2.0 / (0.1e9 + 50e9));
+    const double strain = 10e3 * (bulk + shear) / (4.0 * bulk * shear);
+    EXPECT_NEAR(pressed.history.back().axial_strain, strain, 0.03 * strain); // cells at the outline are halves
+
+    const SceneRun pushed = run_scene(scene("stages: [{pressure: {left: 0.1 MPa}}]"));
+    EXPECT_EQ(pushed.report.status, RunStatus::no_equilibrium);
+    EXPECT_THAT(pushed.report.diagnosis, HasSubstr("nothing holds the body"));
 }
 
 } // namespace

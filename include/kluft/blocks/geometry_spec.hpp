@@ -116,6 +116,7 @@ struct GeometryPlaces {
     std::string net = "geometry.tessellation.triangles";
     std::string spacing = "geometry.tessellation.triangles.spacing";
     std::string grading = "geometry.tessellation.triangles.grading";
+    std::string reference_spacing = "geometry.reference_spacing";
 };
 
 struct GeometrySpec {
