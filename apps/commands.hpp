@@ -106,6 +106,7 @@ struct StudyArguments {
     std::string emit;
     std::string quantity; ///< that is recommended for; empty: the first of the study
     bool collect = false;
+    bool force = false; ///< replace results of a study of another scene
     bool quiet = false;
 };
 

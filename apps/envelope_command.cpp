@@ -55,6 +55,19 @@ std::vector<fs::path> files_of(const fs::path& picture) {
     return {picture, fs::path(picture).replace_extension(".csv"), fs::path(picture).replace_extension(".json")};
 }
 
+/// A table or numbers beside the picture that are of something else.
+void require_own_files(const std::vector<fs::path>& files) {
+    std::error_code ignored;
+    const auto refuse = [](const fs::path& file) {
+        throw InputError(
+            fmt::format("-o: {} is no file of an envelope and would be overwritten; expected another name, or none "
+                        "beside it with this one",
+                        file.string()));
+    };
+    if (fs::is_regular_file(files[1], ignored) && !is_envelope_csv(read_file(files[1]))) refuse(files[1]);
+    if (fs::is_regular_file(files[2], ignored) && !is_envelope_json(read_file(files[2]))) refuse(files[2]);
+}
+
 /// None of the files may take the place of a table that they are made from, or of a result of a run.
 void keep_tests(const std::vector<fs::path>& files, const std::vector<std::string>& sources) {
     std::error_code ignored;
@@ -99,6 +112,7 @@ ExitCode envelope(const EnvelopeArguments& arguments) {
     const StrengthFit fit = fit_strength(peaks);
     const auto files = files_of(arguments.picture);
     keep_tests(files, arguments.sources);
+    require_own_files(files);
     write_envelope(files[0], arguments.title, peaks, fit, others);
     write_file(files[1], envelope_csv(peaks, fit));
     write_file(files[2], envelope_json(peaks, fit));

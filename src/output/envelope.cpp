@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -17,6 +18,8 @@
 namespace kluft {
 
 namespace {
+
+constexpr std::string_view own_columns = "run,sigma_3,sigma_1,fitted_sigma_1";
 
 std::string use_name(PeakUse use) {
     switch (use) {
@@ -165,8 +168,15 @@ PeakPoint peak_point(const std::string& run, const std::vector<StepRecord>& equi
             .net_locked = numbers.net_locked};
 }
 
+bool is_envelope_csv(std::string_view text) { return text.starts_with(own_columns); }
+
+bool is_envelope_json(std::string_view text) {
+    const EnvelopeJson json = EnvelopeJson::parse(text, nullptr, false);
+    return json.is_object() && json.contains("cohesion_error") && json.contains("friction_angle_error");
+}
+
 std::string envelope_csv(const std::vector<PeakPoint>& points, const StrengthFit& fit) {
-    std::string text = "run,sigma_3,sigma_1,fitted_sigma_1,peak_reached,balanced,net_locked,use\n";
+    std::string text = fmt::format("{},peak_reached,balanced,net_locked,use\n", own_columns);
     for (const PeakPoint& point : points)
         text += fmt::format("{},{:.17g},{:.17g},{:.17g},{:d},{:d},{:d},{}\n", quoted_cell(point.run), point.sigma_3,
                             point.sigma_1, fit.envelope.sigma_1(point.sigma_3), point.peak_reached, point.balanced,

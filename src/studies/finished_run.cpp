@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -79,6 +80,20 @@ void require_results(const fs::path& directory) {
     }
 }
 
+std::string missing_rows(const std::vector<StepRecord>& history, const std::vector<StepRecord>& equilibria,
+                         const RunSummary& summary) {
+    const int steps = summary.numbers.steps;
+    const auto lacks = [steps](const std::vector<StepRecord>& rows) {
+        return rows.empty() || rows.back().step < steps;
+    };
+    for (const auto& [name, rows] : {std::pair("history.csv", &history), std::pair("equilibria.csv", &equilibria)})
+        if (steps > 0 && lacks(*rows))
+            return fmt::format(
+                "{} ends at load step {}, summary.json says {}: one of them is damaged or of another run", name,
+                rows->empty() ? 0 : rows->back().step, steps);
+    return {};
+}
+
 FinishedRun read_finished_run(const fs::path& directory, const std::string& name) {
     require_results(directory);
     FinishedRun run;
@@ -98,11 +113,8 @@ FinishedRun read_finished_run(const fs::path& directory, const std::string& name
         run.summary = read_summary(directory / "summary.json");
         run.platen_stage = run.summary->platen_stage;
         run.numbers = run.summary->numbers;
-        if (run.history.back().step != run.numbers.steps)
-            run.notes.push_back(
-                fmt::format("history.csv of {} ends at load step {}, its summary.json says {}: one of them is "
-                            "damaged or of another run",
-                            run.name, run.history.back().step, run.numbers.steps));
+        if (std::string missing = missing_rows(run.history, run.equilibria, *run.summary); !missing.empty())
+            run.notes.push_back(fmt::format("{}: {}", run.name, missing));
         return run;
     }
     run.notes.push_back(directory.string() + " has no summary.json: its numbers are made from its tables");

@@ -243,11 +243,15 @@ bool is_blank(std::string_view line) { return line.find_first_not_of(" \t,") == 
 
 PeakPoint read_peak(const fs::path& directory, const std::string& run) {
     require_results(directory);
-    const fs::path equilibria = directory / "equilibria.csv";
-    const auto rows = read_history(fs::exists(equilibria) ? equilibria : directory / "history.csv");
+    const std::vector<StepRecord> history = read_history(directory / "history.csv");
+    const fs::path fine = directory / "equilibria.csv";
+    const std::vector<StepRecord> equilibria = fs::exists(fine) ? read_history(fine) : std::vector<StepRecord>{};
+    const std::vector<StepRecord>& rows = equilibria.empty() ? history : equilibria;
     const fs::path summary_file = directory / "summary.json";
     if (!fs::exists(summary_file)) return peak_point(run, rows, read_finished_run(directory, run).platen_stage);
     const RunSummary summary = read_summary(summary_file);
+    if (const std::string missing = missing_rows(history, equilibria, summary); !missing.empty())
+        throw InputError(fmt::format("{}: expected all rows of the run, found that {}", directory.string(), missing));
     PeakPoint point = peak_point(run, rows, summary.platen_stage);
     point.balanced = summary.status != RunStatus::unbalanced;
     point.net_locked = net_locked_in(summary_file);

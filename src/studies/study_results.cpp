@@ -79,8 +79,9 @@ std::string first_message(const fs::path& directory) {
     return text.substr(0, text.find('\n'));
 }
 
-Json description(const PlannedCase& one) {
+Json description(const PlannedCase& one, const fs::path& scene) {
     Json json;
+    json["scene"] = scene.string();
     json["settings"] = Json::array();
     for (const auto& setting : one.set) json["settings"].push_back(setting.assignment());
     json["digest"] = one.digest;
@@ -286,7 +287,26 @@ fs::path case_directory(const fs::path& study_directory, const PlannedCase& one)
     return study_directory / "cases" / one.name;
 }
 
-void prepare_case(const fs::path& directory, const PlannedCase& one) {
+void require_no_other_study(const ReadStudy& read, const fs::path& directory) {
+    const std::string scene = read.study.scene.string();
+    for (const PlannedCase& one : read.cases) {
+        const fs::path place = case_directory(directory, one);
+        const std::string earlier = value_or(json_of(place / "case.json"), "scene", scene);
+        if (earlier == scene || is_described(place, one)) continue;
+        throw InputError(
+            fmt::format("{}: expected results of a study of {} or none, found those of a study of {} in {}; --force "
+                        "replaces them, -o names another directory",
+                        directory.string(), scene, earlier, place.string()));
+    }
+    std::error_code error;
+    if (fs::exists(directory / "study.csv", error) && !fs::exists(directory / "cases.txt", error))
+        throw InputError(
+            fmt::format("{}: expected a table of a study or none, found one of something else, which would be lost; "
+                        "--force replaces it, -o names another directory",
+                        (directory / "study.csv").string()));
+}
+
+void prepare_case(const fs::path& directory, const PlannedCase& one, const fs::path& scene) {
     if (is_described(directory, one)) return;
     if (is_locked(directory))
         throw InputError(directory.string() + ": expected no process that writes to it before it is made anew, found "
@@ -294,7 +314,8 @@ void prepare_case(const fs::path& directory, const PlannedCase& one) {
     std::error_code error;
     fs::remove_all(directory, error);
     make_directory(directory);
-    write_file(directory / "case.json", description(one).dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
+    write_file(directory / "case.json",
+               description(one, scene).dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
 }
 
 void write_outcome(const fs::path& directory, const CaseOutcome& outcome) {

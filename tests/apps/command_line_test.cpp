@@ -1702,6 +1702,51 @@ TEST_F(CommandLine, EnvelopeTakesNoResultsPlace) {
     }
     EXPECT_EQ(kluft({"envelope", "good.csv", "-o", "r/envelope.png"}).code, 0);
     EXPECT_EQ(kluft({"envelope", "good.csv", "-o", "r/envelope.png"}).code, 0);
+
+    for (const auto* const name : {"lab.csv", "lab.json"}) {
+        write(name, "of a laboratory\n");
+        expect_refused({"envelope", "good.csv", "-o", "lab.png"},
+                       HasSubstr(std::string(name) + " is no file of an envelope"));
+        EXPECT_EQ(content_of(path(name)), "of a laboratory\n");
+        fs::remove(path(name));
+    }
+}
+
+// Tables that have lost rows, or are not there at all, say less than the run's summary.
+TEST_F(CommandLine, EnvelopeAsksForAllRowsOfARun) {
+    write("tiny.yaml", tiny_scene);
+    write("good.csv", "sigma_3,sigma_1\n0,1e6\n1e6,5e6\n");
+    ASSERT_EQ(kluft({"run", "tiny.yaml", "-o", "r", "--quiet"}).code, 0);
+    for (const std::string name : {"history.csv", "equilibria.csv"}) {
+        const std::string whole = content_of(path("r/" + name));
+        write("r/" + name, whole.substr(0, whole.find('\n', whole.size() / 2) + 1));
+        expect_refused({"envelope", "r", "good.csv"},
+                       AllOf(HasSubstr("r: expected all rows of the run"), HasSubstr(name + " ends at load step")));
+        write("r/" + name, whole);
+    }
+    fs::remove(path("r/equilibria.csv"));
+    expect_refused({"envelope", "r", "good.csv"}, HasSubstr("equilibria.csv ends at load step 0"));
+}
+
+// A study in the directory of one of another scene would take the place of its runs, whose cases have the same names.
+TEST_F(CommandLine, StudyKeepsTheRunsOfAnotherScenesStudy) {
+    write("tiny.yaml", tiny_scene);
+    write("other.yaml", std::string(tiny_scene) + "output: {pictures: false}\n");
+    write("a.yaml", "scene: tiny.yaml\nvary: {stages.1.steps: [1]}\n");
+    write("b.yaml", "scene: other.yaml\nset: {interfaces.joint.friction_angle: 10}\nvary: {stages.1.steps: [1]}\n");
+    ASSERT_EQ(kluft({"study", "a.yaml", "-o", "s", "--quiet"}).code, 0);
+    const std::string table = content_of(path("s/study.csv"));
+    expect_refused({"study", "b.yaml", "-o", "s"},
+                   ContainsRegex("s: expected results of a study of .*other.yaml or none, found "
+                                 "those of a study of .*tiny.yaml .*--force"));
+    EXPECT_EQ(content_of(path("s/study.csv")), table);
+    EXPECT_EQ(kluft({"study", "a.yaml", "-o", "s", "--quiet"}).code, 0);
+    EXPECT_EQ(kluft({"study", "b.yaml", "-o", "s", "--quiet", "--force"}).code, 0);
+    EXPECT_NE(content_of(path("s/study.csv")), table);
+    fs::create_directory(path("own"));
+    write("own/study.csv", "mine\n");
+    expect_refused({"study", "a.yaml", "-o", "own"}, HasSubstr("own/study.csv: expected a table of a study or none"));
+    EXPECT_EQ(content_of(path("own/study.csv")), "mine\n");
 }
 
 // Of another scene, whose body is the same: no fingerprint tells them apart.

@@ -105,10 +105,13 @@ TEST(FinishedRun, SaysThatRowsOfItsTableAreMissing) {
     write_summary(directory / "summary.json", summary);
     const std::string rows = straight_line();
     write_file(directory / "history.csv", rows);
+    EXPECT_THAT(read_finished_run(directory.path(), "run").notes,
+                Contains(HasSubstr("run: equilibria.csv ends at load step 0, summary.json says 4")));
+    write_file(directory / "equilibria.csv", rows);
     EXPECT_THAT(read_finished_run(directory.path(), "run").notes, Not(Contains(HasSubstr("damaged"))));
     write_file(directory / "history.csv", rows.substr(0, rows.size() - 20)); // cut in the last row
     EXPECT_THAT(read_finished_run(directory.path(), "run").notes,
-                Contains(HasSubstr("history.csv of run ends at load step 3, its summary.json says 4")));
+                Contains(HasSubstr("run: history.csv ends at load step 3, summary.json says 4")));
 }
 
 TEST(FinishedRun, SaysWhyItsBlocksAreNotKnown) {

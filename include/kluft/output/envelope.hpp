@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "kluft/constitutive/strength_fit.hpp"
@@ -21,6 +22,9 @@ namespace kluft {
 /// Columns `run,sigma_3,sigma_1,fitted_sigma_1,peak_reached,balanced,net_locked,use` (Pa), one row per test; `use` is
 /// strength, tension or bound. Names with commas or quotes are quoted (RFC 4180).
 [[nodiscard]] std::string envelope_csv(const std::vector<PeakPoint>& points, const StrengthFit& fit);
+/// Whether a text is such a table, and whether one is what envelope_json writes.
+[[nodiscard]] bool is_envelope_csv(std::string_view text);
+[[nodiscard]] bool is_envelope_json(std::string_view text);
 /// The same as an aligned table in MPa, below it every parameter with its standard error, what is a bound and what
 /// contradicts the line.
 [[nodiscard]] std::string envelope_text(const std::vector<PeakPoint>& points, const StrengthFit& fit);

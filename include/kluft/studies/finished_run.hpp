@@ -31,6 +31,11 @@ struct FinishedRun {
     [[nodiscard]] const std::vector<StepRecord>& fine_rows() const { return equilibria.empty() ? history : equilibria; }
 };
 
+/// What the tables of a run lack beside its summary, of rows at their end or of one of them as a whole; "" where nothing is missing. A
+/// run that goes on, or was killed, has more rows than its summary says.
+[[nodiscard]] std::string missing_rows(const std::vector<StepRecord>& history,
+                                       const std::vector<StepRecord>& equilibria, const RunSummary& summary);
+
 /// Reads a run. Its tables may lack columns other than step, stage, axial strain, axial and differential stress.
 /// Throws InputError for what is no directory of results, an empty history and damaged tables or summary.
 [[nodiscard]] FinishedRun read_finished_run(const std::filesystem::path& directory, const std::string& name);

@@ -40,9 +40,12 @@ struct CaseResult {
 [[nodiscard]] std::filesystem::path case_directory(const std::filesystem::path& study_directory,
                                                    const PlannedCase& one);
 
-/// Makes the directory of a case and writes case.json (settings and digest) into it, unless that stands there already;
+/// Throws InputError where a case would replace one of a study of another scene, or the table something that no study has written.
+void require_no_other_study(const ReadStudy& read, const std::filesystem::path& directory);
+
+/// Makes the directory of a case and writes case.json (scene, settings and digest) into it, unless that stands there already;
 /// what an earlier case of this name with other settings or another scene left is removed. Throws ResourceError.
-void prepare_case(const std::filesystem::path& directory, const PlannedCase& one);
+void prepare_case(const std::filesystem::path& directory, const PlannedCase& one, const std::filesystem::path& scene);
 
 void write_outcome(const std::filesystem::path& directory, const CaseOutcome& outcome);
 [[nodiscard]] std::optional<CaseOutcome> read_outcome(const std::filesystem::path& directory);
