@@ -104,6 +104,7 @@ void add_peaks(const fs::path& source, std::vector<PeakPoint>& peaks) {
 
 ExitCode envelope(const EnvelopeArguments& arguments) {
     require_possible_output(arguments.picture);
+    require_directory_of(arguments.picture);
     std::vector<NamedEnvelope> others;
     for (const auto& text : arguments.others) others.push_back(named_envelope(text));
     std::vector<PeakPoint> peaks;

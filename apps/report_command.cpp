@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "commands.hpp"
+#include "failure.hpp"
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/report/run_page.hpp"
 #include "kluft/studies/finished_run.hpp"
@@ -23,6 +24,8 @@ void check_output(const ReportArguments& arguments) {
                                      arguments.directories.size()));
     if (fs::path(arguments.output).extension() != ".html")
         throw InputError("--output: expected a name that ends in .html, found " + arguments.output);
+    require_possible_output(arguments.output);
+    require_directory_of(arguments.output);
 }
 
 } // namespace

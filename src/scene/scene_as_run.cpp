@@ -120,6 +120,8 @@ const std::string* value_at(const ValueByPath& values, const std::string& path) 
 
 /// Whether a run that goes on may have another value of it.
 bool may_change_on_the_way(const Leaf& leaf) {
+    if (leaf.path == "cracks.strength_noise" || leaf.path == "cracks.strength_seed")
+        return false; // strengths of the body
     constexpr std::array<std::string_view, 3> sections{"solver.", "cracks.", "output."};
     return leaf.path.ends_with(".stop_after_drop") ||
            std::ranges::any_of(sections, [&](std::string_view section) { return leaf.path.starts_with(section); });

@@ -93,13 +93,18 @@ bool is_described(const fs::path& directory, const PlannedCase& one) {
 }
 
 /// Why a program that left no final summary ended.
-void judge_outcome(const Study& study, const CaseOutcome& outcome, const std::string& message, CaseResult& result) {
-    constexpr int bad_input = 2, out_of_resources = 4;
+void judge_outcome(const Study& study, const CaseOutcome& outcome, const fs::path& directory, CaseResult& result) {
+    constexpr int done = 0, bad_input = 2, no_equilibrium = 3, out_of_resources = 4;
     constexpr int of_signals = 128; // beyond it: stopped by a signal, with the state saved
     const bool stopped_early = outcome.signal == SIGINT || outcome.signal == SIGTERM; // before there was a state
+    const std::string message = first_message(directory);
     const std::string why = message.empty() ? "" : ": " + message;
     result.status = CaseStatus::failed;
-    if (outcome.out_of_time) {
+    if (outcome.signal == 0 && (outcome.exit_code == done || outcome.exit_code == no_equilibrium)) {
+        result.reason = fmt::format(
+            "expected the summary of a run that has ended in {}, found none; remove {} to have it run again",
+            (directory / "summary.json").string(), directory.string());
+    } else if (outcome.out_of_time) {
         result.reason = "stopped after the time limit of " + readable_time(study.time_limit);
     } else if (outcome.exit_code == bad_input) {
         result.status = CaseStatus::refused;
@@ -357,7 +362,7 @@ CaseResult read_case(const Study& study, const PlannedCase& one, const fs::path&
         result.quantities = quantities_in(summary, study.quantities);
         if (study.curve) result.curve = curve_in(directory, summary);
     } else if (outcome) {
-        judge_outcome(study, *outcome, first_message(directory), result);
+        judge_outcome(study, *outcome, directory, result);
     }
     return result;
 }

@@ -92,6 +92,9 @@ TEST_F(SceneAsRun, OfARunThatGoesOnOnlyBodyLawsAndLoadsCount) {
     EXPECT_EQ(body_difference(scene.text,
                               read_scene_text(test::short_scene, {"solver.tolerance=1e-6", "analysis.plane=stress"})),
               "analysis.plane is absent there and 'stress' here");
+    for (const char* of_body : {"cracks.strength_noise", "cracks.strength_seed"}) // the strengths of its bonds
+        EXPECT_EQ(body_difference(scene.text, read_scene_text(test::short_scene, {std::string(of_body) + "=0"})),
+                  std::string(of_body) + " is absent there and '0' here");
 }
 
 TEST_F(SceneAsRun, TakesItsTitleFromTheNameOfTheFileWhereThereIsNone) {

@@ -222,6 +222,20 @@ TEST_F(StudyRuns, CaseThatAnotherProcessRunsIsWaitedFor) {
     EXPECT_THAT(starts(), ElementsAre("10 --force"));
 }
 
+TEST_F(StudyRuns, SummaryThatIsGoneIsNamed) {
+    const ReadStudy study = read(steps("10, 20"));
+    (void)run(steps("10, 20"));
+    for (const bool is_there : {true, false}) {
+        const fs::path summary = results_ / "cases/steps=20/summary.json";
+        if (is_there) write_file(summary, "damaged");
+        if (!is_there) fs::remove(summary);
+        const StudyTable table = collect_study(study, results_);
+        EXPECT_THAT(statuses_of(table), ElementsAre(CaseStatus::done, CaseStatus::failed));
+        EXPECT_THAT(table.cases[1].reason,
+                    AllOf(HasSubstr("steps=20/summary.json, found none"), HasSubstr("to have it run again")));
+    }
+}
+
 TEST_F(StudyRuns, ClosedFormAndOtherRunsAreReferencesToo) {
     const StudyTable closed = run(steps("10, 20") + "reference: {values: {peak_stress: 16}}\n");
     EXPECT_EQ(closed.cases[0].errors[0], -0.375);
