@@ -100,7 +100,7 @@ void write_report(const SceneModel& built, const Scene& scene, const RunWriter& 
 
 /// The run itself; whatever happens, the last committed state and the tables reach the disk if the disk allows it.
 ExitCode simulate(const SceneModel& built, const Scene& scene, State& state, RunWriter& writer, RunLog& log,
-                  const fs::path& directory, double earlier_cpu, bool quiet) {
+                  const fs::path& directory, const EarlierRuns& earlier, bool quiet) {
     const Model& model = built.model;
     RunObserver observer(model, scene.cracks.criterion, writer, quiet);
     RunReport report = run_stages(model, scene, state, observer, stop_requested);
@@ -114,11 +114,11 @@ ExitCode simulate(const SceneModel& built, const Scene& scene, State& state, Run
         log.error(report.diagnosis);
         tell("{}\n", report.diagnosis);
     }
-    add_earlier_warnings(scene, model, report);
+    add_earlier_warnings(scene, model, earlier, report);
     RunSummary summary;
     try {
         summary = writer.finish({report, unknowns_per_block(model.kinematics) * model.system.n_blocks(),
-                                 earlier_cpu + processor_seconds(), std::string(version()), blas_core()},
+                                 earlier.cpu_s + processor_seconds(), std::string(version()), blas_core()},
                                 state, [&] { return fields_of_state(model, state); });
     } catch (const ResourceError& error) {
         log.error(error.what());
@@ -172,20 +172,21 @@ ExitCode run(const RunArguments& arguments) {
         state = state_to_resume(directory, scene, options.fingerprint);
         options.resumed_step = state.at.step;
     }
-    const double earlier_cpu = arguments.resume ? earlier_cpu_s(directory) : 0.0; // before the writer removes it
+    const EarlierRuns earlier =
+        arguments.resume ? earlier_runs(directory) : EarlierRuns{}; // before the writer removes it
     listen_for_stop();
     RunWriter writer(directory, model.system, std::move(options));
     RunLog log(directory / "run.log", arguments.resume);
     log.info(fmt::format("kluft {} runs {}: {} blocks, {} interfaces, {} unknowns", version(), arguments.scene,
                          model.system.n_blocks(), model.system.n_interfaces(), unknowns));
     for (const auto& override_text : arguments.overrides) log.info("--set " + override_text);
-    for (const auto* warnings : {&scene.warnings, &model.warnings}) {
-        for (const auto& warning : *warnings) {
-            log.warning(warning);
-            if (!arguments.quiet) tell("warning: {}\n", warning);
-        }
+    RunReport before;
+    add_earlier_warnings(scene, model, earlier, before);
+    for (const auto& warning : before.warnings) {
+        log.warning(warning);
+        if (!arguments.quiet) tell("warning: {}\n", warning);
     }
-    return simulate(built, scene, state, writer, log, directory, earlier_cpu, arguments.quiet);
+    return simulate(built, scene, state, writer, log, directory, earlier, arguments.quiet);
 }
 
 } // namespace kluft

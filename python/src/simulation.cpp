@@ -84,7 +84,7 @@ struct Output {
     std::optional<DirectoryLock> lock; ///< while the run goes on
     std::optional<RunWriter> writer;
     std::optional<RunLog> log;
-    double earlier_cpu = 0.0;
+    EarlierRuns earlier;
 };
 
 class Simulation : private StepObserver {
@@ -232,7 +232,7 @@ private:
     void open_files() {
         if (!output_) return;
         if (!output_->lock) output_->lock.emplace(output_->directory, lock_holder);
-        if (resumes_) output_->earlier_cpu = earlier_cpu_s(output_->directory); // before the writer removes it
+        if (resumes_) output_->earlier = earlier_runs(output_->directory); // before the writer removes it
         RunWriterOptions options = writer_options_;
         if (resumes_) options.resumed_step = state_.at.step;
         output_->writer.emplace(output_->directory, model().system, std::move(options));
@@ -335,10 +335,10 @@ private:
             for (const std::string& warning : report_.warnings) output_->log->warning(warning);
             if (!report_.diagnosis.empty()) output_->log->error(report_.diagnosis);
         }
-        add_earlier_warnings(scene_, model(), report_);
+        add_earlier_warnings(scene_, model(), output_ ? output_->earlier : EarlierRuns{}, report_);
         if (!output_) return;
         const RunOutcome outcome{report_, unknowns_per_block(model().kinematics) * n_blocks(),
-                                 output_->earlier_cpu + processor_seconds(), std::string(version()), blas_core()};
+                                 output_->earlier.cpu_s + processor_seconds(), std::string(version()), blas_core()};
         const RunSummary summary =
             output_->writer->finish(outcome, state_, [&] { return fields_of_state(model(), state_); });
         closing_ = closing_line(report_, summary, output_->directory);

@@ -1,8 +1,10 @@
 #include "kluft/studies/scene_run.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <new>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -96,11 +98,12 @@ State state_to_resume(const fs::path& directory, const Scene& scene, const std::
     }
 }
 
-double earlier_cpu_s(const fs::path& directory) {
+EarlierRuns earlier_runs(const fs::path& directory) {
     try {
-        return read_summary(directory / "summary.json").cpu_s;
+        RunSummary summary = read_summary(directory / "summary.json");
+        return {summary.cpu_s, std::move(summary.warnings)};
     } catch (const InputError&) {
-        return 0.0; // the run before was killed
+        return {0.0, {"the run before this one was killed: what it had to warn of is not known"}};
     }
 }
 
@@ -120,14 +123,22 @@ void ContactWatch::step(const StepRecord& record, const State& state) {
 }
 
 void warn_of_contacts(const Model& model, const State& state, const ContactWatch& watch, RunReport& report) {
-    if (report.status == RunStatus::out_of_resources || report.status == RunStatus::interrupted) return;
+    if (report.status == RunStatus::out_of_resources) return;
+    const auto add = [&](const std::string& warning) {
+        if (!warning.empty()) report.warnings.push_back(warning);
+    };
     try {
+        if (report.status == RunStatus::interrupted) {
+            add(watch.corners().warning());
+            add(watch.bonds().warning());
+            return;
+        }
         for (const std::string& warning :
              {contact_pressure_warning(model, state, watch.largest_stress()), corner_contact_warning(model, state),
               watch.corners().warning(), watch.bonds().warning(), bond_bending_warning(model, state),
               rocking_joint_warning(model, state),
               report.status == RunStatus::done ? unstable_equilibrium_warning(model, state) : ""})
-            if (!warning.empty()) report.warnings.push_back(warning);
+            add(warning);
     } catch (const std::bad_alloc&) {
         return;
     } catch (const ResourceError&) {
@@ -135,10 +146,14 @@ void warn_of_contacts(const Model& model, const State& state, const ContactWatch
     }
 }
 
-void add_earlier_warnings(const Scene& scene, const Model& model, RunReport& report) {
-    std::vector<std::string> warnings = scene.warnings;
-    warnings.insert(warnings.end(), model.warnings.begin(), model.warnings.end());
-    report.warnings.insert(report.warnings.begin(), warnings.begin(), warnings.end());
+void add_earlier_warnings(const Scene& scene, const Model& model, const EarlierRuns& earlier, RunReport& report) {
+    std::vector<std::string> warnings;
+    const std::array<const std::vector<std::string>*, 4> all{&scene.warnings, &model.warnings, &earlier.warnings,
+                                                             &report.warnings};
+    for (const auto* const each : all)
+        for (const std::string& warning : *each)
+            if (std::ranges::find(warnings, warning) == warnings.end()) warnings.push_back(warning);
+    report.warnings = std::move(warnings);
 }
 
 std::string closing_line(const RunReport& report, const RunSummary& summary, const fs::path& directory) {

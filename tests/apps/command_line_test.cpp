@@ -1111,6 +1111,24 @@ TEST_F(CommandLine, ResumingIsRefusedWithoutASavedStateOrWithAnotherScene) {
     EXPECT_EQ(content_of(path("r/history.csv")), before);
 }
 
+// What a run has warned of counts for all that goes on from it: an overloaded bond may have failed by then, and is seen no more.
+TEST_F(CommandLine, ResumedRunKeepsTheWarningsOfTheRunsBeforeIt) {
+    write("tiny.yaml", tiny_scene);
+    const Words words{"run", "tiny.yaml", "-o", "r", "--set", "output.pictures=false"};
+    ASSERT_EQ(kluft(words).code, 0);
+    nlohmann::json told = summary("r");
+    const std::size_t n = told["warnings"].size();
+    told["warnings"].push_back("the bond of blocks 'a' and 'b' carries 1.35 times its strength");
+    write("r/summary.json", told.dump());
+    const Result resumed = kluft(with(words, {"--resume"}));
+    ASSERT_EQ(resumed.code, 0) << resumed.err;
+    EXPECT_THAT(resumed.err, HasSubstr("warning: the bond of blocks 'a' and 'b'"));
+    EXPECT_EQ(summary("r")["warnings"].size(), n + 1); // each once
+    EXPECT_THAT(summary("r")["warnings"].dump(), HasSubstr("carries 1.35 times its strength"));
+    fs::remove(path("r/summary.json"));
+    EXPECT_THAT(kluft(with(words, {"--resume"})).err, HasSubstr("the run before this one was killed"));
+}
+
 // ---- out of disk and memory ----------------------------------------------------------------------------------------
 
 // Files cannot grow beyond 6 kB, so that the history stops in the middle of the first stage.

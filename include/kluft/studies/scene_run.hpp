@@ -29,8 +29,14 @@ namespace kluft {
 [[nodiscard]] State state_to_resume(const std::filesystem::path& directory, const Scene& scene,
                                     const std::string& fingerprint);
 
-/// Processor time of the runs that a resumed one goes on from (s): that of the last one that said so.
-[[nodiscard]] double earlier_cpu_s(const std::filesystem::path& directory);
+/// What a resumed run takes over from those before it.
+struct EarlierRuns {
+    double cpu_s = 0.0; ///< their processor time (s), as far as they said it
+    std::vector<std::string> warnings;
+};
+
+/// From the summary of the last one; one that was killed has left none, which is a warning of its own.
+[[nodiscard]] EarlierRuns earlier_runs(const std::filesystem::path& directory);
 
 /// Runs the stages from `state` on with the integrator of the scene, as run_simulation and run_explicit do.
 RunReport run_stages(const Model& model, const Scene& scene, State& state, StepObserver& observer,
@@ -56,12 +62,13 @@ private:
 };
 
 /// Adds warnings of contacts that are pressed far more than the loads apply or than rock bears, and of bonds that carry more than
-/// they bear. Where memory has run out, what was run
-/// is all that counts.
+/// they bear; of a run that is to go on, those of what it has gone through, not those of the state that it ends with. Where memory has
+/// run out, what was run is all that counts.
 void warn_of_contacts(const Model& model, const State& state, const ContactWatch& watch, RunReport& report);
 
-/// Puts the warnings of the scene and of its body before those of the run, as the summary has them.
-void add_earlier_warnings(const Scene& scene, const Model& model, RunReport& report);
+/// Puts the warnings of the scene, of its body and of the runs before it, each text once, before those of the run, as the summary has
+/// them.
+void add_earlier_warnings(const Scene& scene, const Model& model, const EarlierRuns& earlier, RunReport& report);
 
 /// What a run has come to, in one line.
 [[nodiscard]] std::string closing_line(const RunReport& report, const RunSummary& summary,
