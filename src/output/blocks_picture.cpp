@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <functional>
+#include <numbers>
+#include <ranges>
 #include <string_view>
 #include <utility>
 
@@ -169,6 +172,72 @@ std::vector<LegendEntry> size_notes(const BlockSystem& system) {
             {fmt::format("y {:.7g} \u2026 {:.7g} m", low.y(), high.y()), {}}};
 }
 
+// ---- what moves on --------------------------------------------------------------------------------------------------
+
+constexpr Colour moving_ink = colour(0x8E24AA);
+constexpr std::size_t most_arrows = 200;
+
+/// From its tail to its head.
+void draw_arrow(Canvas& canvas, const Vec2& tail, const Vec2& head) {
+    const Vec2 along = (head - tail).normalized();
+    const Vec2 across(-along.y(), along.x());
+    const Vec2 neck = head - 6.0 * along;
+    canvas.line(tail, neck, {colour(0xFFFFFF), 4.0});
+    canvas.fill_polygon({{head + 1.5 * along, neck - along + 5.2 * across, neck - along - 5.2 * across}},
+                        colour(0xFFFFFF));
+    canvas.line(tail, neck, {moving_ink, 2.0});
+    canvas.fill_polygon({{head, neck + 3.6 * across, neck - 3.6 * across}}, moving_ink);
+}
+
+/// Three quarters of a circle with a head; on the page, where y goes down.
+void draw_turn(Canvas& canvas, const Vec2& centre, double radius, int turn) {
+    constexpr double pi = std::numbers::pi;
+    canvas.arc(centre, radius, 0.0, 1.5 * pi, {moving_ink, 2.0});
+    const Vec2 end = turn > 0 ? Vec2(centre + Vec2(radius, 0.0)) : Vec2(centre + Vec2(0.0, -radius));
+    const Vec2 along = turn > 0 ? Vec2(0.0, -1.0) : Vec2(1.0, 0.0);
+    const Vec2 across(-along.y(), along.x());
+    canvas.fill_polygon({{end + 5.0 * along, end + 3.6 * across, end - 3.6 * across}}, moving_ink);
+}
+
+/// -1 where the body has no such block.
+int number_of(const BlockSystem& system, const std::string& name) {
+    if (!system.block_names.empty()) {
+        const auto found = std::ranges::find(system.block_names, name);
+        return found == system.block_names.end() ? -1 : static_cast<int>(found - system.block_names.begin());
+    }
+    int number = -1;
+    std::from_chars(name.data(), name.data() + name.size(), number);
+    return number < system.n_blocks() ? number : -1;
+}
+
+void draw_moving(Canvas& canvas, const Panel& panel, const DrawnBody& body, const std::vector<FallingBlock>& moving) {
+    for (const FallingBlock& each : moving | std::views::take(most_arrows)) {
+        const int b = number_of(body.system, each.block);
+        if (b < 0) continue;
+        const auto at = static_cast<std::size_t>(b);
+        Vec2 moved = Vec2::Zero();
+        for (std::size_t v = body.first[at]; v < body.first[at + 1]; ++v) moved += body.displacement[v];
+        moved /= static_cast<double>(body.first[at + 1] - body.first[at]);
+        const Block& block = body.system.blocks[at];
+        const Vec2 centre = panel.place(block.centroid + moved);
+        const Vec2 within = centre - panel.corner;
+        if (!((within.array() >= 0.0).all() && (within.array() <= panel.size().array()).all()))
+            continue; // gone, or no number
+        const double size = std::clamp(0.4 * std::sqrt(block.area) * panel.scale, 7.0, 22.0);
+        const Vec2 way(each.direction.x(), -each.direction.y());
+        if (way.norm() > 0.0) draw_arrow(canvas, centre - size * way, centre + size * way);
+        if (way.norm() == 0.0 && each.turn != 0) draw_turn(canvas, centre, 0.7 * size, each.turn);
+    }
+}
+
+std::vector<LegendEntry> moving_entry(const std::vector<FallingBlock>& moving) {
+    if (moving.empty()) return {};
+    const auto arrow = [](Canvas& canvas, const Vec2& middle) {
+        draw_arrow(canvas, middle - Vec2(9.0, 0.0), middle + Vec2(9.0, 0.0));
+    };
+    return {{"moves on beyond this state", arrow}};
+}
+
 std::vector<LegendEntry> outside_note(int n) {
     if (n == 0) return {};
     return {{fmt::format("{} {} outside the picture", n, n == 1 ? "block" : "blocks"), {}}};
@@ -193,6 +262,7 @@ std::string draw_blocks(const BlockSystem& system, const FieldRecord& fields, co
     before.colour = [&](int block) { return material_colour(system.blocks[block].material); };
     after.colour = [&](int block) { return scale(stresses[block]); };
     auto entries = interface_entries(before, after);
+    append(entries, moving_entry(plot.moving));
     append(entries, material_entries(system, plot));
     constexpr double bar_height = 190.0;
     constexpr double bar_gap = 24.0;
@@ -204,6 +274,7 @@ std::string draw_blocks(const BlockSystem& system, const FieldRecord& fields, co
             draw_title(canvas, layout, plot.title);
             draw_panel(canvas, layout, 0, box, before, "before");
             draw_panel(canvas, layout, 1, box, after, plot.after);
+            draw_moving(canvas, {layout.corner(1), box, layout.scale}, after, plot.moving);
             const Vec2 corner = layout.column_corner();
             draw_colour_bar(canvas, scale, corner, {13.0, bar_height}, "major principal stress (MPa, compression +)");
             draw_column(canvas, corner + Vec2(0.0, bar_height + bar_gap), entries);

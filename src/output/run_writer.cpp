@@ -286,9 +286,12 @@ void RunWriter::write_fields(const StepRecord& record, const FieldRecord& fields
     tables_->fields->add(system_, fields, record);
 }
 
-void RunWriter::write_pictures(const Rows& history, const Rows& equilibria, const FieldRecord& fields) const {
-    const BlocksPlot blocks{
-        options_.title, options_.platen_stage ? after_title(history) : "after", 1.0, options_.material_names, {}};
+void RunWriter::write_pictures(const RunSummary& summary, const Rows& history, const Rows& equilibria,
+                               const FieldRecord& fields) const {
+    BlocksPlot blocks{options_.title, "after", 1.0, options_.material_names, {}, summary.falling};
+    if (options_.platen_stage) blocks.after = after_title(history);
+    if (const auto factor = summary.results.factor_of_safety)
+        blocks.after = fmt::format("after, factor of safety {:.4g}", *factor);
     const bool svg = system_.n_blocks() <= most_blocks_in_svg;
     FirstError errors;
     if (options_.platen_stage) { // otherwise nothing is loaded along an axis, and there is no such curve
@@ -364,7 +367,7 @@ RunSummary RunWriter::finish(const RunOutcome& outcome, const State& state,
         const FieldRecord record = is_told ? last_fields_() : fields();
         FirstError parts;
         if (fields_missing) parts.attempt([&] { write_fields(*last_row_, record); });
-        if (options_.pictures) parts.attempt([&] { write_pictures(history, equilibria, record); });
+        if (options_.pictures) parts.attempt([&] { write_pictures(summary, history, equilibria, record); });
         parts.rethrow();
     });
     // The summary was written before the pictures, which may need more memory than there is; now it counts theirs too.

@@ -7,6 +7,7 @@
 
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/output/atomic_file.hpp"
+#include "kluft/output/block_outline.hpp"
 #include "kluft/output/colour_scale.hpp"
 #include "output/hexagon_grid.hpp"
 #include "output/temporary_directory.hpp"
@@ -66,6 +67,24 @@ TEST(BlocksPicture, IsWrittenAsPngAndSvg) {
     // Red of the tension crack, blue of the shear crack: each once in the body and once in the legend.
     EXPECT_EQ(count(svg, "stroke:rgb(84.313725%,9.803922%,10.980392%)"), 2U);
     EXPECT_EQ(count(svg, "stroke:rgb(12.156863%,30.980392%,84.705882%)"), 2U);
+}
+
+// An arrow is two lines and two heads, white below purple; one is in the legend. Blocks that are not there, or are gone, have none.
+TEST(BlocksPicture, MarksWhatMovesOn) {
+    const BlockSystem system = testing::hexagon_grid(6, 10, 0.05);
+    auto fields = testing::affine_fields(system, Mat2::Zero(), Mat2::Zero());
+    const std::string purple = "stroke:rgb(55.686275%,14.117647%,66.666667%)";
+    BlocksPlot plot = plot_of("t");
+    const auto n_strokes = [&] { return count(draw_blocks(system, fields, plot, PictureFormat::svg), purple); };
+    EXPECT_EQ(n_strokes(), 0U);
+    plot.moving = {{.block = "5", .direction = {0.6, -0.8}}, {.block = "7", .turn = 1}};
+    EXPECT_EQ(n_strokes(), 3U);
+    plot.moving.push_back({.block = "no block", .direction = {1.0, 0.0}});
+    plot.moving.push_back({.block = "99999", .direction = {1.0, 0.0}});
+    EXPECT_EQ(n_strokes(), 3U);
+    const auto first = first_vertices(system);
+    for (std::size_t v = first[5]; v < first[6]; ++v) fields.displacement[v].x() = 1e6;
+    EXPECT_EQ(n_strokes(), 2U);
 }
 
 TEST(BlocksPicture, DrawsABlockWithAHole) {

@@ -9,6 +9,7 @@
 #include "kluft/blocks/block_system.hpp"
 #include "kluft/geometry/polygon.hpp"
 #include "kluft/output/canvas.hpp"
+#include "kluft/simulation/run_report.hpp"
 #include "kluft/simulation/step_record.hpp"
 
 namespace kluft {
@@ -19,7 +20,8 @@ struct BlocksPlot {
     std::string after = "after"; ///< above the deformed body
     double magnification = 1.0;  ///< of displacements
     std::vector<std::string> material_names;
-    std::vector<bool> bonded_types; ///< one per interface type: whether it is a potential crack; for draw_geometry
+    std::vector<bool> bonded_types;   ///< one per interface type: whether it is a potential crack; for draw_geometry
+    std::vector<FallingBlock> moving; ///< marked in the deformed body, with where they go
 };
 
 /// The words above the deformed body after the given load steps.
@@ -55,7 +57,8 @@ inline constexpr int most_blocks_in_svg = 20000;
 
 /// Before loading and after, side by side at one scale. After: deformed blocks filled by their major principal stress
 /// (positive in compression) with a colour bar; fractures dark, sliding ones on amber; cracks red (tension) and blue
-/// (shear), the thicker the more they have opened and slipped.
+/// (shear), the thicker the more they have opened and slipped; an arrow on each block that moves on, with the sense of its turn where it
+/// only turns.
 /// Throws InputError for an SVG of too many blocks.
 [[nodiscard]] std::string draw_blocks(const BlockSystem& system, const FieldRecord& fields, const BlocksPlot& plot,
                                       PictureFormat format);

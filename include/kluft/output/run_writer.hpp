@@ -96,8 +96,8 @@ private:
     /// Whether the tables of a resumed run have the row already.
     [[nodiscard]] bool is_known(const StepRecord& record) const;
     void write_scene_file() const;
-    void write_pictures(const std::vector<StepRecord>& history, const std::vector<StepRecord>& equilibria,
-                        const FieldRecord& fields) const;
+    void write_pictures(const RunSummary& summary, const std::vector<StepRecord>& history,
+                        const std::vector<StepRecord>& equilibria, const FieldRecord& fields) const;
     void write_fields(const StepRecord& record, const FieldRecord& fields);
     void keep_state(const StepRecord& record, const std::function<FieldRecord()>& fields, bool last_of_stage);
     void write_held_state();
