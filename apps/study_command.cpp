@@ -177,9 +177,12 @@ ExitCode study(const StudyArguments& arguments) {
     std::optional<DirectoryLock> lock;
     if (!place.ready_made.empty()) {
         if (!arguments.collect) lock.emplace(directory, holder);
+        if (!arguments.force)
+            require_no_other_study(read_study_text(place.ready_made, arguments.overrides, place.file), directory);
         write_ready_made(place);
     }
     const ReadStudy read = read_study(place.file, arguments.overrides);
+    if (!arguments.force) require_no_other_study(read, directory);
     refuse_unknown_quantity(read.study, arguments.quantity);
     if (arguments.collect) {
         if (!fs::is_directory(directory))
@@ -193,7 +196,6 @@ ExitCode study(const StudyArguments& arguments) {
     }
     if (!lock) lock.emplace(directory, holder);
     const int jobs = arguments.jobs > 0 ? arguments.jobs : default_jobs();
-    if (!arguments.force) require_no_other_study(read, directory);
     prepare_study(read, this_program("study"), directory);
     if (!arguments.emit.empty()) {
         const auto next = emit_study(arguments.emit, read, directory, jobs, collect_command(arguments, place));

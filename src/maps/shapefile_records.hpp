@@ -5,7 +5,7 @@
 
 namespace kluft {
 
-/// Throws InputError, naming the file, unless shapes, index and attributes have as many records. `index` and `attributes`: the files
+/// Throws InputError, naming the file, unless index and attributes have as many records, and no shape a higher number. `index` and `attributes`: the files
 /// .shx and .dbf beside `shapes`.
 void require_equal_records(const std::filesystem::path& shapes, const std::filesystem::path& index,
                            const std::filesystem::path& attributes);

@@ -517,7 +517,10 @@ std::vector<KeyRule> cut_rules() {
          .measure = Measure::length,
          .range = positive,
          .fallback_note = "none",
-         .doc = "d for `..._times_spacing` and `stiffness_ratio` where there is no tessellation."},
+         .doc = "d for `..._times_spacing` and `stiffness_ratio` where there is no tessellation. It is also the length "
+                "that gaps and motions "
+                "are measured by, and a fiftieth of it the smallest that the cut resolves; best about the size of the "
+                "blocks."},
         {.path = "geometry.minimum_area",
          .type = KeyType::number,
          .range = {.least = 0.0, .most = 0.5},

@@ -203,7 +203,7 @@ void restart(Motion& motion) {
     motion.step = std::min(motion.step, motion.first);
     motion.age = 0.0;
     motion.smooth.clear();
-    motion.is_even = true;
+    motion.foretells = true;
     motion.velocity.setZero();
     motion.energy.driving.resize(0);
     motion.end.resize(0);
@@ -258,10 +258,10 @@ void break_there(StepInProgress& p, PlacedState& placed, Motion& motion) {
 
 std::optional<Equilibrium> take_pseudo_step(StepInProgress& p, PlacedState& placed, Motion& motion) {
     touch_anew(p, motion);
-    const double ahead = motion.is_even ? motion.step : 0.0;
+    const double ahead = motion.foretells ? motion.step : 0.0;
     PseudoStep next = solve_step(p, placed, motion, p.displacement() + ahead * motion.velocity);
     if (!next.balanced) {
-        motion.is_even = false;
+        motion.foretells = false;
         motion.step *= largest_cut;
         if (motion.step > least_step * motion.first) return std::nullopt;
         fail(p, next.moved, next.moved.summary.residual_ratio, FailureKind::no_equilibrium);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <new>
+#include <regex>
 #include <utility>
 #include <vector>
 
@@ -45,6 +46,12 @@ std::string difference_from_state(const fs::path& state, const Scene& scene) {
     } catch (const InputError&) {
         return {};
     }
+}
+
+/// Whether a warning begins with a place in a scene ("slope.yaml:8:11: ...", "--set key=1: ..."): whoever reads the scene makes it anew.
+bool has_place_in_scene(const std::string& warning) {
+    static const std::regex place(R"(^(--set .*|.*:[0-9]+:[0-9]+): )");
+    return std::regex_search(warning.substr(0, warning.find('\n')), place);
 }
 
 } // namespace
@@ -92,7 +99,7 @@ State state_to_resume(const fs::path& directory, const Scene& scene, const std::
         const std::string difference = difference_from_state(file, scene);
         if (difference.empty()) throw;
         throw InputError(fmt::format("{}: belongs to another scene: {}; a run goes on with other keys of solver, "
-                                     "cracks and output, and with another "
+                                     "cracks (not strength_noise and strength_seed) and output, and with another "
                                      "stages.<i>.stop_after_drop, but with the same body, laws and loads",
                                      file.string(), difference));
     }
@@ -101,9 +108,12 @@ State state_to_resume(const fs::path& directory, const Scene& scene, const std::
 EarlierRuns earlier_runs(const fs::path& directory) {
     try {
         RunSummary summary = read_summary(directory / "summary.json");
+        std::erase_if(summary.warnings, has_place_in_scene);
         return {summary.cpu_s, std::move(summary.warnings)};
     } catch (const InputError&) {
-        return {0.0, {"the run before this one was killed: what it had to warn of is not known"}};
+        return {
+            0.0,
+            {"the run before this one has left no summary that can be read: what it had to warn of may be in run.log"}};
     }
 }
 

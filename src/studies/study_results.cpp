@@ -79,9 +79,9 @@ std::string first_message(const fs::path& directory) {
     return text.substr(0, text.find('\n'));
 }
 
-Json description(const PlannedCase& one, const fs::path& scene) {
+Json description(const PlannedCase& one, const std::string& scene) {
     Json json;
-    json["scene"] = scene.string();
+    json["scene"] = scene;
     json["settings"] = Json::array();
     for (const auto& setting : one.set) json["settings"].push_back(setting.assignment());
     json["digest"] = one.digest;
@@ -100,12 +100,12 @@ void judge_outcome(const Study& study, const CaseOutcome& outcome, const fs::pat
     const std::string message = first_message(directory);
     const std::string why = message.empty() ? "" : ": " + message;
     result.status = CaseStatus::failed;
-    if (outcome.signal == 0 && (outcome.exit_code == done || outcome.exit_code == no_equilibrium)) {
-        result.reason = fmt::format(
-            "expected the summary of a run that has ended in {}, found none; remove {} to have it run again",
-            (directory / "summary.json").string(), directory.string());
-    } else if (outcome.out_of_time) {
+    if (outcome.out_of_time) {
         result.reason = "stopped after the time limit of " + readable_time(study.time_limit);
+    } else if (outcome.signal == 0 && (outcome.exit_code == done || outcome.exit_code == no_equilibrium)) {
+        result.reason = fmt::format(
+            "expected the summary of a run that has ended in {}, found none; the study, run again, makes it anew",
+            (directory / "summary.json").string());
     } else if (outcome.exit_code == bad_input) {
         result.status = CaseStatus::refused;
         result.reason = message;
@@ -292,18 +292,25 @@ fs::path case_directory(const fs::path& study_directory, const PlannedCase& one)
     return study_directory / "cases" / one.name;
 }
 
+std::string noted_scene(const fs::path& scene, const fs::path& directory) {
+    std::error_code error;
+    const fs::path from_there = fs::relative(scene, directory, error); // both may be moved together
+    const std::string text = error || from_there.empty() ? scene.string() : from_there.generic_string();
+    return Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>();
+}
+
 void require_no_other_study(const ReadStudy& read, const fs::path& directory) {
-    const std::string scene = read.study.scene.string();
-    for (const PlannedCase& one : read.cases) {
-        const fs::path place = case_directory(directory, one);
-        const std::string earlier = value_or(json_of(place / "case.json"), "scene", scene);
-        if (earlier == scene || is_described(place, one)) continue;
+    const std::string scene = noted_scene(read.study.scene, directory);
+    std::error_code error;
+    for (fs::directory_iterator entry(directory / "cases", error), end; !error && entry != end;
+         entry.increment(error)) {
+        const std::string earlier = value_or(json_of(entry->path() / "case.json"), "scene", scene);
+        if (earlier == scene) continue;
         throw InputError(
             fmt::format("{}: expected results of a study of {} or none, found those of a study of {} in {}; --force "
                         "replaces them, -o names another directory",
-                        directory.string(), scene, earlier, place.string()));
+                        directory.string(), scene, earlier, entry->path().string()));
     }
-    std::error_code error;
     if (fs::exists(directory / "study.csv", error) && !fs::exists(directory / "cases.txt", error))
         throw InputError(
             fmt::format("{}: expected a table of a study or none, found one of something else, which would be lost; "
@@ -311,7 +318,7 @@ void require_no_other_study(const ReadStudy& read, const fs::path& directory) {
                         (directory / "study.csv").string()));
 }
 
-void prepare_case(const fs::path& directory, const PlannedCase& one, const fs::path& scene) {
+void prepare_case(const fs::path& directory, const PlannedCase& one, const std::string& scene) {
     if (is_described(directory, one)) return;
     if (is_locked(directory))
         throw InputError(directory.string() + ": expected no process that writes to it before it is made anew, found "

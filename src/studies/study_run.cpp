@@ -199,7 +199,7 @@ void prepare_study(const ReadStudy& read, const fs::path& program, const fs::pat
     std::string lines;
     for (const auto& one : read.cases) {
         if (!one.refusal.empty()) continue;
-        prepare_case(case_directory(directory, one), one, read.study.scene);
+        prepare_case(case_directory(directory, one), one, noted_scene(read.study.scene, directory));
         lines += shell_line(case_command(read, one, program, directory)) + '\n';
     }
     write_file(directory / "cases.txt", lines);

@@ -737,9 +737,10 @@ TEST_F(CommandLine, ResultsOfAnotherSceneAreNotReplacedInSilence) {
     EXPECT_TRUE(files_in("r") == before);
     expect_refused(with(other, {"--resume", "--force"}), HasSubstr("--resume excludes --force"));
     EXPECT_TRUE(files_in("r") == before);
-    expect_refused(with(other, {"--resume"}),
-                   HasSubstr("belongs to another scene: stages.1.steps is '8' there and '3' here; a run "
-                             "goes on with other keys of solver, cracks and output"));
+    expect_refused(
+        with(other, {"--resume"}),
+        HasSubstr("belongs to another scene: stages.1.steps is '8' there and '3' here; a run "
+                  "goes on with other keys of solver, cracks (not strength_noise and strength_seed) and output"));
     auto after = files_in("r");
     after[".lock"] = before.at(".lock"); // names the last process
     EXPECT_TRUE(after == before);
@@ -1126,7 +1127,8 @@ TEST_F(CommandLine, ResumedRunKeepsTheWarningsOfTheRunsBeforeIt) {
     EXPECT_EQ(summary("r")["warnings"].size(), n + 1); // each once
     EXPECT_THAT(summary("r")["warnings"].dump(), HasSubstr("carries 1.35 times its strength"));
     fs::remove(path("r/summary.json"));
-    EXPECT_THAT(kluft(with(words, {"--resume"})).err, HasSubstr("the run before this one was killed"));
+    EXPECT_THAT(kluft(with(words, {"--resume"})).err,
+                HasSubstr("the run before this one has left no summary that can be read"));
 }
 
 // ---- out of disk and memory ----------------------------------------------------------------------------------------
@@ -1751,12 +1753,17 @@ TEST_F(CommandLine, StudyKeepsTheRunsOfAnotherScenesStudy) {
     write("tiny.yaml", tiny_scene);
     write("other.yaml", std::string(tiny_scene) + "output: {pictures: false}\n");
     write("a.yaml", "scene: tiny.yaml\nvary: {stages.1.steps: [1]}\n");
+    write("c.yaml", "scene: other.yaml\nvary: {stages.1.steps: [2]}\n"); // no case of the same name
     write("b.yaml", "scene: other.yaml\nset: {interfaces.joint.friction_angle: 10}\nvary: {stages.1.steps: [1]}\n");
     ASSERT_EQ(kluft({"study", "a.yaml", "-o", "s", "--quiet"}).code, 0);
     const std::string table = content_of(path("s/study.csv"));
     expect_refused({"study", "b.yaml", "-o", "s"},
                    ContainsRegex("s: expected results of a study of .*other.yaml or none, found "
                                  "those of a study of .*tiny.yaml .*--force"));
+    expect_refused({"study", "c.yaml", "-o", "s"}, HasSubstr("--force"));
+    expect_refused({"study", "b.yaml", "-o", "s", "--collect"}, HasSubstr("--force"));
+    expect_refused({"study", "step-size", "other.yaml", "-o", "s"}, HasSubstr("--force"));
+    EXPECT_FALSE(fs::exists(path("s/study.yaml")));
     EXPECT_EQ(content_of(path("s/study.csv")), table);
     EXPECT_EQ(kluft({"study", "a.yaml", "-o", "s", "--quiet"}).code, 0);
     EXPECT_EQ(kluft({"study", "b.yaml", "-o", "s", "--quiet", "--force"}).code, 0);

@@ -64,8 +64,20 @@ TEST_F(MapFilesOfGdal, PartsOfAShapefileHaveAsManyRecords) {
                           HasSubstr(found)));
         write(name, whole);
     }
-    write("few.shp", content("many.shp"));
+    const std::string shapes = content("many.shp");
+    write("few.shp", shapes);
     EXPECT_THAT(refusal_of_traces({.file = path("few.shp")}), HasSubstr("found 3, 1 and 1"));
+
+    // Bytes beyond the length that the header gives, and a shape that another one of its number has replaced, are none.
+    write("many.shp", shapes + std::string(16, '\0'));
+    EXPECT_EQ(read_map_traces({.file = path("many.shp")}).traces.size(), 3U);
+    constexpr std::size_t header = 100;
+    const std::size_t of_record = (shapes.size() - header) / 3; // bytes, of lines of two points each
+    std::string with_old = shapes + shapes.substr(header, of_record);
+    const std::size_t words = with_old.size() / 2;
+    for (std::size_t i = 0; i < 4; ++i) with_old[24 + i] = static_cast<char>((words >> (8 * (3 - i))) & 0xFF);
+    write("many.shp", with_old);
+    EXPECT_EQ(read_map_traces({.file = path("many.shp")}).traces.size(), 3U);
 }
 
 TEST_F(MapFilesOfGdal, TracesKeepTheirPlacesPartsAndAttributes) {

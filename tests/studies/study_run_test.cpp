@@ -232,7 +232,7 @@ TEST_F(StudyRuns, SummaryThatIsGoneIsNamed) {
         const StudyTable table = collect_study(study, results_);
         EXPECT_THAT(statuses_of(table), ElementsAre(CaseStatus::done, CaseStatus::failed));
         EXPECT_THAT(table.cases[1].reason,
-                    AllOf(HasSubstr("steps=20/summary.json, found none"), HasSubstr("to have it run again")));
+                    AllOf(HasSubstr("steps=20/summary.json, found none"), HasSubstr("makes it anew")));
     }
 }
 

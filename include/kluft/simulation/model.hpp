@@ -34,7 +34,8 @@ struct Model {
     std::vector<Strength> strengths;                 ///< per interface; of use for potential cracks only
     LoadProgram loads;
     std::vector<MaterialPoint> force_points; ///< where LoadProgram::forces act
-    double effective_modulus = 0.0; ///< E of the body or of its softest joint, k_n H, for the mass-like term (Pa)
+    /// E of the body (at least half of E/(1 - nu^2)), or of its softest joint, k_n H, for the mass-like term (Pa).
+    double effective_modulus = 0.0;
     std::vector<HistoryGauge> histories;
     bool has_potential_cracks = false;
     std::vector<std::string> warnings;

@@ -38,7 +38,7 @@ struct Motion {
     double way_left = std::numeric_limits<double>::infinity(); ///< relative, as the motion slows down
     Eigen::VectorXd start;                                     ///< displacement (m)
     Eigen::VectorXd velocity; ///< of the step before (Pa/m); zero where the forces have just changed
-    bool is_even = true;      ///< the velocity foretells the next step: not from the first that was not solved on
+    bool foretells = true;    ///< the velocity tells where the next step goes; no longer once one was not solved
     Eigen::VectorXd detected; ///< displacement at which contacts were detected (m)
     Eigen::VectorXd early;    ///< displacement before the motion had gone halfway to a collapse (m)
     MotionEnergy energy;

@@ -31,8 +31,8 @@ struct FinishedRun {
     [[nodiscard]] const std::vector<StepRecord>& fine_rows() const { return equilibria.empty() ? history : equilibria; }
 };
 
-/// What the tables of a run lack beside its summary, of rows at their end or of one of them as a whole; "" where nothing is missing. A
-/// run that goes on, or was killed, has more rows than its summary says.
+/// In words, which table of a run ends before its summary does, or is not there; "" where both are whole. A run that goes on, or was
+/// killed, has more rows than its summary says.
 [[nodiscard]] std::string missing_rows(const std::vector<StepRecord>& history,
                                        const std::vector<StepRecord>& equilibria, const RunSummary& summary);
 

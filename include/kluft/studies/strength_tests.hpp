@@ -10,8 +10,8 @@
 namespace kluft {
 
 /// The peak of a finished run: from equilibria.csv or history.csv; from summary.json whether it ended unbalanced and whether
-/// its net locked (a missing key means no). Throws InputError for what is no directory of results, damaged files and a
-/// run without a balanced equilibrium.
+/// its net locked (a missing key means no). Throws InputError for what is no directory of results, damaged files, tables
+/// that lack rows of the run (missing_rows) and a run without a balanced equilibrium.
 [[nodiscard]] PeakPoint read_peak(const std::filesystem::path& directory, const std::string& run);
 
 /// A table of comma-separated values with a line of column names, in any order:

@@ -40,12 +40,15 @@ struct CaseResult {
 [[nodiscard]] std::filesystem::path case_directory(const std::filesystem::path& study_directory,
                                                    const PlannedCase& one);
 
-/// Throws InputError where a case would replace one of a study of another scene, or the table something that no study has written.
+/// The scene of a study as case.json names it: by its way from the directory of the study.
+[[nodiscard]] std::string noted_scene(const std::filesystem::path& scene, const std::filesystem::path& directory);
+
+/// Throws InputError where the directory has cases of a study of another scene, or a table that no study has written.
 void require_no_other_study(const ReadStudy& read, const std::filesystem::path& directory);
 
 /// Makes the directory of a case and writes case.json (scene, settings and digest) into it, unless that stands there already;
 /// what an earlier case of this name with other settings or another scene left is removed. Throws ResourceError.
-void prepare_case(const std::filesystem::path& directory, const PlannedCase& one, const std::filesystem::path& scene);
+void prepare_case(const std::filesystem::path& directory, const PlannedCase& one, const std::string& scene);
 
 void write_outcome(const std::filesystem::path& directory, const CaseOutcome& outcome);
 [[nodiscard]] std::optional<CaseOutcome> read_outcome(const std::filesystem::path& directory);
