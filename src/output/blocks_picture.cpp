@@ -6,7 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
-#include <ranges>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -211,7 +211,7 @@ int number_of(const BlockSystem& system, const std::string& name) {
 }
 
 void draw_moving(Canvas& canvas, const Panel& panel, const DrawnBody& body, const std::vector<FallingBlock>& moving) {
-    for (const FallingBlock& each : moving | std::views::take(most_arrows)) {
+    for (const FallingBlock& each : std::span(moving).first(std::min(moving.size(), most_arrows))) {
         const int b = number_of(body.system, each.block);
         if (b < 0) continue;
         const auto at = static_cast<std::size_t>(b);
