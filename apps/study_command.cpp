@@ -196,6 +196,7 @@ ExitCode study(const StudyArguments& arguments) {
     }
     if (!lock) lock.emplace(directory, holder);
     const int jobs = arguments.jobs > 0 ? arguments.jobs : default_jobs();
+    if (arguments.force) remove_other_study(read, directory);
     prepare_study(read, this_program("study"), directory);
     if (!arguments.emit.empty()) {
         const auto next = emit_study(arguments.emit, read, directory, jobs, collect_command(arguments, place));

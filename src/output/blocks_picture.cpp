@@ -172,6 +172,13 @@ std::vector<LegendEntry> size_notes(const BlockSystem& system) {
             {fmt::format("y {:.7g} \u2026 {:.7g} m", low.y(), high.y()), {}}};
 }
 
+/// Of the corners of a block (m); `first` from first_vertices.
+Vec2 mean_displacement(const std::vector<std::size_t>& first, const std::vector<Vec2>& displacement, std::size_t b) {
+    Vec2 mean = Vec2::Zero();
+    for (std::size_t v = first[b]; v < first[b + 1]; ++v) mean += displacement[v];
+    return mean / static_cast<double>(std::max<std::size_t>(1, first[b + 1] - first[b]));
+}
+
 // ---- what moves on --------------------------------------------------------------------------------------------------
 
 constexpr Colour moving_ink = colour(0x8E24AA);
@@ -214,12 +221,8 @@ void draw_moving(Canvas& canvas, const Panel& panel, const DrawnBody& body, cons
     for (const FallingBlock& each : std::span(moving).first(std::min(moving.size(), most_arrows))) {
         const int b = number_of(body.system, each.block);
         if (b < 0) continue;
-        const auto at = static_cast<std::size_t>(b);
-        Vec2 moved = Vec2::Zero();
-        for (std::size_t v = body.first[at]; v < body.first[at + 1]; ++v) moved += body.displacement[v];
-        moved /= static_cast<double>(body.first[at + 1] - body.first[at]);
-        const Block& block = body.system.blocks[at];
-        const Vec2 centre = panel.place(block.centroid + moved);
+        const Block& block = body.system.blocks[b];
+        const Vec2 centre = panel.place(block.centroid + mean_displacement(body.first, body.displacement, b));
         const Vec2 within = centre - panel.corner;
         if (!((within.array() >= 0.0).all() && (within.array() <= panel.size().array()).all()))
             continue; // gone, or no number
@@ -295,9 +298,7 @@ ColouredField block_field(const BlockSystem& system, const FieldRecord& fields, 
     ColouredField field{kind->label, {}};
     const auto first = first_vertices(system);
     for (std::size_t b = 0; b < system.blocks.size(); ++b) {
-        Vec2 mean = Vec2::Zero();
-        for (std::size_t v = first[b]; v < first[b + 1]; ++v) mean += fields.displacement[v];
-        mean /= static_cast<double>(std::max<std::size_t>(1, first[b + 1] - first[b]));
+        const Vec2 mean = mean_displacement(first, fields.displacement, b);
         field.values.push_back(kind->value({fields.stress[b], fields.stress_zz[b], mean}));
     }
     return field;

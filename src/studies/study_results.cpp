@@ -299,18 +299,36 @@ std::string noted_scene(const fs::path& scene, const fs::path& directory) {
     return Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>();
 }
 
-void require_no_other_study(const ReadStudy& read, const fs::path& directory) {
+namespace {
+
+/// Directories of cases of another scene than this study's, with that scene.
+std::vector<std::pair<fs::path, std::string>> cases_of_other_scenes(const ReadStudy& read, const fs::path& directory) {
     const std::string scene = noted_scene(read.study.scene, directory);
+    std::vector<std::pair<fs::path, std::string>> others;
     std::error_code error;
     for (fs::directory_iterator entry(directory / "cases", error), end; !error && entry != end;
          entry.increment(error)) {
-        const std::string earlier = value_or(json_of(entry->path() / "case.json"), "scene", scene);
-        if (earlier == scene) continue;
+        std::string earlier = value_or(json_of(entry->path() / "case.json"), "scene", scene);
+        if (earlier != scene) others.emplace_back(entry->path(), std::move(earlier));
+    }
+    return others;
+}
+
+} // namespace
+
+void remove_other_study(const ReadStudy& read, const fs::path& directory) {
+    std::error_code ignored; // prepare_case tells what cannot be written
+    for (const auto& [place, scene] : cases_of_other_scenes(read, directory)) fs::remove_all(place, ignored);
+}
+
+void require_no_other_study(const ReadStudy& read, const fs::path& directory) {
+    if (const auto others = cases_of_other_scenes(read, directory); !others.empty())
         throw InputError(
             fmt::format("{}: expected results of a study of {} or none, found those of a study of {} in {}; --force "
                         "replaces them, -o names another directory",
-                        directory.string(), scene, earlier, entry->path().string()));
-    }
+                        directory.string(), noted_scene(read.study.scene, directory), others.front().second,
+                        others.front().first.string()));
+    std::error_code error;
     if (fs::exists(directory / "study.csv", error) && !fs::exists(directory / "cases.txt", error))
         throw InputError(
             fmt::format("{}: expected a table of a study or none, found one of something else, which would be lost; "

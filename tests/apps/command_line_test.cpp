@@ -1768,6 +1768,9 @@ TEST_F(CommandLine, StudyKeepsTheRunsOfAnotherScenesStudy) {
     EXPECT_EQ(kluft({"study", "a.yaml", "-o", "s", "--quiet"}).code, 0);
     EXPECT_EQ(kluft({"study", "b.yaml", "-o", "s", "--quiet", "--force"}).code, 0);
     EXPECT_NE(content_of(path("s/study.csv")), table);
+    EXPECT_EQ(kluft({"study", "a.yaml", "-o", "s", "--quiet", "--force"}).code, 0);
+    EXPECT_EQ(kluft({"study", "c.yaml", "-o", "s", "--quiet", "--force"}).code, 0); // nothing of a is left
+    EXPECT_EQ(kluft({"study", "c.yaml", "-o", "s", "--quiet"}).code, 0);
     fs::create_directory(path("own"));
     write("own/study.csv", "mine\n");
     expect_refused({"study", "a.yaml", "-o", "own"}, HasSubstr("own/study.csv: expected a table of a study or none"));

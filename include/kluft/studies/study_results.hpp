@@ -46,6 +46,9 @@ struct CaseResult {
 /// Throws InputError where the directory has cases of a study of another scene, or a table that no study has written.
 void require_no_other_study(const ReadStudy& read, const std::filesystem::path& directory);
 
+/// Removes the cases of a study of another scene from the directory.
+void remove_other_study(const ReadStudy& read, const std::filesystem::path& directory);
+
 /// Makes the directory of a case and writes case.json (scene, settings and digest) into it, unless that stands there already;
 /// what an earlier case of this name with other settings or another scene left is removed. Throws ResourceError.
 void prepare_case(const std::filesystem::path& directory, const PlannedCase& one, const std::string& scene);
