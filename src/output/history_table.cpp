@@ -44,6 +44,12 @@ void visit_columns(Record& record, Visit&& visit) {
     visit("elapsed_s", record.elapsed_s);
 }
 
+/// The columns that only some runs have; the same for members that are optional.
+template <class Record, class Visit> void visit_optional_columns(Record& record, Visit&& visit) {
+    if constexpr (std::is_same_v<std::remove_const_t<Record>, StepRecord>)
+        visit("strength_factor", record.strength_factor);
+}
+
 template <class Record, class Visit>
 requires std::is_same_v<std::remove_const_t<Record>, MotionRecord>
 void visit_columns(Record& record, Visit&& visit) {
@@ -121,6 +127,8 @@ std::string_view parse(std::string_view text, CrackMode& mode) {
     return text == "tension" || text == "shear" ? "" : "tension or shear";
 }
 
+std::string_view parse(std::string_view text, std::optional<double>& value) { return parse(text, value.emplace()); }
+
 std::vector<std::string_view> split(std::string_view line) {
     if (line.ends_with('\r')) line.remove_suffix(1);
     std::vector<std::string_view> cells;
@@ -141,7 +149,7 @@ bool contains(const Names& names, std::string_view name) {
 }
 
 /// For each column of Record its index in the file; no_column for one that is missing and not needed. Without a list
-/// all are needed.
+/// all are needed but the optional ones, which come last.
 template <class Record>
 std::vector<std::size_t> column_order(const std::string& path, const Names& names, const Names* needed) {
     std::vector<std::size_t> order;
@@ -159,6 +167,10 @@ std::vector<std::size_t> column_order(const std::string& path, const Names& name
     if (!missing.empty())
         throw InputError(
             fmt::format("{}:1: no {} {}", path, missing.size() == 1 ? "column" : "columns", fmt::join(missing, ", ")));
+    visit_optional_columns(record, [&](std::string_view name, auto&) {
+        const auto found = std::find(names.begin(), names.end(), name);
+        order.push_back(found == names.end() ? no_column : static_cast<std::size_t>(found - names.begin()));
+    });
     return order;
 }
 
@@ -170,14 +182,16 @@ Record parse_row(const std::string& place, std::string_view line, std::size_t n_
         throw InputError(fmt::format("{}: expected {} columns, found {}", place, n_columns, cells.size()));
     Record record;
     std::size_t column = 0;
-    visit_columns(record, [&](std::string_view name, auto& value) {
+    const auto read_cell = [&](std::string_view name, auto& value) {
         const std::size_t index = order[column++];
         if (index == no_column) return;
         const std::string_view text = cells[index];
         const std::string_view expected = parse(text, value);
         if (!expected.empty())
             throw InputError(fmt::format("{}: {}: expected {}, found '{}'", place, name, expected, text.substr(0, 40)));
-    });
+    };
+    visit_columns(record, read_cell);
+    visit_optional_columns(record, read_cell);
     return record;
 }
 
@@ -245,7 +259,9 @@ std::string cracks_header() { return header_of<CrackRecord>(); }
 std::string jumps_header() { return header_of<JumpRecord>(); }
 std::string table_row(const StepRecord& record) {
     std::string row = row_of(record);
-    if (record.strength_factor) row += ',' + cell(*record.strength_factor);
+    visit_optional_columns(record, [&](std::string_view, const auto& value) {
+        if (value) row += ',' + cell(*value);
+    });
     return record.motion ? row + ',' + row_of(*record.motion) : row;
 }
 std::string table_row(const CrackRecord& crack) { return row_of(crack); }

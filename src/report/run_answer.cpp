@@ -43,8 +43,8 @@ RunAnswer factor_of_safety(const RunFacts& facts) {
         answer.firm = true;
         return answer;
     }
-    if (facts.last && facts.last->strength_factor && facts.last->balanced) {
-        answer.value = fmt::format("at least {:.4g}", *facts.last->strength_factor);
+    if (facts.stood) {
+        answer.value = fmt::format("at least {:.4g}", *facts.stood);
         answer.sentence = "The body stands with its strengths divided by it; the limit was not found.";
     } else {
         answer.value = "not found";

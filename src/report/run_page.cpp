@@ -206,6 +206,19 @@ std::string json_states(const std::vector<int>& steps) {
     return text + "]";
 }
 
+/// The largest strength factor of the equilibria at which strengths were being reduced. Those while the loads are brought
+/// up say nothing of the body under all of them.
+std::optional<double> factor_that_stood(const Rows& history, const LoadProgram& loads) {
+    std::optional<double> largest;
+    for (const StepRecord& row : history) {
+        const bool is_stage = row.stage >= 0 && row.stage < static_cast<int>(loads.stages.size());
+        if (!is_stage || !loads.stages[static_cast<std::size_t>(row.stage)].strength_reduction) continue;
+        if (!row.balanced || !row.strength_factor) continue;
+        largest = std::max(largest.value_or(*row.strength_factor), *row.strength_factor);
+    }
+    return largest;
+}
+
 bool looks_for_factor_of_safety(const Model& model) { return reduction_of(model.loads, 0) != nullptr; }
 
 /// What is known of the run with the model that it ran.
@@ -227,7 +240,7 @@ RunFacts facts_of(const fs::path& directory, const Rows& history, const Rows& eq
     if (fs::exists(directory / "summary.json")) facts.summary = read_summary(directory / "summary.json");
     facts.sense = platen_sense(history, facts.platen_stage);
     facts.peak = peak_row(equilibria.empty() ? history : equilibria, facts.platen_stage);
-    facts.last = history.back();
+    facts.stood = factor_that_stood(history, model.loads);
     facts.n_merged = cut.merged.size();
     facts.reduces_strength = looks_for_factor_of_safety(model);
     facts.tables_are_whole = !facts.summary || !differ(facts.summary->numbers, facts.numbers);

@@ -1217,6 +1217,40 @@ TEST_F(CommandLine, AReportSaysWhereATableIsNotTheWholeOne) {
     EXPECT_THAT(content_of(path("r/report.html")), Not(HasSubstr("do not give the numbers of summary.json")));
 }
 
+/// A block on a plane of 20 degrees with a friction angle of 35: F = tan 35 / tan 20 = 1.924.
+constexpr const char* sliding_block_scene = R"(kluft: 1
+analysis: {gravity: 9.81}
+materials:
+  rock: {density: 2600 kg/m3, youngs_modulus: 20 GPa, poissons_ratio: 0.25}
+interfaces:
+  joint: {kind: fracture, normal_stiffness: 10 GPa/m, shear_stiffness: 5 GPa/m, friction_angle: 35 deg}
+geometry:
+  domain: {polygon: [[0, 0], [10, 0], [10, 10], [0, 10]]}
+  reference_spacing: 2 m
+  fractures:
+    - {name: plane, trace: [[-1, 3.636], [11, 8.003]], interface: joint}
+boundaries:
+  bottom: {support: fixed}
+stages:
+  - {name: weight, steps: 2}
+  - {name: strength, strength_reduction: {to: 1.5}}
+output: {fields: false, pictures: false}
+)";
+
+TEST_F(CommandLine, TheReportOfABodyThatStandsAtTheSmallestStrengthsHasThemAsABound) {
+    write("slide.yaml", sliding_block_scene);
+    ASSERT_EQ(kluft({"run", "slide.yaml", "-o", "r", "--quiet"}).code, 0);
+    EXPECT_THAT(content_of(path("r/report.html")), HasSubstr("at least 1.5<"));
+    EXPECT_EQ(kluft({"report", "r", "-o", "again.html"}).code, 0);
+    EXPECT_THAT(content_of(path("again.html")), HasSubstr("at least 1.5<"));
+    // Where it was left under half the weight nothing is known of the whole.
+    const auto rows = lines_of(content_of(path("r/history.csv")));
+    ASSERT_EQ(rows.size(), 5U);
+    write("r/history.csv", rows[0] + '\n' + rows[1] + '\n' + rows[2] + '\n');
+    EXPECT_EQ(kluft({"report", "r", "-o", "half.html"}).code, 0);
+    EXPECT_THAT(content_of(path("half.html")), Not(HasSubstr("at least")));
+}
+
 TEST_F(CommandLine, AFileInADirectoryThatIsNotThereIsRefused) {
     write("tiny.yaml", tiny_scene);
     ASSERT_EQ(kluft({"run", "tiny.yaml", "-o", "r", "--quiet"}).code, 0);

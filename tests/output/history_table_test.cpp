@@ -77,6 +77,21 @@ TEST(HistoryTable, ReadsBackEveryBit) {
     EXPECT_FALSE(rows[1].balanced);
 }
 
+TEST(HistoryTable, ReadsBackTheStrengthFactorOfRunsThatHaveIt) {
+    const TemporaryDirectory directory;
+    StepRecord record = awkward_record();
+    record.strength_factor = 4.0 / 3.0;
+    record.motion.emplace();
+    write_file(directory / "h.csv",
+               history_header() + ",strength_factor," + motion_header() + '\n' + table_row(record) + '\n');
+    EXPECT_EQ(read_history(directory / "h.csv").at(0).strength_factor, 4.0 / 3.0);
+    EXPECT_EQ(read_history(directory / "h.csv", {"step"}).at(0).strength_factor, 4.0 / 3.0);
+    record.strength_factor.reset();
+    record.motion.reset();
+    write_file(directory / "h.csv", history_header() + '\n' + table_row(record) + '\n');
+    EXPECT_EQ(read_history(directory / "h.csv").at(0).strength_factor, std::nullopt);
+}
+
 TEST(HistoryTable, ReadsBackCracks) {
     const TemporaryDirectory directory;
     const CrackRecord crack{3, 2, 41, 0.1, 0.7, CrackMode::shear, 1.5e6, -2e4, 0.011};

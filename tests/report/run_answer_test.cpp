@@ -23,7 +23,6 @@ RunFacts pressed() {
     facts.numbers.steps = 52;
     facts.peak.emplace();
     facts.peak->lateral_stress = 1e6;
-    facts.last.emplace();
     return facts;
 }
 
@@ -31,8 +30,7 @@ RunFacts reduced() {
     RunFacts facts;
     facts.summary.emplace();
     facts.reduces_strength = true;
-    facts.last.emplace();
-    facts.last->strength_factor = 1.75;
+    facts.stood = 1.75;
     return facts;
 }
 
@@ -132,7 +130,7 @@ TEST(RunAnswer, OfAReductionThatFoundNoLimitIsTheLargestFactorThatStood) {
     const RunAnswer answer = run_answer(facts);
     EXPECT_EQ(answer.value, "at least 1.75");
     EXPECT_FALSE(answer.firm);
-    facts.last->balanced = false;
+    facts.stood.reset();
     EXPECT_EQ(run_answer(facts).value, "not found");
 }
 

@@ -36,8 +36,8 @@ struct HistoriesTable {
     std::vector<StepRecord> rows;
 };
 
-/// Reads history.csv or equilibria.csv. Columns may stand in any order and further ones are ignored; so is a last line
-/// without its end, which a killed run may leave. Throws InputError (file:line: column: expected, found).
+/// Reads history.csv or equilibria.csv, with the strength factor where that column is. Columns may stand in any order and
+/// further ones are ignored; so is a last line without its end, which a killed run may leave. Throws InputError (file:line: column: expected, found).
 [[nodiscard]] std::vector<StepRecord> read_history(const std::filesystem::path& path);
 /// The same where only the columns `needed` must be there; numbers of missing ones keep their defaults.
 [[nodiscard]] std::vector<StepRecord> read_history(const std::filesystem::path& path,
