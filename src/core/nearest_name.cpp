@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cctype>
 #include <cstddef>
+#include <limits>
+#include <set>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -11,6 +14,8 @@ namespace kluft {
 namespace {
 
 constexpr std::size_t longest_name = 64; ///< of a word worth comparing; the distance costs length times length
+
+constexpr std::size_t most_listed = 8; ///< names in a message
 
 char folded(char c) {
     if (c == '-' || c == ' ') return '_';
@@ -74,6 +79,25 @@ std::string listed(const std::vector<std::string>& names) {
         text += name;
     }
     return text.empty() ? "none" : text;
+}
+
+std::string listed_near(std::string_view name, const std::vector<std::string>& names) {
+    std::vector<std::string> each;
+    std::set<std::string_view> seen;
+    for (const std::string& one : names)
+        if (seen.insert(one).second) each.push_back(one);
+    if (each.size() <= most_listed) return listed(each);
+    const std::size_t n_others = each.size() - most_listed;
+    std::vector<std::pair<int, std::string>> by_distance;
+    for (std::string& one : each) {
+        const bool comparable = name.size() <= longest_name && one.size() <= longest_name;
+        const int distance = comparable ? edit_distance(name, one) : std::numeric_limits<int>::max();
+        by_distance.emplace_back(distance, std::move(one));
+    }
+    std::ranges::stable_sort(by_distance, {}, &std::pair<int, std::string>::first);
+    std::vector<std::string> nearest;
+    for (std::size_t i = 0; i < most_listed; ++i) nearest.push_back(std::move(by_distance[i].second));
+    return fmt::format("{} and {} {}", listed(nearest), n_others, n_others == 1 ? "other" : "others");
 }
 
 } // namespace kluft

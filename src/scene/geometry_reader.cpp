@@ -483,8 +483,28 @@ private:
             types[i] = found == chosen.end() ? others : found->second;
             if (found == chosen.end() && !has_others) ++unknown[value ? in_quotes(*value) : "no value"];
         }
-        if (!unknown.empty()) fail_unknown_values(section, unknown);
+        if (!unknown.empty())
+            fail_unknown_values(section, unknown);
+        else
+            warn_of_absent_values(section, traces);
         return types;
+    }
+
+    /// A value that is misspelt chooses no interface, and nothing else would tell of it.
+    void warn_of_absent_values(const SceneSection& section, const std::vector<MappedTrace>& traces) {
+        std::set<std::string> values;
+        for (const MappedTrace& trace : traces)
+            if (trace.attribute) values.insert(*trace.attribute);
+        const std::vector<std::string> found(values.begin(), values.end());
+        for (const auto& each : section.sections("interfaces")) {
+            const auto value = each.given_text("value");
+            if (!value || values.contains(*value)) continue;
+            context_.warn(each, "value",
+                          fmt::format("no trace of the map has the value {}, so that none takes this interface; the "
+                                      "values of {} are {}{}",
+                                      in_quotes(*value), in_quotes(section.given_text("attribute").value_or("")),
+                                      listed_near(*value, found), suggestion(*value, found)));
+        }
     }
 
     /// Interfaces by the values of the attribute: those of `interfaces`, or the names of all interfaces themselves.

@@ -26,7 +26,7 @@ std::optional<int> ReadingContext::index_of(const SceneSection& section, std::st
     const auto found = std::find(names.begin(), names.end(), name);
     if (found != names.end()) return static_cast<int>(found - names.begin());
     fail(section, key,
-         fmt::format("expected the name of {} ({}), found {}{}", what, listed(names), in_quotes(name),
+         fmt::format("expected the name of {} ({}), found {}{}", what, listed_near(name, names), in_quotes(name),
                      suggestion(name, names)));
     return std::nullopt;
 }

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace kluft {
@@ -44,6 +45,16 @@ TEST(NearestName, IsNothingForNoNameNoCandidateAndOverlongNames) {
 TEST(Suggestion, FollowsAMessageOrIsEmpty) {
     EXPECT_EQ(suggestion("lft", {"left", "right"}), "; did you mean 'left'?");
     EXPECT_EQ(suggestion("upper", {"left", "right"}), "");
+}
+
+TEST(Listed, OfManyNamesHasTheNearestFirst) {
+    EXPECT_EQ(listed_near("x", {"b", "a", "b"}), "b, a");
+    std::vector<std::string> names;
+    for (int i = 1; i <= 30; ++i) names.push_back("trace " + std::to_string(i));
+    EXPECT_EQ(listed_near("trac 25", names),
+              "trace 25, trace 2, trace 5, trace 15, trace 20, trace 21, trace 22, trace 23 and 22 others");
+    names.resize(9);
+    EXPECT_THAT(listed_near("joint", names), ::testing::EndsWith("and 1 other"));
 }
 
 TEST(Listed, JoinsNamesWithCommas) {

@@ -309,6 +309,34 @@ TEST_F(ScenesWithMaps, AnAttributeChoosesTheInterface) {
         ElementsAre(HasSubstr("geometry.fractures.0.layer: expected `file` beside it")));
 }
 
+TEST_F(ScenesWithMaps, AValueThatNoTraceOfTheMapHasIsTold) {
+    write("t.geojson", five_traces);
+    const auto warnings = [&](const std::string& value) {
+        return read({"geometry.fractures=[{file: t.geojson, attribute: set, interface: joint, interfaces: [{value: " +
+                     value + ", interface: seam}]}]"})
+            .warnings;
+    };
+    const auto outside = HasSubstr("2 of 5 traces lie outside the domain");
+    EXPECT_THAT(warnings("A"), ElementsAre(outside));
+    EXPECT_THAT(
+        warnings("a1"),
+        ElementsAre(HasSubstr("geometry.fractures.0.interfaces.0.value: no trace of the map has the value 'a1', "
+                              "so that none takes this interface; the values of 'set' are 7, A, B; did you "
+                              "mean 'A'?"),
+                    outside));
+}
+
+TEST_F(ScenesWithMaps, OfManyTracesAMessageNamesThoseOfTheNearestNames) {
+    std::string lines;
+    for (int i = 0; i < 100; ++i)
+        lines += (i > 0 ? ", " : "") + fmt::format("[[691410, {0}], [691450, {0}]]", 5334600 + i);
+    write("t.geojson", R"({"type": "MultiLineString", "coordinates": [)" + lines + "]}");
+    const auto found = errors({"geometry.fractures=[{name: set, file: t.geojson, interface: joint}]",
+                               "output.histories={slip: {fracture: set 7x}}"});
+    EXPECT_THAT(found, ElementsAre(HasSubstr("expected the name of a mapped fracture (set 7, set 70, set 71, set 72, "
+                                             "set 73, set 74, set 75, set 76 and 92 others), found 'set 7x'")));
+}
+
 TEST_F(ScenesWithMaps, OneLineTellsHowManyTracesLieOutside) {
     write("t.geojson", five_traces);
     EXPECT_THAT(read({"geometry.fractures=[{file: t.geojson, interface: joint}]"}).warnings,

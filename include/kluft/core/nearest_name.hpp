@@ -21,4 +21,8 @@ namespace kluft {
 /// "a, b, c", or "none" for an empty list.
 [[nodiscard]] std::string listed(const std::vector<std::string>& names);
 
+/// The same, each name once, with of more than eight the eight nearest to `name`, nearest first: "a, b, c, d, e, f, g, h and
+/// 31 others".
+[[nodiscard]] std::string listed_near(std::string_view name, const std::vector<std::string>& names);
+
 } // namespace kluft
