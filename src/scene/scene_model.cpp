@@ -23,16 +23,26 @@ namespace {
 constexpr std::size_t most_told = 3;     ///< warnings of one kind
 constexpr double least_reference = 3e-3; ///< spacing over the size of a block
 
+/// Of a fracture on the line of another one, with the interface that counts where they have two.
+std::string overlaid(const LostFracture& lost, const Scene& scene) {
+    const auto& fractures = scene.geometry.fractures;
+    const FractureTrace& own = fractures[static_cast<std::size_t>(lost.fracture)];
+    const FractureTrace& first = fractures[static_cast<std::size_t>(lost.other)];
+    std::string text = fmt::format("{} runs along it already", first.name);
+    if (own.interface_type == first.interface_type) return text;
+    const auto name_of = [&](int type) { return scene.interface_types[static_cast<std::size_t>(type)].name; };
+    return text + fmt::format(", so that the interface there is '{}' and not '{}'", name_of(first.interface_type),
+                              name_of(own.interface_type));
+}
+
 /// Why nothing is left of a fracture.
-std::string reason(const LostFracture& lost, const GeometrySpec& geometry, const CutReport& report) {
+std::string reason(const LostFracture& lost, const Scene& scene, const CutReport& report) {
     const double resolution = report.resolution;
     switch (lost.cause) {
     case LostFracture::Cause::too_short:
         return fmt::format("it is shorter than {:.3g} m, the smallest length that the net resolves", resolution);
     case LostFracture::Cause::coincides:
-        return lost.other < 0 ? "it lies on the outline of the domain"
-                              : fmt::format("{} runs along it already",
-                                            geometry.fractures[static_cast<std::size_t>(lost.other)].name);
+        return lost.other < 0 ? "it lies on the outline of the domain" : overlaid(lost, scene);
     case LostFracture::Cause::cuts_off_little:
         return fmt::format("what it cuts off is {:.3g} m2, less than {:.3g} m2, the smallest block "
                            "(`geometry.minimum_area`)",
@@ -55,9 +65,9 @@ std::string reason(const LostFracture& lost, const GeometrySpec& geometry, const
 }
 
 /// Of each cause the first few by name, and how many more.
-std::vector<std::string> lost_fractures(const GeometrySpec& geometry, const CutReport& report) {
-    const auto trace_of = [&geometry](const LostFracture& lost) -> const FractureTrace& {
-        return geometry.fractures[static_cast<std::size_t>(lost.fracture)];
+std::vector<std::string> lost_fractures(const Scene& scene, const CutReport& report) {
+    const auto trace_of = [&scene](const LostFracture& lost) -> const FractureTrace& {
+        return scene.geometry.fractures[static_cast<std::size_t>(lost.fracture)];
     };
     std::vector<std::string> warnings;
     for (const auto cause :
@@ -73,7 +83,7 @@ std::vector<std::string> lost_fractures(const GeometrySpec& geometry, const CutR
             const std::size_t n_others = i + 1 == n_told ? of_cause.size() - n_told : 0;
             warnings.push_back(fmt::format(
                 "{}: {} is left out{}: {}{}", trace.place, trace.name,
-                cause == LostFracture::Cause::in_part ? " in part" : "", reason(of_cause[i], geometry, report),
+                cause == LostFracture::Cause::in_part ? " in part" : "", reason(of_cause[i], scene, report),
                 n_others > 0 ? fmt::format("; and {} more fractures for a reason like this", n_others) : ""));
         }
     }
@@ -247,7 +257,7 @@ SceneModel build_scene_model(const Scene& scene) {
     }
     built.cut = std::move(body.report);
     for (const auto& warnings :
-         {lost_fractures(scene.geometry, built.cut), fine_details(scene.geometry, built.cut),
+         {lost_fractures(scene, built.cut), fine_details(scene.geometry, built.cut),
           pruned_pieces(scene.geometry, built.cut), closed_outcrops(scene.geometry, built.cut),
           small_reference(scene.geometry, built.model.system), bare_net(scene.geometry, built.model.system),
           empty_regions(scene.geometry, built.model.system),

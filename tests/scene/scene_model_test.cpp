@@ -13,6 +13,7 @@ namespace {
 
 using testing::AllOf;
 using testing::ElementsAre;
+using testing::EndsWith;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
@@ -76,7 +77,13 @@ TEST(SceneModel, WarnsOfFracturesThatAreNotLeft) {
                 ElementsAre(HasSubstr("it lies on the outline")));
     EXPECT_THAT(warnings_of({"geometry.fractures=[{name: main, trace: [[0, 1], [1, 1]], interface: joint}, {name: "
                              "again, trace: [[1, 1], [0, 1]], interface: joint}]"}),
-                ElementsAre(HasSubstr("geometry.fractures.1: again is left out: main runs along it already")));
+                ElementsAre(EndsWith("geometry.fractures.1: again is left out: main runs along it already")));
+    EXPECT_THAT(warnings_of({"geometry.fractures=[{name: main, trace: [[0, 1], [1, 1]], interface: joint}, {name: "
+                             "again, trace: [[1, 1], [0, 1]], interface: weak}]",
+                             "interfaces.weak={kind: fracture, normal_stiffness: 500 GPa/m, shear_stiffness: 250 "
+                             "GPa/m, friction_angle: 20}"}),
+                ElementsAre(HasSubstr("again is left out: main runs along it already, so that the interface there is "
+                                      "'joint' and not 'weak'")));
 }
 
 // A corner of 0.1 x 0.1 / 2 m2 where the smallest block has 20 % of a hexagon of 0.3 m, 0.0156 m2.
