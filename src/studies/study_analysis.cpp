@@ -273,6 +273,14 @@ bool is_confirmed(const StudyTable& table, const std::vector<StudyGroup>& groups
     return any;
 }
 
+/// The table's reference counts as confirmed, but nothing finer than it may say so.
+bool is_finest_reference(const StudyTable& table, const std::vector<StudyGroup>& groups, bool with_variants,
+                         std::size_t group) {
+    return has_table_reference(table, groups[group]) && std::ranges::none_of(groups, [&](const StudyGroup& other) {
+               return is_finer(table, other, groups[group], with_variants);
+           });
+}
+
 std::vector<std::string> model_settings(const StudyTable& table, const std::vector<std::string>& settings) {
     std::vector<std::string> some;
     for (std::size_t p = 0; p < settings.size(); ++p)
@@ -615,6 +623,7 @@ std::vector<Advice> cheapest_settings(const StudyTable& table, const std::vector
             each.group = i;
             each.error = *errors[i];
             each.cpu_s = *costs[i];
+            each.is_unconfirmed = is_finest_reference(table, groups, with_variants, i);
             if (known(reference) && *reference > 0.0) each.reference_share = each.cpu_s / *reference;
         }
         advice.push_back(std::move(each));

@@ -278,6 +278,14 @@ std::optional<ReportAnswer> ReportBuilder::found_answer() const {
         return ReportAnswer{"Recommendation", "none", "No settings hold a bound with a finer case that confirms them.",
                             "", false};
     const std::string model = model_of_group(table_, groups_, *best->group);
+    if (best->is_unconfirmed)
+        return ReportAnswer{
+            "Recommendation", advised_settings(table_, groups_, *best->group) + ", not confirmed",
+            fmt::format(
+                "They are the reference itself, which no finer case of this study confirms: no cheaper settings "
+                "have an error of at most {:.3g} % {}, and that of the reference is not known. A case costs {}.",
+                percent * best->bound, on_words(measure), cost_text(*best->group, best->cpu_s)),
+            set_words(*best->group), false};
     return ReportAnswer{
         "Recommendation", advised_settings(table_, groups_, *best->group),
         fmt::format(
@@ -769,7 +777,8 @@ std::string ReportBuilder::sentence(const Advice& advice, const StudyMeasure& me
     if (advice.group) {
         const auto references = reference_marks(table_);
         if (std::ranges::any_of(groups_[*advice.group].cases, [&](std::size_t i) { return references[i]; }))
-            text += "only the reference itself: ";
+            text += advice.is_unconfirmed ? "only the reference itself, which no finer case confirms: "
+                                          : "only the reference itself: ";
         text += fmt::format("{} (error {:.2g} %) costs {}", advised_settings(table_, groups_, *advice.group),
                             percent * advice.error, cost_text(*advice.group, advice.cpu_s));
         if (advice.reference_share) text += fmt::format(", {:.2g} of the reference", *advice.reference_share);

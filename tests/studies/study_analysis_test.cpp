@@ -212,6 +212,19 @@ TEST(CheapestSettings, TakeNoLuckyHits) {
     EXPECT_DOUBLE_EQ(*advice[0].reference_share, 0.25);
 }
 
+TEST(CheapestSettings, SayWhereNothingIsFinerThanTheReference) {
+    StudyTable table = step_table({{"100", 0.03}, {"200", 0.0}, {"400", 0.001}});
+    const auto is_unconfirmed = [&](std::size_t reference) {
+        table.reference = reference;
+        const auto advice =
+            cheapest_settings(table, study_groups(table), study_measures(table).front(), {}, {0.01}).front();
+        return advice.group && advice.is_unconfirmed;
+    };
+    EXPECT_FALSE(is_unconfirmed(1)); // 400 steps confirm it
+    table.cases.pop_back();
+    EXPECT_TRUE(is_unconfirmed(1));
+}
+
 // Times of short runs differ by some per cent from one run to the next: 52 seconds are no dearer than 50.
 TEST(CheapestSettings, AreTheMostExactOfThoseThatCostTheSame) {
     StudyTable table = step_table({{"50", 0.008}, {"52", 0.0004}, {"400", 0.0}});

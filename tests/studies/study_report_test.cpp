@@ -93,6 +93,25 @@ TEST(StudyReport, SaysOrderLimitFailuresAndWhatAccuracyCosts) {
     EXPECT_THAT(page, Not(HasSubstr("src=\"study-")));
 }
 
+TEST(StudyReport, SaysThatNothingConfirmsTheReference) {
+    const TemporaryDirectory directory;
+    StudyTable table = made_table({"stages.1.steps"}, 0);
+    table.directory = directory.path();
+    for (const int steps : {1, 7, 35}) {
+        const double error = steps == 35 ? 0.0 : 0.3 / steps;
+        StudyCase made = done_case({fmt::format("{}", steps)}, 1e6 * (1.0 + error), error, steps);
+        made.name = fmt::format("{}", steps);
+        write_case(directory / "cases" / made.name, *made.quantities[0], 0);
+        table.cases.push_back(made);
+    }
+    table.reference = 2;
+    write_study_report(table, directory.path());
+    const std::string text = read_file(directory / "study.md");
+    EXPECT_THAT(text, HasSubstr("35 steps of stage 1, not confirmed"));
+    EXPECT_THAT(text, HasSubstr("They are the reference itself, which no finer case of this study confirms"));
+    EXPECT_THAT(text, Not(HasSubstr("it is 0 %")));
+}
+
 // Two rocks, each with its own finest case for a reference: what to compute with is advised, not what the rock is.
 TEST(StudyReport, RecommendsNoRock) {
     const TemporaryDirectory directory;

@@ -159,6 +159,7 @@ struct Advice {
     std::optional<std::size_t> group;       ///< a cheapest one that holds it
     double error = 0.0;                     ///< of this group, see group_error
     double cpu_s = 0.0;                     ///< of one of its cases
+    bool is_unconfirmed = false;            ///< the table's reference, to which there is no finer group
     std::optional<double> reference_share;  ///< cpu_s over the mean of the references
     std::vector<std::size_t> not_confirmed; ///< cheaper groups below the bound that are not trusted
 };
