@@ -62,7 +62,9 @@ std::vector<std::optional<double>> quantities_in(const Json& summary, const std:
     return values;
 }
 
+/// Nothing of a run that moves no platen: its strains follow from loads, and are no curve.
 std::vector<Vec2> curve_in(const fs::path& directory, const Json& summary) {
+    if (!number_in(summary, "platen_stage")) return {};
     try {
         const auto rows = read_history(directory / "history.csv", curve_columns);
         return growing_curve(platen_rows(rows, value_or(summary, "platen_stage", 0)));

@@ -272,6 +272,15 @@ TEST_F(StudyRuns, RealCasesHaveCurvesAndCosts) {
     EXPECT_THAT(content_of(results_ / "cases" / "steps=5" / "summary.json"), HasSubstr("\"cpu_s\""));
 }
 
+// Strains of a body that is pressed by given loads only are no curve, so that there is no error of one.
+TEST_F(StudyRuns, CasesThatMoveNoPlatenHaveNoCurve) {
+    std::ofstream(directory_ / "scene.yaml") << std::regex_replace(
+        tiny_scene, std::regex("strain: \\{boundary: top, value: 1 %\\}"), "pressure: {top: 0.15 MPa}");
+    const StudyTable table = run(read(steps("2, 4") + "quantities: [cracks_shear]\n"), KLUFT_PROGRAM);
+    ASSERT_THAT(statuses_of(table), ::testing::Each(CaseStatus::done));
+    for (const StudyCase& each : table.cases) EXPECT_EQ(each.curve_error, std::nullopt);
+}
+
 // A body that has lost a fifth of its strength is not pressed on, and its peak is that of the whole run.
 TEST_F(StudyRuns, CasesMayEndAfterADropOfTheStress) {
     const ReadStudy study = read("vary: {stages.1.stop_after_drop: [0.2, null]}\n"
