@@ -31,14 +31,15 @@ Colour ColourScale::operator()(double value) const {
 ColourScale scale_for(std::vector<double> values) {
     std::erase_if(values, [](double value) { return !std::isfinite(value); });
     if (values.empty()) return ColourScale(round_axis(0.0, 1.0, 5));
-    const auto ranked = [&](double share) {
-        const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    const auto ranked = [&](std::size_t rank) {
+        const auto at = values.begin() + static_cast<std::ptrdiff_t>(rank);
         std::nth_element(values.begin(), at, values.end());
         return *at;
     };
-    constexpr double ends = 0.01;
-    const double low = std::min(0.0, ranked(ends));
-    const double high = std::max(0.0, ranked(1.0 - ends));
+    constexpr std::size_t whole = 100; // of which one at each end is left out: none of fewer values
+    const std::size_t n_beyond = (values.size() - 1) / whole;
+    const double low = std::min(0.0, ranked(n_beyond));
+    const double high = std::max(0.0, ranked(values.size() - 1 - n_beyond));
     const auto [least, largest] = std::ranges::minmax(values);
     return {round_axis(low, high, 5), least, largest};
 }

@@ -40,6 +40,13 @@ TEST(ColourScale, EndsAtARoundNumberAboveAllButTheLargestValues) {
     EXPECT_GT(scale_for({}).axis().high, 0.0);
 }
 
+TEST(ColourScale, OfFewValuesEndsAboveTheLargest) {
+    EXPECT_NEAR(scale_for({0.013, 1800.0}).axis().high, 2000.0, 1e-9);
+    std::vector<double> values(100, -1.3);
+    values[7] = -400.0;
+    EXPECT_NEAR(scale_for(values).axis().low, -400.0, 1e-9);
+}
+
 BlocksPlot plot_of(const std::string& title) { return {title, "after", 1.0, {"sandstone"}, {true}}; }
 
 std::size_t count(const std::string& text, const std::string& part) {

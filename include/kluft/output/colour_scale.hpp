@@ -29,7 +29,7 @@ private:
 };
 
 /// A scale from zero (or a round number below the least value) to a round number above all but the largest hundredth
-/// of the values. Values that are not finite numbers are left out.
+/// of the values, above all of a hundred or fewer. Values that are not finite numbers are left out.
 [[nodiscard]] ColourScale scale_for(std::vector<double> values);
 
 /// An upright bar with ticks to its right and its name beyond them. Values that lie outside the axis by more than a shade are told
