@@ -54,8 +54,9 @@ public:
     /// An equilibrium of a step that is never committed.
     void try_step(int step) { writer_.equilibrium(record_of(step)); }
 
-    RunSummary finish(RunStatus status = RunStatus::done) {
+    RunSummary finish(RunStatus status = RunStatus::done, const std::string& remark = "") {
         RunOutcome outcome;
+        outcome.report.remark = remark;
         outcome.report.status = status;
         outcome.report.costs.factorizations = 17;
         outcome.version = "0.1.0";
@@ -133,6 +134,16 @@ TEST(RunWriter, LeavesEverythingOfTheContract) {
     EXPECT_EQ(json["peak_reached"], true);
     for (const auto& entry : fs::recursive_directory_iterator(directory.path()))
         EXPECT_NE(entry.path().extension(), ".part") << entry.path();
+}
+
+// The last tenth of the strain, 0.9 and 1.0 %, with 0.4 and 0.2 MPa.
+TEST(RunWriter, TellsNoResidualStressOfARunThatADropEnded) {
+    const TemporaryDirectory directory;
+    SmallRun whole(directory.path(), {});
+    whole.go_to(14);
+    EXPECT_NEAR(*whole.finish().numbers.residual_stress, 0.3e6, 1e-6);
+    EXPECT_EQ(whole.finish(RunStatus::done, "stopped after a drop of the axial stress").numbers.residual_stress,
+              std::nullopt);
 }
 
 TEST(RunWriter, HasTheHistoryOnTheDiskWithEveryStep) {
