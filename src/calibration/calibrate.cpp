@@ -226,6 +226,19 @@ private:
                 "youngs_modulus before you use it.");
         for (std::size_t t = 0; t < result_.targets.size(); ++t)
             warn_of_copies(calibration_.targets[t], result_.targets[t]);
+        if (has_rows()) warn_of_parameters_told_together();
+    }
+
+    /// Of several that are not determined the two which exchange with each other most are named first.
+    void warn_of_parameters_told_together() {
+        std::vector<std::string> names;
+        for (const std::size_t p : told_together(search_.jacobian)) names.push_back(calibration_.parameters[p].name);
+        if (names.size() < 2) return;
+        const std::vector<std::string> others(names.begin() + 2, names.end());
+        result_.warnings.push_back(fmt::format(
+            "The targets do not tell {} and {} apart: other values of both{} meet them as well. Give one of the two by "
+            "itself, or a target that changes with one of them only.",
+            names[0], names[1], others.empty() ? "" : fmt::format(", with others of {},", listed(others))));
     }
 
     /// A target that the mean of the copies meets, and a run of one net may miss.

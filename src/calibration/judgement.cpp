@@ -1,6 +1,8 @@
 #include "kluft/calibration/judgement.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "kluft/core/dense_decompositions.hpp"
 #include "kluft/studies/ensemble.hpp"
@@ -21,21 +23,41 @@ Eigen::VectorXd root_weights(const std::vector<RowGroup>& groups, Eigen::Index n
     return weights;
 }
 
+/// Unit vectors of parameters along which hardly any row changes.
+std::vector<Eigen::VectorXd> indifferent_directions(const Eigen::MatrixXd& jacobian) {
+    const Eigen::Index n = jacobian.cols();
+    std::vector<Eigen::VectorXd> directions;
+    if (n == 0) return directions;
+    Eigen::MatrixXd square = Eigen::MatrixXd::Zero(std::max(n, jacobian.rows()), n);
+    square.topRows(jacobian.rows()) = jacobian;
+    const SingularValues singular = singular_values(square);
+    for (Eigen::Index i = 0; i < n; ++i)
+        if (singular.values[i] <= indifferent * singular.values[0]) directions.emplace_back(singular.v.col(i));
+    return directions;
+}
+
 } // namespace
 
 std::vector<char> determined(const Eigen::MatrixXd& jacobian) {
     const Eigen::Index n = jacobian.cols();
     std::vector<char> result(static_cast<std::size_t>(n), 1);
-    if (n == 0) return result;
-    Eigen::MatrixXd square = Eigen::MatrixXd::Zero(std::max(n, jacobian.rows()), n);
-    square.topRows(jacobian.rows()) = jacobian;
-    const SingularValues singular = singular_values(square);
-    for (Eigen::Index i = 0; i < n; ++i) {
-        if (singular.values[i] > indifferent * singular.values[0]) continue;
+    for (const Eigen::VectorXd& direction : indifferent_directions(jacobian))
         for (Eigen::Index p = 0; p < n; ++p)
-            if (std::abs(singular.v(p, i)) > much) result[static_cast<std::size_t>(p)] = 0;
-    }
+            if (std::abs(direction[p]) > much) result[static_cast<std::size_t>(p)] = 0;
     return result;
+}
+
+std::vector<std::size_t> told_together(const Eigen::MatrixXd& jacobian) {
+    const auto directions = indifferent_directions(jacobian);
+    if (directions.size() != 1) return {};
+    const Eigen::VectorXd parts = directions.front().cwiseAbs();
+    std::vector<std::size_t> parameters;
+    for (Eigen::Index p = 0; p < parts.size(); ++p)
+        if (parts[p] > much) parameters.push_back(static_cast<std::size_t>(p));
+    if (parameters.size() < 2) return {};
+    std::ranges::stable_sort(parameters, std::ranges::greater(),
+                             [&](std::size_t p) { return parts[static_cast<Eigen::Index>(p)]; });
+    return parameters;
 }
 
 std::vector<std::optional<double>> confidence_of(const Eigen::MatrixXd& jacobian,

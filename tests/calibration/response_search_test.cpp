@@ -180,5 +180,22 @@ TEST(Judgement, KnowsWhatTheRowsDoNotDetermine) {
     EXPECT_EQ(determined(of_two), (std::vector<char>{1, 1, 0}));
 }
 
+// Rows that change with x0 + 2 x1 and with x2 + x0/4 stay along (-2, 1, 1/2): what x0 and x1 exchange, x2 follows a little.
+TEST(Judgement, NamesTheParametersThatAreToldOnlyTogether) {
+    Eigen::MatrixXd jacobian(2, 3);
+    jacobian << 1.0, 2.0, 0.0, 0.25, 0.0, 1.0;
+    EXPECT_EQ(told_together(jacobian), (std::vector<std::size_t>{0, 1, 2}));
+    Eigen::MatrixXd without(2, 3);
+    without << 1.0, 1.0, 0.0, 0.0, 0.0, 1.0;
+    EXPECT_EQ(told_together(without).size(), 2U);
+    EXPECT_TRUE(told_together(Eigen::MatrixXd::Identity(3, 3)).empty());
+    Eigen::MatrixXd of_one(1, 3);
+    of_one << 1.0, 1.0, 0.0; // two directions: whatever is named would be by chance
+    EXPECT_TRUE(told_together(of_one).empty());
+    Eigen::MatrixXd alone(2, 3);
+    alone << 1.0, 0.0, 0.0, 0.0, 1.0, 0.0;
+    EXPECT_TRUE(told_together(alone).empty());
+}
+
 } // namespace
 } // namespace kluft

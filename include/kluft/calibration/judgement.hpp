@@ -22,6 +22,10 @@ namespace kluft {
 /// Per parameter, whether the rows determine it: no direction of x that hardly changes any row has much of it.
 [[nodiscard]] std::vector<char> determined(const Eigen::MatrixXd& jacobian);
 
+/// Parameters that the rows tell only together, those that have most of it first, where there is a single direction that hardly
+/// changes any row and two or more have much of it; else none.
+[[nodiscard]] std::vector<std::size_t> told_together(const Eigen::MatrixXd& jacobian);
+
 /// Pairs of groups that oppose each other: of the two at least one is not met, and the parameters that bring the one nearer
 /// take the other one away, the cosine of the angle between their gradients of weighted squares below -1/2. `at_bound`:
 /// parameters that cannot move.
