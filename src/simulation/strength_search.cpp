@@ -170,11 +170,9 @@ public:
         if (said_.empty()) without_ = factor;
     }
 
-    [[nodiscard]] std::string warning() const {
-        if (said_.empty()) return {};
-        return fmt::format(
-            "{}: the factor of safety is lower without that; {:.4g} is the factor of the last load step before", said_,
-            without_);
+    /// `factor`: found.
+    [[nodiscard]] std::string warning(double factor) const {
+        return said_.empty() ? std::string{} : doubt_in_words(said_, factor, without_);
     }
 
 private:
@@ -214,6 +212,14 @@ private:
 };
 
 } // namespace
+
+std::string doubt_in_words(const std::string& said, double factor, double without) {
+    const std::string before = fmt::format("{:.4g}", without);
+    if (before == fmt::format("{:.4g}", factor))
+        return fmt::format("{}: without that the factor of safety is the same to four digits", said);
+    return fmt::format("{}: the factor of safety is lower without that; {} is the factor of the last load step before",
+                       said, before);
+}
 
 double reduction_tolerance(const StrengthReduction& reduction, const SolverOptions& solver) {
     return std::min(solver.tolerance, reduction_residual * reduction.tolerance);
@@ -262,7 +268,8 @@ StageEnd find_strength_limit(const StepBench& bench, State& state) {
         failing = at;
         tried_from = trial.is_undecided ? from : none;
     }
-    if (const std::string said = doubts.warning(); !said.empty()) bench.journal.report().warnings.push_back(said);
+    const double found = reduction.factor_at(state.at.load_factor);
+    if (const std::string said = doubts.warning(found); !said.empty()) bench.journal.report().warnings.push_back(said);
     if (!end.failure) {
         bench.journal.report().warnings.push_back(
             fmt::format("the factor of safety is above {:g}, the largest strength factor of stage {}", reduction.to,
@@ -270,8 +277,7 @@ StageEnd find_strength_limit(const StepBench& bench, State& state) {
         return end;
     }
     end.step = state.at.step + 1;
-    if (end.failure->kind != FailureKind::too_many_solves)
-        end.factor_of_safety = reduction.factor_at(state.at.load_factor);
+    if (end.failure->kind != FailureKind::too_many_solves) end.factor_of_safety = found;
     return end;
 }
 

@@ -58,6 +58,14 @@ TEST(StrengthSearch, BlockOnAPlaneHasItsFactorOfSafetyAfterAKnownNumberOfTrials)
     EXPECT_NEAR(*end.factor_of_safety, low, 1e-12);
 }
 
+TEST(StrengthSearch, SaysOfADoubtHowMuchItMatters) {
+    EXPECT_EQ(doubt_in_words("a corner holds block 7", 2.2, 2.1),
+              "a corner holds block 7: the factor of safety is lower without that; 2.1 is the factor of the last load "
+              "step before");
+    EXPECT_EQ(doubt_in_words("a corner holds block 7", 2.13684, 2.13656),
+              "a corner holds block 7: without that the factor of safety is the same to four digits");
+}
+
 TEST(StrengthSearch, SaysThatTheFactorIsAboveTheLargestTried) {
     const StrengthReduction reduction{.from = 1.0, .to = 1.4, .tolerance = 1e-3, .interface_types = {}};
     Workplace work = at_the_reduction(reduction, 2);
