@@ -46,10 +46,13 @@ std::string progress_text(const Progress& progress, std::optional<double> second
     const std::string step = counts_steps(progress) ? fmt::format("{}/{}", progress.step, progress.n_steps)
                                                     : fmt::format("{}", progress.step);
     const std::string left = seconds_left ? fmt::format(", {} left", readable_time(*seconds_left)) : "";
-    return fmt::format("stage {}  step {} ({:.0f} %{})  strain {:.3f} %  axial {:.3f} MPa  cracks {}  iterations {}",
-                       progress.stage, step, std::floor(100.0 * fraction_of(progress)), left,
-                       100.0 * progress.axial_strain, without_sign_of_zero(progress.axial_stress / 1e6),
-                       progress.cracks, progress.open_close_iterations);
+    const std::string answer = progress.strength_factor
+                                   ? fmt::format("strengths divided by {:.4f}", *progress.strength_factor)
+                                   : fmt::format("strain {:.3f} %  axial {:.3f} MPa", 100.0 * progress.axial_strain,
+                                                 without_sign_of_zero(progress.axial_stress / 1e6));
+    return fmt::format("stage {}  step {} ({:.0f} %{})  {}  cracks {}  iterations {}", progress.stage, step,
+                       std::floor(100.0 * fraction_of(progress)), left, answer, progress.cracks,
+                       progress.open_close_iterations);
 }
 
 ProgressLine::ProgressLine(std::function<void(std::string_view)> write, bool terminal, int columns,

@@ -10,6 +10,7 @@
 #include "kluft/simulation/equilibrium_search.hpp"
 #include "kluft/simulation/placement.hpp"
 #include "kluft/simulation/state_fields.hpp"
+#include "kluft/simulation/strength_reduction.hpp"
 
 namespace kluft {
 
@@ -101,6 +102,8 @@ void Journal::progress(const State& state, const StepRecord& row, double load_fa
     progress.load_factor = load_factor;
     progress.axial_strain = row.axial_strain;
     progress.axial_stress = row.axial_stress;
+    if (!model_.loads.stages[state.at.stage].motion && reduction_of(model_.loads, 0) != nullptr)
+        progress.strength_factor = strength_factor(model_.loads, state.at.stage, load_factor);
     progress.cracks = row.cracks_tension + row.cracks_shear;
     progress.open_close_iterations = n_solves;
     observer_.progress(progress);

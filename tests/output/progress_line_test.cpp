@@ -40,6 +40,13 @@ TEST(ProgressLine, SaysStageStepStrainStressCracksIterationsAndTimeLeft) {
     EXPECT_THAT(progress_text(at_step(57), std::nullopt), EndsWith("iterations 412"));
 }
 
+TEST(ProgressLine, SaysTheStrengthFactorWhereStrengthsAreReduced) {
+    Progress progress = at_step(57);
+    progress.strength_factor = 1.25;
+    EXPECT_EQ(progress_text(progress, std::nullopt),
+              "stage 1  step 57/200 (28 %)  strengths divided by 1.2500  cracks 43  iterations 412");
+}
+
 TEST(ProgressLine, TellsTimesAsPeopleReadThem) {
     EXPECT_EQ(readable_time(7.6), "8 s");
     EXPECT_EQ(readable_time(200.0), "3 min 20 s");

@@ -34,6 +34,7 @@ TEST(StrengthSearch, BlockOnAPlaneHasItsFactorOfSafetyAfterAKnownNumberOfTrials)
     const StrengthReduction reduction{.from = 1.2, .to = 2.0, .tolerance = 1e-3, .interface_types = {}};
     Workplace work = at_the_reduction(reduction, 4);
     bring_up_the_weight(work);
+    EXPECT_EQ(work.told.last.strength_factor, 1.2);
     const std::size_t rows_before = work.told.rows.size();
     const StageEnd end = find_strength_limit(work.bench(), work.state);
     const double factor = std::tan(30.0 * degree) / std::tan(20.0 * degree);
@@ -56,6 +57,7 @@ TEST(StrengthSearch, BlockOnAPlaneHasItsFactorOfSafetyAfterAKnownNumberOfTrials)
     EXPECT_EQ(work.told.rows.size() - rows_before, kept); // trials that failed left no row
     EXPECT_EQ(work.state.at.step_in_stage, 1);
     EXPECT_NEAR(*end.factor_of_safety, low, 1e-12);
+    EXPECT_NEAR(work.told.last.strength_factor.value(), factor, 2e-3 * factor); // the last trial
 }
 
 TEST(StrengthSearch, SaysOfADoubtHowMuchItMatters) {

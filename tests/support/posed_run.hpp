@@ -101,13 +101,17 @@ struct Told : StepObserver {
     std::vector<CrackRecord> cracks;
     std::vector<State> states;
     int n_solves = 0; ///< that were told in between
+    Progress last;    ///< of them
     void equilibrium(const StepRecord& record) override { equilibria.push_back(record); }
     void crack(const CrackRecord& crack) override { cracks.push_back(crack); }
     void step(const StepRecord& record, const State& state, const std::function<FieldRecord()>&, bool) override {
         rows.push_back(record);
         states.push_back(state);
     }
-    void progress(const Progress&) override { ++n_solves; }
+    void progress(const Progress& progress) override {
+        ++n_solves;
+        last = progress;
+    }
 };
 
 /// What the load steps of a model's stage work with.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 
 #include "kluft/simulation/state.hpp"
 #include "kluft/simulation/step_record.hpp"
@@ -16,7 +17,8 @@ struct Progress {
     int n_steps = 0; ///< load steps of all stages; 0 where they follow from an accuracy
     double load_factor = 0.0;
     double axial_strain = 0.0;
-    double axial_stress = 0.0; ///< Pa
+    double axial_stress = 0.0;             ///< Pa
+    std::optional<double> strength_factor; ///< F in runs that reduce strengths, where no platen moves
     int cracks = 0;
     int open_close_iterations = 0; ///< so far in the run
 };
