@@ -11,6 +11,7 @@
 
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/core/input_file.hpp"
+#include "kluft/core/shell_line.hpp"
 #include "kluft/maps/map_file.hpp"
 
 namespace kluft {
@@ -40,15 +41,35 @@ struct PlacedGeometry {
 
 std::string quoted(const std::string& text) { return "'" + text + "'"; }
 
+bool names_geojson(const std::filesystem::path& file) {
+    const std::string extension = file.extension().string();
+    return extension.empty() || extension == ".json" || extension == ".geojson";
+}
+
+/// A map in a format that is not read, with the command that makes one of it that is.
+[[noreturn]] void refuse_format(const std::filesystem::path& file) {
+    const std::string converted = std::filesystem::path(file).replace_extension(".gpkg").string();
+    throw InputError(fmt::format("{}: expected a map in GeoJSON (.geojson, .json), a GeoPackage (.gpkg) or a shapefile "
+                                 "(.shp), found a file of another format; `{}` makes a GeoPackage of what GDAL reads",
+                                 file.string(), shell_line({"ogr2ogr", converted, file.string()})));
+}
+
+/// What a parser says without the name of its exception, "[json.exception.parse_error.101] ".
+std::string without_its_name(const std::string& message) {
+    const std::size_t end = message.find("] ");
+    return message.starts_with('[') && end != std::string::npos ? message.substr(end + 2) : message;
+}
+
 json parse_file(const std::filesystem::path& file) {
     const std::string text = read_input_file(file, "a GeoJSON file", largest_file);
     try {
         return json::parse(text);
     } catch (const json::exception& error) {
+        if (!names_geojson(file)) refuse_format(file);
         throw InputError(
             fmt::format("{}: expected GeoJSON (or a GeoPackage, .gpkg, or a shapefile, .shp), found no valid "
                         "JSON: {}",
-                        file.string(), error.what()));
+                        file.string(), without_its_name(error.what())));
     }
 }
 

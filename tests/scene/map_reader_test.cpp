@@ -16,6 +16,11 @@ protected:
         std::ofstream(file_) << text;
         return file_;
     }
+    std::filesystem::path written_as(const std::string& extension, const std::string& text) {
+        std::filesystem::remove(file_);
+        file_.replace_extension(extension);
+        return written(text);
+    }
 
     void TearDown() override { std::filesystem::remove(file_); }
 
@@ -90,6 +95,22 @@ TEST_F(GeoJson, TracesComeInTheOrderOfTheFile) {
     EXPECT_EQ(traces[2].points, (std::vector<Vec2>{{0, 0}, {1, 2}})); // the height is left out
 }
 
+// What GDAL reads and the program does not: the message has the command that helps, and nothing of a parser.
+TEST_F(GeoJson, AMapOfAnotherFormatIsRefusedWithTheCommandThatConvertsIt) {
+    for (const char* const format : {".dxf", ".csv", ".kml"}) {
+        const auto file = written_as(format, "  0\nSECTION\n  2\nHEADER\n");
+        const std::string message = message_of([&] { return read_map_traces({.file = file}); });
+        const std::string name = file.string();
+        const std::string stem = name.substr(0, name.size() - 4);
+        EXPECT_EQ(message, name +
+                               ": expected a map in GeoJSON (.geojson, .json), a GeoPackage (.gpkg) or a shapefile "
+                               "(.shp), found a file of another format; `ogr2ogr " +
+                               stem + ".gpkg " + name + "` makes a GeoPackage of what GDAL reads");
+    }
+    const auto text = written_as(".txt", R"({"type": "LineString", "coordinates": [[0, 0], [1, 1]]})");
+    EXPECT_EQ(read_map_traces({.file = text}).traces.size(), 1U);
+}
+
 // The doubles next to the decimals written, as strtod gives them.
 TEST_F(GeoJson, CoordinatesKeepAllTheirDigits) {
     const auto traces =
@@ -114,6 +135,7 @@ TEST_F(GeoJson, ErrorsNameTheFileAndTheFeature) {
     EXPECT_NE(message_of([&] { return read_map_traces({.file = missing}); }).find(missing), std::string::npos);
     EXPECT_NE(in_traces("{\"type\": ").find("found no valid JSON"), std::string::npos);
     EXPECT_NE(in_traces("").find("found no valid JSON"), std::string::npos);
+    EXPECT_EQ(in_traces("").find("json.exception"), std::string::npos);
     EXPECT_NE(in_traces("[1, 2]").find("expected a GeoJSON object"), std::string::npos);
     EXPECT_NE(in_traces(R"({"type": "FeatureCollection"})").find("features"), std::string::npos);
     EXPECT_NE(in_traces(collection("")).find("no traces"), std::string::npos);
