@@ -233,6 +233,15 @@ output: {pictures: false, fields_every: 2}
 """
 
 
+def check_ticks(page):
+    """A tick at zero that steps of 1e-5 have not met by 3.4e-21 is one at zero."""
+    text = page.script(
+        "const axis = Chart.getChart('history').scales.y, values = [-1e-5, -3.4e-21, 1e-5];"
+        "const ticks = values.map((value) => ({ value }));"
+        "return values.map((value, i) => axis.options.ticks.callback.call(axis, value, i, ticks))")
+    assert text[1] == "0" and float(text[0].replace("\u2212", "-")) == -1e-5 and float(text[2]) == 1e-5, text
+
+
 def check_study(driver, kluft, work):
     """The table of a study's page is sorted by a click on a head, by size and not as texts; the page fits a phone."""
     words = ["study", "step-size", str(ROOT / "models/quickstart.yaml"), "-o", "study", "--quiet",
@@ -282,6 +291,7 @@ def main(kluft, work):
         check_magnification(page)
         check_layers(page)
         check_keys(page)
+        check_ticks(page)
         check_scene(page)
         page.fits()
         page.no_errors()

@@ -44,8 +44,13 @@ const plotFont = { family: 'system-ui, "DejaVu Sans", sans-serif', size: 12 };
 Chart.defaults.font = plotFont;
 Chart.defaults.color = "#3b464d";
 Chart.defaults.animation = false;
+/** The text at a tick; what rounding has left of a zero is one. */
+function tickText(value, index, ticks) {
+  const largest = Math.max(...ticks.map((tick) => Math.abs(tick.value)));
+  return Chart.Ticks.formatters.numeric.call(this, Math.abs(value) < 1e-9 * largest ? 0 : value, index, ticks);
+}
 function plot(canvas, datasets, xName, yName, more = {}) {
-  const axis = (text) => ({ type: "linear", title: { display: true, text }, grid: { color: "#e6eaec" }, ...more.axis });
+  const axis = (text) => ({ type: "linear", title: { display: true, text }, ticks: { callback: tickText }, grid: { color: "#e6eaec" }, ...more.axis });
   return new Chart(canvas, {
     type: "scatter",
     data: { datasets },
