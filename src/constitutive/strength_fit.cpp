@@ -128,11 +128,12 @@ std::optional<double> delta_error(const std::optional<Mat2>& covariance, const V
 } // namespace
 
 PeakUse use_of(const PeakPoint& point) {
-    if (!point.peak_reached || !point.balanced || point.net_locked) return PeakUse::bound;
+    if (!point.moves_platen || !point.peak_reached || !point.balanced || point.net_locked) return PeakUse::bound;
     return in_tension(point) ? PeakUse::tension : PeakUse::strength;
 }
 
 std::string bound_reason(const PeakPoint& point) {
+    if (!point.moves_platen) return "moves no platen";
     if (point.net_locked) return "net locked";
     if (!point.peak_reached) return "not yet falling";
     return point.balanced ? "" : "unbalanced";
@@ -220,11 +221,16 @@ std::optional<Estimate> fit_tensile_strength(const std::vector<PeakPoint>& point
 }
 
 StrengthFit fit_strength(const std::vector<PeakPoint>& points) {
-    return {fit_envelope(points), fit_tensile_strength(points), fit_hoek_brown(points)};
+    StrengthFit fit{fit_envelope(points), fit_tensile_strength(points), fit_hoek_brown(points)};
+    constexpr double round_off = 1e-12; // of the largest stress
+    double largest = 0.0;
+    for (const PeakPoint& point : points) largest = std::max(largest, std::abs(point.sigma_1));
+    if (fit.tensile_strength && fit.tensile_strength->value < round_off * largest) fit.tensile_strength->value = 0.0;
+    return fit;
 }
 
 bool contradicts(const PeakPoint& bound, const StrengthFit& fit) {
-    if (use_of(bound) != PeakUse::bound || bound.net_locked) return false;
+    if (use_of(bound) != PeakUse::bound || bound.net_locked || !bound.moves_platen) return false;
     if (in_tension(bound)) return fit.tensile_strength && -bound.sigma_3 > fit.tensile_strength->value;
     return bound.sigma_1 > fit.envelope.sigma_1(bound.sigma_3);
 }

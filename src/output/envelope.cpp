@@ -72,6 +72,12 @@ std::string quality(const Residuals& residuals) {
                        residuals.rms / mega);
 }
 
+/// In MPa, without the sign of what is rounded to zero.
+double shown_in_mega(double stress) {
+    constexpr double half_of_last_digit = 5e-5;
+    return std::abs(stress / mega) < half_of_last_digit ? 0.0 : stress / mega;
+}
+
 std::string mohr_coulomb_text(const Envelope& envelope) {
     const auto angle_error = envelope.friction_angle_error();
     std::string text =
@@ -90,9 +96,9 @@ std::string tension_text(const StrengthFit& fit, std::size_t n_tension) {
     const double tensile = fit.tensile_strength->value;
     const Envelope& envelope = fit.envelope;
     std::string text =
-        fmt::format("tensile strength {} ({}), c/sigma_t {:.3f}\n", in_mega(*fit.tensile_strength),
+        fmt::format("tensile strength {} ({}){}\n", in_mega(*fit.tensile_strength),
                     n_tension == 1 ? "one test, standard error unknown" : fmt::format("mean of {} tests", n_tension),
-                    envelope.cohesion / tensile);
+                    tensile > 0.0 ? fmt::format(", c/sigma_t {:.3f}", envelope.cohesion / tensile) : "");
     const double tangent = std::tan(envelope.friction_angle);
     if (tangent > 0.0 && tensile * tangent > envelope.cohesion)
         text += fmt::format("  the line's apex c cot(phi) = {:.4f} MPa is nearer: the cut-off does not act\n",
@@ -105,6 +111,19 @@ std::string hoek_brown_text(const HoekBrownFit& fit) {
     return fmt::format("Hoek-Brown: sigma_ci {}, m_i {} (s = 1, a = 0.5)\n  standard errors; {}\n",
                        in_mega(fit.curve->sigma_ci), with_error(fit.curve->m_i.value, fit.curve->m_i.error, 3, ""),
                        quality(fit.curve->residuals));
+}
+
+/// No rock is so weak: most likely the stresses of a table are in another unit than Pa.
+std::string units_text(const std::vector<PeakPoint>& points) {
+    constexpr double least = 1e3; // Pa
+    double largest = 0.0;
+    for (const PeakPoint& point : points)
+        largest = std::max({largest, std::abs(point.sigma_1), std::abs(point.sigma_3)});
+    if (largest >= least) return "";
+    return fmt::format(
+        "warning: all stresses are below 1 kPa (the largest is {:.4g} Pa); a table without units is read in "
+        "Pa, its first line names others, as in 'sigma_3 (MPa),sigma_1 (MPa)'\n",
+        largest);
 }
 
 std::string bounds_text(const std::vector<PeakPoint>& points, const StrengthFit& fit) {
@@ -191,11 +210,11 @@ std::string envelope_text(const std::vector<PeakPoint>& points, const StrengthFi
     for (const PeakPoint& point : points) {
         const bool tension = use_of(point) == PeakUse::tension;
         const std::string fitted = tension ? "-" : fmt::format("{:.4f}", fit.envelope.sigma_1(point.sigma_3) / mega);
-        text += fmt::format("{:<{}}  {:13.4f}  {:13.4f}  {:>12}{}\n", point.run, width, point.sigma_3 / mega,
-                            point.sigma_1 / mega, fitted, remark(point, fit));
+        text += fmt::format("{:<{}}  {:13.4f}  {:13.4f}  {:>12}{}\n", point.run, width, shown_in_mega(point.sigma_3),
+                            shown_in_mega(point.sigma_1), fitted, remark(point, fit));
     }
     return text + mohr_coulomb_text(fit.envelope) + tension_text(fit, number_of(PeakUse::tension, points)) +
-           hoek_brown_text(fit.hoek_brown) + bounds_text(points, fit);
+           hoek_brown_text(fit.hoek_brown) + bounds_text(points, fit) + units_text(points);
 }
 
 std::string envelope_json(const std::vector<PeakPoint>& points, const StrengthFit& fit) {
@@ -212,7 +231,7 @@ std::string envelope_json(const std::vector<PeakPoint>& points, const StrengthFi
     json["tensile_strength"] = json_number(tensile ? std::optional(tensile->value) : std::nullopt);
     json["tensile_strength_error"] = json_number(tensile ? tensile->error : std::nullopt);
     json["cohesion_over_tensile_strength"] =
-        json_number(tensile ? std::optional(envelope.cohesion / tensile->value) : std::nullopt);
+        json_number(tensile && tensile->value > 0.0 ? std::optional(envelope.cohesion / tensile->value) : std::nullopt);
     json["hoek_brown"] = hoek_brown_json(fit.hoek_brown);
     json["n_points"] = number_of(PeakUse::strength, points);
     json["n_tension"] = number_of(PeakUse::tension, points);

@@ -248,12 +248,18 @@ PeakPoint read_peak(const fs::path& directory, const std::string& run) {
     const std::vector<StepRecord> equilibria = fs::exists(fine) ? read_history(fine) : std::vector<StepRecord>{};
     const std::vector<StepRecord>& rows = equilibria.empty() ? history : equilibria;
     const fs::path summary_file = directory / "summary.json";
-    if (!fs::exists(summary_file)) return peak_point(run, rows, read_finished_run(directory, run).platen_stage);
+    if (!fs::exists(summary_file)) {
+        const FinishedRun known = read_finished_run(directory, run);
+        PeakPoint point = peak_point(run, rows, known.platen_stage);
+        point.moves_platen = known.platen_stage || !known.model;
+        return point;
+    }
     const RunSummary summary = read_summary(summary_file);
     if (const std::string missing = missing_rows(history, equilibria, summary); !missing.empty())
         throw InputError(fmt::format("{}: expected all rows of the run, found that {}", directory.string(), missing));
     PeakPoint point = peak_point(run, rows, summary.platen_stage);
     point.balanced = summary.status != RunStatus::unbalanced;
+    point.moves_platen = summary.platen_stage.has_value();
     point.net_locked = net_locked_in(summary_file);
     point.peak_reached =
         point.peak_reached || summary.status == RunStatus::collapsed; // a platen that is loaded by stress

@@ -118,6 +118,27 @@ TEST(EnvelopeText, SaysWhereTheCutOffIsBeyondTheApex) {
     EXPECT_THAT(text, HasSubstr("c cot(phi) = 0.2186 MPa"));
 }
 
+// A body that is cut through holds nothing; what is left over in its balance is no stress.
+TEST(EnvelopeText, OfABodyThatHoldsNoTensionHasNoRatioToIt) {
+    auto points = two_points();
+    points.push_back({"cut through", -7.4e-8, 0.0});
+    const StrengthFit fit = fit_strength(points);
+    EXPECT_THAT(envelope_text(points, fit), AllOf(HasSubstr("tensile strength 0.0000 MPa (one test"),
+                                                  Not(HasSubstr("c/sigma_t")), Not(HasSubstr("-0.0000"))));
+    const auto json = nlohmann::json::parse(envelope_json(points, fit));
+    EXPECT_EQ(json["tensile_strength"], 0.0);
+    EXPECT_TRUE(json["cohesion_over_tensile_strength"].is_null());
+}
+
+TEST(EnvelopeText, WarnsOfStressesThatSeemToBeWithoutUnits) {
+    const std::vector<PeakPoint> bare{{"a", 0.0, 30.0}, {"b", 5.0, 60.0}, {"c", 10.0, 85.0}};
+    EXPECT_THAT(
+        envelope_text(bare, fit_strength(bare)),
+        HasSubstr("warning: all stresses are below 1 kPa (the largest is 85 Pa); a table without units is read in "
+                  "Pa, its first line names others, as in 'sigma_3 (MPa),sigma_1 (MPa)'\n"));
+    EXPECT_THAT(envelope_text(two_points(), fit_strength(two_points())), Not(HasSubstr("warning")));
+}
+
 TEST(EnvelopeTable, HasAColumnForEachThingThatIsKnownOfATest) {
     const auto points = many_points();
     const std::string text = envelope_csv(points, fit_strength(points));

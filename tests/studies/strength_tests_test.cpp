@@ -165,6 +165,17 @@ TEST_F(PeakOfRun, OfACompressionTestIsTheLargestAxialStress) {
     EXPECT_EQ(use_of(point), PeakUse::strength);
 }
 
+TEST_F(PeakOfRun, OfARunWithoutAPlatenIsNone) {
+    write_run(1.0, 1.4e6, 1.0e6, RunStatus::done);
+    RunSummary summary = read_summary(directory_ / "summary.json");
+    summary.platen_stage.reset();
+    write_summary(directory_ / "summary.json", summary);
+    const PeakPoint point = read_peak(directory_.path(), "slope");
+    EXPECT_EQ(use_of(point), PeakUse::bound);
+    EXPECT_EQ(bound_reason(point), "moves no platen");
+    EXPECT_FALSE(contradicts(point, fit_strength({{"a", 0.0, 0.1e6}, {"b", 1e6, 3.1e6}}))); // 0.7 MPa at 0.2 MPa
+}
+
 // Pulled with glued platens, without lateral pressure: sigma_3 is the axial stress, negative.
 TEST_F(PeakOfRun, OfAPulledRunIsATensileStrength) {
     lateral_ = 0.0;

@@ -19,17 +19,18 @@ struct PeakPoint {
     bool peak_reached = true; ///< false: the stress had neither fallen nor levelled off
     bool balanced = true;     ///< false: the run ended out of balance
     bool net_locked = false;  ///< loose blocks of the net of potential cracks carried the load, as masonry does
+    bool moves_platen = true; ///< false: a run under given loads, which has no strength of a test
 };
 
 /// What a test says about the strength.
 enum class PeakUse {
     strength, ///< a point of the compressive strength, sigma_3 >= 0
     tension,  ///< a tensile strength, sigma_3 = -sigma_t < 0
-    bound     ///< no strength: not yet falling, out of balance or locked
+    bound     ///< no strength: no platen, not yet falling, out of balance or locked
 };
 
 [[nodiscard]] PeakUse use_of(const PeakPoint& point);
-/// "not yet falling", "unbalanced", "net locked", or "" for a strength.
+/// "moves no platen", "not yet falling", "unbalanced", "net locked", or "" for a strength.
 [[nodiscard]] std::string bound_reason(const PeakPoint& point);
 
 /// A number from measurements with its standard error, which is unknown where nothing is left over to tell the scatter.
@@ -105,11 +106,12 @@ struct StrengthFit {
     HoekBrownFit hoek_brown;
 };
 
-/// Throws as fit_envelope does.
+/// A tensile strength that is round-off beside the largest stress is zero. Throws as fit_envelope does.
 [[nodiscard]] StrengthFit fit_strength(const std::vector<PeakPoint>& points);
 
 /// Whether a test carried more than the fitted strength though it did not reach its own: its sigma_1 is above the line, or in
-/// tension its -sigma_3 above the tensile strength. Never of a strength, nor of a locked net, whose load is not the rock's.
+/// tension its -sigma_3 above the tensile strength. Never of a strength, nor of a locked net, whose load is not the rock's, nor of a
+/// run without a platen.
 [[nodiscard]] bool contradicts(const PeakPoint& bound, const StrengthFit& fit);
 
 /// Where Mohr's circle of a curve's sigma_3, sigma_1 touches its envelope, `slope` being d sigma_1/d sigma_3 > 0 (Balmer
