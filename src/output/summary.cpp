@@ -414,6 +414,13 @@ CurveNumbers curve_numbers(const std::vector<StepRecord>& equilibria, const std:
     return numbers;
 }
 
+void clear_round_off(double modulus, CurveNumbers& numbers) {
+    constexpr double round_off = 1e-9;
+    const double least = round_off * modulus * std::abs(numbers.peak_strain.value_or(0.0));
+    for (std::optional<double>* const stress : {&numbers.peak_stress, &numbers.residual_stress})
+        if (*stress && std::abs(**stress) < least) *stress = 0.0;
+}
+
 bool is_strength(const CurveNumbers& numbers) { return numbers.peak_reached || numbers.levelled_off; }
 
 std::string peak_remark(const CurveNumbers& numbers) {

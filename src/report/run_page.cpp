@@ -238,6 +238,8 @@ RunFacts facts_of(const fs::path& directory, const Rows& history, const Rows& eq
     if (stage >= 0) facts.platen_stage = stage;
     facts.numbers = curve_numbers(equilibria, history, facts.platen_stage, scene.plane);
     if (fs::exists(directory / "summary.json")) facts.summary = read_summary(directory / "summary.json");
+    clear_round_off(largest_modulus(scene.materials), facts.numbers);
+    if (facts.summary) clear_round_off(largest_modulus(scene.materials), facts.summary->numbers);
     if (facts.summary && !facts.summary->numbers.residual_stress) facts.numbers.residual_stress.reset();
     facts.sense = platen_sense(history, facts.platen_stage);
     facts.peak = peak_row(equilibria.empty() ? history : equilibria, facts.platen_stage);

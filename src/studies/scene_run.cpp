@@ -70,6 +70,7 @@ RunWriterOptions run_writer_options(const Scene& scene, const Model& model) {
     const int platen_stage = make_gauges(model).first_platen_stage;
     if (platen_stage >= 0) options.platen_stage = platen_stage;
     options.plane = scene.plane;
+    options.modulus = largest_modulus(scene.materials);
     options.strength_factor = reduction_of(model.loads, 0) != nullptr;
     options.motion = scene.integrator == Integrator::explicit_motion;
     options.history_columns = history_columns(model);

@@ -67,6 +67,21 @@ TEST(Summary, LargestStressWithoutAPlatenIsThatOfLargestMagnitude) {
     EXPECT_DOUBLE_EQ(*curve_numbers(pressed, pressed, std::nullopt, Plane::strain).peak_stress, 2.4e6);
 }
 
+// 1.2 MPa at 1 % beside E = 100 MPa is a stress, 1e-4 Pa is what is left over in the balance of a body without any.
+TEST(Summary, TakesRoundOffForZero) {
+    const auto cleared = [](double share) {
+        Rows rows = triangle(100e6, 0.3);
+        for (StepRecord& each : rows) each.axial_stress *= share;
+        auto numbers = curve_numbers(rows, rows, 1, Plane::stress);
+        clear_round_off(100e6, numbers);
+        return numbers;
+    };
+    EXPECT_DOUBLE_EQ(*cleared(1.0).peak_stress, 1.2e6);
+    EXPECT_DOUBLE_EQ(*cleared(1e-6).peak_stress, 1.2);
+    EXPECT_EQ(*cleared(1e-10).peak_stress, 0.0);
+    EXPECT_EQ(*cleared(1e-10).residual_stress, 0.0);
+}
+
 // E' = E/(1 - nu^2) and nu' = nu/(1 - nu) with E = 80 MPa and nu = 0.25.
 TEST(Summary, TurnsTheSlopesOfPlaneStrainIntoTheRocksConstants) {
     const Rows rows = triangle(80e6 / (1.0 - 0.0625), 0.25 / 0.75);

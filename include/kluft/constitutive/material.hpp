@@ -1,8 +1,10 @@
 // Properties of rock and of interfaces as a scene gives them.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace kluft {
 
@@ -22,6 +24,13 @@ struct Material {
     double poissons_ratio = 0.0;
     std::optional<Strength> strength;
 };
+
+/// Young's modulus of the stiffest (Pa); 0 without any.
+[[nodiscard]] inline double largest_modulus(const std::vector<Material>& materials) {
+    double largest = 0.0;
+    for (const Material& material : materials) largest = std::max(largest, material.youngs_modulus);
+    return largest;
+}
 
 enum class InterfaceKind {
     potential_crack, ///< bonded until it fails

@@ -69,6 +69,10 @@ struct CurveNumbers {
                                          const std::vector<StepRecord>& history, std::optional<int> platen_stage,
                                          Plane plane);
 
+/// Takes stresses for zero that are round-off beside E times the strain at the peak, as those of a body that is cut through and
+/// pulled. `modulus`: E of the stiffest material (Pa).
+void clear_round_off(double modulus, CurveNumbers& numbers);
+
 /// Whether the largest axial stress is a strength: it falls behind it, or has levelled off.
 [[nodiscard]] bool is_strength(const CurveNumbers& numbers);
 
