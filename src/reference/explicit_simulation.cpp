@@ -482,9 +482,10 @@ private:
         const Gauges& gauges = journal_.gauges();
         if (gauges.moved < 0 || gauges.opposite < 0) return 0.0;
         const auto force_on = [&](int boundary) {
-            const BoundaryFrame frame = boundary_frame(model_.system, boundary);
-            return frame.length * boundary_stress(*motion_.body().loads, forces, boundary, loads_->is_held(boundary),
-                                                  frame.length, frame.normal);
+            const Loads& loads = *motion_.body().loads;
+            return loads_->is_held(boundary)
+                       ? holding_force(model_.system, loads, forces, boundary)
+                       : boundary_frame(model_.system, boundary).length * loads.pressures[boundary];
         };
         const double a = force_on(gauges.moved);
         const double b = force_on(gauges.opposite);

@@ -108,6 +108,7 @@ Gauges make_gauges(const Model& model) {
     gauges.length = distance_across(system, gauges.moved);
     gauges.lateral = lateral_sides(system, gauges.moved);
     gauges.width = width_across(system, gauges.moved).width;
+    if (gauges.first_platen_stage >= 0) gauges.pressed_share = pressed_share_of_width(system, gauges.moved);
     return gauges;
 }
 
@@ -194,19 +195,19 @@ StepRecord measure_step(const Model& model, const Gauges& gauges, const State& s
     record.axial_strain = strains.axial;
     record.lateral_strain = strains.lateral;
     record.volumetric_strain = strains.axial + strains.lateral;
-    const auto stress_on = [&](int boundary, double length, const Vec2& normal) {
-        return boundary_stress(*body.loads, forces, boundary, loads.is_held(boundary), length, normal);
+    const auto stress_on = [&](int boundary, double length, double share_of_pressure) {
+        return loads.is_held(boundary) ? holding_force(model.system, *body.loads, forces, boundary) / length
+                                       : body.loads->pressures[boundary] * share_of_pressure;
     };
     if (gauges.moved >= 0) {
         const double width = gauges.width * (1.0 - total.lateral);
-        record.axial_stress = stress_on(gauges.moved, width, gauges.axial_normal);
+        record.axial_stress = stress_on(gauges.moved, width, gauges.pressed_share);
     }
     const double height = gauges.length * (1.0 - total.axial);
     for (const Side& side : gauges.lateral) {
         for (const int i : side) {
-            const BoundaryFrame frame = boundary_frame(model.system, i);
-            const double share = frame.length / length_of(model.system, side);
-            record.lateral_stress += 0.5 * share * stress_on(i, height * share, frame.normal);
+            const double share = boundary_frame(model.system, i).length / length_of(model.system, side);
+            record.lateral_stress += 0.5 * share * stress_on(i, height * share, 1.0);
         }
     }
     record.differential_stress = record.axial_stress - record.lateral_stress;

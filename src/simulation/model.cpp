@@ -360,7 +360,25 @@ void warn_of_narrow_platen(int moved, Model& model) {
         model.system.boundaries[moved].name, width, own, width / own));
 }
 
+/// What a platen has pressed is pressed evenly in a stage that has none there.
+void warn_of_platens_that_go(Model& model) {
+    const std::vector<Stage>& stages = model.loads.stages;
+    for (std::size_t i = 1; i < stages.size(); ++i) {
+        if (!stages[i - 1].motion || stages[i - 1].motion->glued) continue;
+        const int boundary = stages[i - 1].motion->boundary;
+        const bool goes_on = stages[i].motion && stages[i].motion->boundary == boundary;
+        const bool is_told =
+            std::ranges::any_of(stages[i].pressure, [&](const auto& each) { return each.first == boundary; });
+        if (goes_on || is_told) continue;
+        model.warnings.push_back(fmt::format("stage {} has no platen on '{}' any more: the force at the end of stage "
+                                             "{} goes on as an even pressure there, "
+                                             "which neither holds the sides in one plane nor rubs on them",
+                                             i, model.system.boundaries[boundary].name, i - 1));
+    }
+}
+
 void warn_of_platens(Model& model) {
+    warn_of_platens_that_go(model);
     std::set<int> seen;
     for (const Stage& stage : model.loads.stages) {
         if (!stage.motion || !seen.insert(stage.motion->boundary).second) continue;

@@ -165,8 +165,9 @@ StageLoads::StageLoads(const Model& model, const StageStart& start, const Stage&
     const int n = static_cast<int>(system.boundaries.size());
     for (const auto& [boundary, pressure] : stage.pressure) end_pressure_[boundary] = pressure;
     if (is_platen_loaded_by_stress(stage)) {
-        platen_force_ = width_across(system, stage.motion->boundary);
-        start_platen_stress_ = start_pressure_[stage.motion->boundary];
+        const int moved = stage.motion->boundary;
+        platen_force_ = width_across(system, moved);
+        start_platen_stress_ = start_pressure_[moved] * pressed_share_of_width(system, moved);
         end_platen_stress_ = stage.motion->value;
     }
     platens_ = platens_of(model, stage);
@@ -336,8 +337,11 @@ void leave_stage(const Model& model, const StageLoads& stage_loads, const Loads&
                  State& state) {
     std::vector<double> end = stage_loads.pressures(1.0);
     for (int i = 0; i < static_cast<int>(end.size()); ++i) {
-        const auto frame = boundary_frame(model.system, i);
-        if (stage_loads.is_held(i)) end[i] = boundary_stress(loads, forces, i, true, frame.length, frame.normal);
+        if (!stage_loads.is_held(i)) continue;
+        PlatenForce of_unit_stress = width_across(model.system, i);
+        of_unit_stress.stress = pressed_share_of_width(model.system, i);
+        const double of_unit_pressure = of_unit_stress.at(state.body.displacement);
+        end[i] = of_unit_pressure > 0.0 ? holding_force(model.system, loads, forces, i) / of_unit_pressure : 0.0;
     }
     state.stage_start.boundary_pressure = std::move(end); // from here on nothing throws
     const double travel = platen_travel(loads, state.body.displacement);
@@ -351,10 +355,8 @@ void leave_stage(const Model& model, const StageLoads& stage_loads, const Loads&
     state.stresses.largest_in_stage = 0.0;
 }
 
-double boundary_stress(const Loads& loads, const Eigen::VectorXd& forces, int boundary, bool held,
-                       double current_length, const Vec2& normal) {
-    if (!held) return loads.pressures[boundary];
-    return -normal.dot(loads.constraints.reaction(forces, boundary)) / current_length;
+double holding_force(const BlockSystem& system, const Loads& loads, const Eigen::VectorXd& forces, int boundary) {
+    return -boundary_frame(system, boundary).normal.dot(loads.constraints.reaction(forces, boundary));
 }
 
 } // namespace kluft

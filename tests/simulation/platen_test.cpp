@@ -420,5 +420,59 @@ stages:
     EXPECT_NEAR(run.history.back().axial_stress, 0.1e6, 1e2);
 }
 
+/// A trapezoid, 1 m wide below and half as wide on top, where its platen is: 0.75 m on average.
+SceneRun pressed_trapezoid(const std::string& stages) {
+    return run_scene(fmt::format(R"(kluft: 1
+analysis: {{plane: stress}}
+materials: {{rock: {{youngs_modulus: 5 GPa, poissons_ratio: 0.2}}}}
+interfaces: {{joint: {{kind: fracture, friction_angle: 30, normal_stiffness: 1e11, shear_stiffness: 5e10}}}}
+geometry: {{domain: {{polygon: [[0, 0], [1, 0], [0.75, 1], [0.25, 1]]}}}}
+boundaries: {{bottom: {{sides: [0], support: smooth}}, right: {{sides: [1]}}, top: {{sides: [2]}}, left: {{sides: [3]}}}}
+stages: [{}]
+)",
+                                 stages));
+}
+
+// A stage starts from the force that the one before has ended with, whatever presses the boundary and whatever its width.
+TEST(PlatenOfTheNextStage, StartsFromTheForceOfTheLast) {
+    const std::string platen = "{stress: {boundary: top, value: 1 MPa}, steps: 2}";
+    for (const char* next : {"{stress: {boundary: top, value: 1 MPa}, steps: 4}", "{pressure: {left: 0}, steps: 4}"}) {
+        const SceneRun run = pressed_trapezoid(platen + ", " + next);
+        ASSERT_TRUE(stands(run)) << next << run.report.diagnosis;
+        for (std::size_t i = 2; i < run.history.size(); ++i)
+            EXPECT_NEAR(run.history[i].axial_stress, 1e6, 200.0) << next << " step " << i;
+    }
+    // 1 MPa on 0.5 m are 0.667 MPa on 0.75 m, from which a platen's stress goes on to 1 MPa in four steps
+    const SceneRun run =
+        pressed_trapezoid("{pressure: {top: 1 MPa}}, {stress: {boundary: top, value: 1 MPa}, steps: 4}");
+    ASSERT_TRUE(stands(run)) << run.report.diagnosis;
+    for (int i = 0; i <= 4; ++i) EXPECT_NEAR(run.history[1 + i].axial_stress, (2.0 + 0.25 * i) / 3.0 * 1e6, 200.0) << i;
+}
+
+// Coulomb's law: 1 MPa on 1 m and 30 degrees hold 577 kN/m, which are 0.962 MPa on the height of 0.6 m.
+TEST(PlatenOfTheNextStage, PushesOnWhatADirectShearTestHolds) {
+    const auto pushed = [](const std::string& stages) {
+        return run_scene(fmt::format(R"(kluft: 1
+analysis: {{plane: strain}}
+materials: {{rock: {{youngs_modulus: 20 GPa, poissons_ratio: 0.2}}}}
+interfaces: {{joint: {{kind: fracture, friction_angle: 30, normal_stiffness: 1e11, shear_stiffness: 5e10}}}}
+geometry:
+  domain: {{polygon: [[0, 0], [1, 0], [1, 0.3], [1, 0.6], [0, 0.6], [0, 0.3]]}}
+  fractures: [{{trace: [[-0.1, 0.3], [1.1, 0.3]], interface: joint}}]
+boundaries: {{bottom: {{sides: [0], support: fixed}}, top: {{sides: [3]}}, push: {{sides: [4]}}}}
+stages: [{{pressure: {{top: 1 MPa}}, steps: 1}}, {}]
+)",
+                                     stages));
+    };
+    const std::string first = "{stress: {boundary: push, value: 0.58 MPa}, steps: 5}, ";
+    const SceneRun further = pushed(first + "{stress: {boundary: push, value: 0.87 MPa}, steps: 5}");
+    EXPECT_TRUE(stands(further)) << further.report.diagnosis;
+    EXPECT_NEAR(further.history.back().axial_stress, 0.87e6, 1e3);
+    EXPECT_FALSE(stands(pushed(first + "{stress: {boundary: push, value: 1.0 MPa}, steps: 5}")));
+    const SceneRun kept = pushed(first + "{pressure: {top: 1 MPa}, steps: 3}");
+    EXPECT_TRUE(stands(kept)) << kept.report.diagnosis;
+    EXPECT_NEAR(kept.history.back().axial_stress, 0.58e6, 1e3);
+}
+
 } // namespace
 } // namespace kluft

@@ -23,6 +23,7 @@ struct Gauges {
     Vec2 lateral_normal = Vec2::UnitX();
     double length = 0.0;         ///< distance of moved and opposite boundary before loading (m)
     double width = 0.0;          ///< distance of the lateral boundaries before loading (m)
+    double pressed_share = 1.0;  ///< axial stress per pressure on the moved boundary, as cut; 1 without any platen
     int first_platen_stage = -1; ///< first stage that moves a platen; -1 without one
     /// Interfaces of the net that are potential cracks and have their middle in the middle half of the body along
     /// `axial_normal`, before loading. None where the net does not fill that half.

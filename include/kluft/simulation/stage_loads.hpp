@@ -82,14 +82,14 @@ void move_loads(const Model& model, const StageLoads& stage_loads, int stage, do
 /// laid on the body.
 [[nodiscard]] StageLoads enter_stage(const Model& model, State& state);
 
-/// Goes on to the next stage, with the pressures of the end of this one; on a boundary that was held it is the mean
-/// normal stress. `loads` are those at the end of the stage, `forces` = internal - external forces without the supports'.
+/// Goes on to the next stage, with the pressures of the end of this one; on a boundary that was held it is the one with the
+/// normal force of its platen or support, over the current mean width. `loads` are those at the end of the stage, `forces` = internal - external forces without the supports'.
 void leave_stage(const Model& model, const StageLoads& stage_loads, const Loads& loads, const Eigen::VectorXd& forces,
                  State& state);
 
-/// Mean normal stress on a boundary: its pressure, or the support's reaction over the current length (Pa).
-/// `forces` = internal - external forces without the supports'.
-[[nodiscard]] double boundary_stress(const Loads& loads, const Eigen::VectorXd& forces, int boundary, bool held,
-                                     double current_length, const Vec2& normal);
+/// Normal force of the platen or support that holds a boundary (N/m, positive in compression). `forces` = internal - external
+/// forces without the supports'.
+[[nodiscard]] double holding_force(const BlockSystem& system, const Loads& loads, const Eigen::VectorXd& forces,
+                                   int boundary);
 
 } // namespace kluft
