@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
 #include <numbers>
 #include <span>
 #include <utility>
@@ -525,11 +527,64 @@ private:
     std::vector<std::pair<int, int>> overlapping_; ///< (edge of a, edge of b) of the present pair
 };
 
-void transfer_histories(const std::vector<ContactMemory>& memory, std::vector<ContactPoint>& points) {
+/// (block, edge)
+using Face = std::pair<int, int>;
+
+/// The mapped fracture that a face is a side of; -1 where it is of none.
+int fracture_of(const BlockSystem& system, const Face& face) {
+    const int interface = system.blocks[face.first].edges[face.second].interface;
+    return interface < 0 ? -1 : system.interfaces[interface].fracture;
+}
+
+/// The opening that slip has forced on the faces of mapped fractures so far (m): the largest of each face's points.
+std::map<Face, double> dilated_faces(const BlockSystem& system, const std::vector<ContactMemory>& memory) {
+    std::map<Face, double> dilated;
+    for (const auto& [key, history] : memory) {
+        if (history.dilation <= 0.0) continue;
+        for (const Face& face : {Face(key.block_a, key.edge_a), Face(key.block_b, key.edge_b)}) {
+            if (fracture_of(system, face) < 0) continue;
+            double& opening = dilated[face];
+            opening = std::max(opening, history.dilation);
+        }
+    }
+    return dilated;
+}
+
+/// Where a face of a fracture comes to lie on another one of the same fracture, their asperities hold them apart as they
+/// held what lay there before: by the smaller of the two openings, by that of the one where the other has not slipped yet.
+double inherited_dilation(const BlockSystem& system, const std::map<Face, double>& dilated, const ContactKey& key) {
+    const Face a(key.block_a, key.edge_a);
+    const Face b(key.block_b, key.edge_b);
+    const int fracture = fracture_of(system, a);
+    if (fracture < 0 || fracture != fracture_of(system, b)) return 0.0;
+    const auto of_a = dilated.find(a);
+    const auto of_b = dilated.find(b);
+    if (of_a == dilated.end() || of_b == dilated.end())
+        return of_a != dilated.end() ? of_a->second : of_b != dilated.end() ? of_b->second : 0.0;
+    return std::min(of_a->second, of_b->second);
+}
+
+/// Whether a point of the same two faces is remembered; one that is not has opened without having dilated. `memory` is
+/// sorted.
+bool is_known_pair(const std::vector<ContactMemory>& memory, ContactKey key) {
+    key.point = std::numeric_limits<int>::min();
+    const auto first = std::ranges::lower_bound(memory, key, {}, &ContactMemory::key);
+    if (first == memory.end()) return false;
+    key.point = first->key.point;
+    return first->key == key;
+}
+
+void transfer_histories(const BlockSystem& system, const std::vector<ContactMemory>& memory,
+                        std::vector<ContactPoint>& points) {
+    const std::map<Face, double> dilated = dilated_faces(system, memory);
     auto next = memory.begin();
     for (ContactPoint& point : points) {
         while (next != memory.end() && next->key < point.key) ++next;
-        if (next != memory.end() && next->key == point.key) point.history = next->history;
+        if (next != memory.end() && next->key == point.key) {
+            point.history = next->history;
+        } else if (!dilated.empty() && !is_known_pair(memory, point.key)) {
+            point.history.dilation = inherited_dilation(system, dilated, point.key);
+        }
     }
 }
 
@@ -573,7 +628,7 @@ DetectedContacts detect_contacts(const BlockSystem& system, const ContactSurface
         pair_detection.run(a, all.edges_of(surface_a), b, all.edges_of(surface_b));
     }
     result.points = pair_detection.take_points();
-    transfer_histories(memory, result.points);
+    transfer_histories(system, memory, result.points);
     return result;
 }
 

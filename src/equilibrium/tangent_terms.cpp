@@ -11,7 +11,8 @@ constexpr double touching_gap = 1e-6; ///< of the lattice spacing
 PointTangent point_tangent(const EquilibriumProblem& problem, const ContactPoint& point, const Eigen::VectorXd& q,
                            TangentKind kind) {
     if (kind == TangentKind::touching) {
-        const bool touches = gap_and_slip(point, q).gap <= touching_gap * problem.body.system->spacing;
+        const double undilated = gap_and_slip(point, q).gap - point.history.dilation;
+        const bool touches = undilated <= touching_gap * problem.body.system->spacing;
         if (!touches) return {};
         return {.by_motion = full_stiffness((*problem.body.laws)[point.law])};
     }

@@ -12,7 +12,7 @@ namespace {
 double largest_slip(const Placement& placement, const Eigen::VectorXd& q, const Eigen::VectorXd& moved) {
     double largest = 0.0;
     for (const ContactPoint& point : placement.contacts) {
-        if (gap_and_slip(point, q).gap > 0.0) continue;
+        if (gap_and_slip(point, q).gap > point.history.dilation) continue;
         const Vec2 slip =
             displacement_at(moved, point.block_b, point.xi_b) - displacement_at(moved, point.block_a, point.xi_a);
         largest = std::max(largest, std::abs(point.tangent.dot(slip)));

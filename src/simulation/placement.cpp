@@ -6,6 +6,17 @@
 
 namespace kluft {
 
+namespace {
+
+/// A joint that has dilated carries that far apart (m).
+double largest_dilation(const std::vector<ContactMemory>& contacts) {
+    double largest = 0.0;
+    for (const ContactMemory& contact : contacts) largest = std::max(largest, contact.history.dilation);
+    return largest;
+}
+
+} // namespace
+
 std::vector<char> bonded_interfaces(const BodyState& body) {
     std::vector<char> bonded(body.interfaces.size());
     std::ranges::transform(body.interfaces, bonded.begin(),
@@ -38,8 +49,8 @@ DetectedContacts detected_contacts(const Model& model, const BodyState& body) {
     surfaces.outlines_meet = may_outlines_meet(model);
     if (surfaces.outlines_meet) surfaces.default_law = model.fracture_law[model.system.outline_type];
     if (surfaces.outlines_meet) surfaces.outline_points = overlap_points_alone(model.laws[surfaces.default_law]);
-    return detect_contacts(model.system, surfaces, body.displacement, contact_reach * model.system.spacing,
-                           body.contacts);
+    const double reach = contact_reach * model.system.spacing + largest_dilation(body.contacts);
+    return detect_contacts(model.system, surfaces, body.displacement, reach, body.contacts);
 }
 
 std::vector<ContactPoint> renewed_contacts(const BodyState& body, std::vector<ContactPoint> points) {

@@ -48,12 +48,15 @@ RockingJoint softest_rocking_joint(const Model& model, const State& state) {
     if (!may_turn_over(model, state)) return softest;
     with_body_of_state(model, state, [&](const LoadedBody& body) {
         const auto& points = body.placement->contacts;
+        const auto is_open = [&](std::size_t k) {
+            return contact_traction(body, static_cast<int>(k), q).state == ContactState::open;
+        };
         for (std::size_t i = 0; i + 2 < points.size(); ++i) {
             const ContactPoint& start = points[i];
             const ContactPoint& end = points[i + 2];
             const bool is_hinge = start.interface >= 0 && start.key.point == 0 && end.interface == start.interface &&
                                   model.overlap_points[start.interface] == least_overlap_points;
-            if (!is_hinge || (gap_and_slip(start, q).gap > 0.0) == (gap_and_slip(end, q).gap > 0.0)) continue;
+            if (!is_hinge || is_open(i) == is_open(i + 2)) continue;
             double force = 0.0;
             double length = 0.0;
             for (std::size_t k = i; k < i + 3; ++k) {

@@ -38,7 +38,8 @@ struct DetectedContacts {
     std::vector<std::pair<int, int>> near_pairs; ///< blocks that are near enough to touch soon, sorted
 };
 
-/// Two fixed blocks have no contact. `reach`: largest opening at which a point is kept (m). Points whose key is in `memory` (sorted) inherit its history.
+/// Two fixed blocks have no contact. `reach`: largest opening at which a point is kept (m). Points whose key
+/// is in `memory` (sorted) inherit its history, new ones between two faces of one mapped fracture the dilation of these.
 [[nodiscard]] DetectedContacts detect_contacts(const BlockSystem& system, const ContactSurfaces& surfaces,
                                                const Eigen::VectorXd& q, double reach,
                                                const std::vector<ContactMemory>& memory);

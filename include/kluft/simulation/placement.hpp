@@ -13,7 +13,7 @@
 
 namespace kluft {
 
-/// Largest opening at which a contact point is kept, relative to the lattice spacing. Twice this is less than the
+/// Largest opening at which a contact point is kept beyond what slip has forced, relative to the lattice spacing. Twice this is less than the
 /// distance of hexagons that are not neighbours, so that an undeformed net has no pairs but its own.
 inline constexpr double contact_reach = 0.1;
 
