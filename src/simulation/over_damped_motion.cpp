@@ -26,6 +26,8 @@ constexpr double shortest_last = 0.01;  ///< of H2/E: the pseudo-time step befor
 constexpr double largest_growth = 3.0;  ///< of the pseudo-time step
 constexpr double largest_cut = 0.2;     ///< of it
 constexpr double least_cut = 0.7;       ///< of one that is taken again
+constexpr double below_unsolved = 0.6;  ///< of a pseudo-time step that was not solved: the longest one after it
+constexpr double return_growth = 1.3;   ///< of that longest one, with each step that is solved
 constexpr double caution = 0.9;         ///< in the error expected of the next one
 constexpr double tries_apart = 4.0;     ///< growth of the pseudo-time step between two ordinary solves
 constexpr double tries_beside = 64.0;   ///< the same, while the motion is far from the end that one has found
@@ -204,6 +206,7 @@ void restart(Motion& motion) {
     motion.age = 0.0;
     motion.smooth.clear();
     motion.foretells = true;
+    motion.longest_step = unlimited;
     motion.velocity.setZero();
     motion.energy.driving.resize(0);
     motion.end.resize(0);
@@ -262,6 +265,7 @@ std::optional<Equilibrium> take_pseudo_step(StepInProgress& p, PlacedState& plac
     PseudoStep next = solve_step(p, placed, motion, p.displacement() + ahead * motion.velocity);
     if (!next.balanced) {
         motion.foretells = false;
+        motion.longest_step = below_unsolved * motion.step;
         motion.step *= largest_cut;
         if (motion.step > least_step * motion.first) return std::nullopt;
         fail(p, next.moved, next.moved.summary.residual_ratio, FailureKind::no_equilibrium);
@@ -292,8 +296,9 @@ std::optional<Equilibrium> take_pseudo_step(StepInProgress& p, PlacedState& plac
     if (ends) {
         if (auto end = stands_with_friction(p, placed, motion)) return end;
     }
-    motion.step = std::min(motion.step * std::clamp(caution * better, largest_cut, largest_growth),
-                           longest_step * motion.ordinary);
+    motion.step = std::min({motion.step * std::clamp(caution * better, largest_cut, largest_growth),
+                            longest_step * motion.ordinary, motion.longest_step});
+    motion.longest_step *= return_growth;
     update_smooth_blocks(p, motion);
     place_again(p, placed, motion);
     break_there(p, placed, motion);
