@@ -617,7 +617,9 @@ std::vector<KeyRule> loading_rules() {
          .fallback = "none",
          .doc = "Held in every stage: `smooth` against motion normal to the boundary, `pinned` as "
                 "smooth and with one vertex near the middle held along the boundary too, so that a body between smooth "
-                "platens cannot drift, `fixed` against any motion."},
+                "platens cannot drift, `fixed` against any motion. All of them hold in tension, too: where rock may "
+                "part from "
+                "what is behind it, a fixed block beside a joint holds it (`geometry.blocks`), or nothing does."},
         {.path = "boundaries.*.sides",
          .type = KeyType::integers,
          .range = natural,

@@ -20,6 +20,7 @@
 #include "kluft/simulation/corner_contact.hpp"
 #include "kluft/simulation/fingerprint.hpp"
 #include "kluft/simulation/measurements.hpp"
+#include "kluft/simulation/pulling_support.hpp"
 #include "kluft/simulation/rocking_joint.hpp"
 #include "kluft/simulation/simulation.hpp"
 #include "kluft/simulation/stability.hpp"
@@ -147,7 +148,7 @@ void warn_of_contacts(const Model& model, const State& state, const ContactWatch
         for (const std::string& warning :
              {contact_pressure_warning(model, state, watch.largest_stress()), corner_contact_warning(model, state),
               watch.corners().warning(), watch.bonds().warning(), bond_bending_warning(model, state),
-              rocking_joint_warning(model, state),
+              rocking_joint_warning(model, state), pulling_support_warning(model, state),
               report.status == RunStatus::done ? unstable_equilibrium_warning(model, state) : ""})
             add(warning);
     } catch (const std::bad_alloc&) {

@@ -1,0 +1,57 @@
+// Supports that hold blocks back in tension.
+#include "kluft/simulation/pulling_support.hpp"
+
+#include <string>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "support/scene_run.hpp"
+
+namespace kluft {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+/// A block on a plane that rises to the right at 20 degrees, between the sides of its body.
+SceneRun block_on_plane(double friction_angle, const std::string& boundaries) {
+    return run_scene(fmt::format(R"(kluft: 1
+analysis: {{gravity: 10}}
+materials: {{rock: {{density: 2600, youngs_modulus: 20 GPa, poissons_ratio: 0.25}}}}
+interfaces: {{joint: {{kind: fracture, normal_stiffness: 1e10, shear_stiffness: 5e9, friction_angle: {}}}}}
+geometry:
+  domain: {{rectangle: {{width: 10, height: 10}}}}
+  reference_spacing: 2
+  fractures: [{{trace: [[-1, 3.636], [11, 8.003]], interface: joint}}]
+boundaries: {{bottom: {{support: fixed}}, {}}}
+stages: [{{steps: 2}}]
+)",
+                                 friction_angle, boundaries));
+}
+
+// Without friction the support alone holds the block: P = W tan 20.
+TEST(PullingSupport, OfABlockThatWouldSlideIsNamedWithItsForce) {
+    const SceneRun run = block_on_plane(0.0, "right: {support: smooth}");
+    ASSERT_TRUE(stands(run)) << run.report.diagnosis;
+    const double weight = 2600.0 * 10.0 * run.model.system.blocks[1].area;
+    const PullingSupport found = strongest_pulling_support(run.model, run.state);
+    EXPECT_EQ(found.block, 1);
+    EXPECT_NEAR(found.force, weight * (8.003 - 3.636) / 12.0, 1e-3 * found.force);
+    EXPECT_THAT(pulling_support_warning(run.model, run.state),
+                AllOf(HasSubstr("'right' pulls block 1"), HasSubstr("in tension")));
+}
+
+TEST(PullingSupport, IsNoneOfOneThatPressesOrHoldsWhatStandsByItself) {
+    const SceneRun pressed = block_on_plane(15.0, "left: {support: smooth}");
+    ASSERT_TRUE(stands(pressed)) << pressed.report.diagnosis;
+    EXPECT_THAT(pulling_support_warning(pressed.model, pressed.state), IsEmpty());
+    const SceneRun free = block_on_plane(30.0, "left: {support: none}");
+    ASSERT_TRUE(stands(free)) << free.report.diagnosis;
+    EXPECT_THAT(pulling_support_warning(free.model, free.state), IsEmpty());
+}
+
+} // namespace
+} // namespace kluft
