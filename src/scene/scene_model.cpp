@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "kluft/blocks/block_search.hpp"
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/core/memory.hpp"
 #include "kluft/core/place_text.hpp"
@@ -220,6 +221,25 @@ std::vector<std::string> small_reference(const GeometrySpec& geometry, const Blo
         geometry.places.reference_spacing, geometry.reference_spacing, size)};
 }
 
+/// Traces that nearly meet in one point cut slivers, unless a spacing says what is too small for a block.
+std::vector<std::string> slivers(const GeometrySpec& geometry, const BlockSystem& system) {
+    constexpr double least_share = 1e-5; // of the mean block
+    if (geometry.tessellation || geometry.reference_spacing > 0.0 || system.outline_type >= 0) return {};
+    const double mean = area_of(system) / system.n_blocks();
+    const auto smallest = std::ranges::min_element(system.blocks, {}, &Block::area);
+    if (smallest == system.blocks.end() || smallest->area >= least_share * mean) return {};
+    const int b = static_cast<int>(smallest - system.blocks.begin());
+    const auto n =
+        std::ranges::count_if(system.blocks, [&](const Block& each) { return each.area < least_share * mean; });
+    return {fmt::format(
+        "geometry: block {} at {} is a sliver of {:.3g} m2{}, where the mean block has {:.3g} m2: such pieces between "
+        "traces that nearly meet in one point may decide what a run finds; geometry.reference_spacing merges what is "
+        "small "
+        "beside it with a neighbour",
+        block_label(system, b), place_text(system.origin + smallest->centroid), smallest->area,
+        n > 1 ? fmt::format(", one of {}", n) : "", mean)};
+}
+
 /// The blocks of the scene's body.
 CutBody cut_body(const Scene& scene) {
     try {
@@ -259,8 +279,8 @@ SceneModel build_scene_model(const Scene& scene) {
     for (const auto& warnings :
          {lost_fractures(scene, built.cut), fine_details(scene.geometry, built.cut),
           pruned_pieces(scene.geometry, built.cut), closed_outcrops(scene.geometry, built.cut),
-          small_reference(scene.geometry, built.model.system), bare_net(scene.geometry, built.model.system),
-          empty_regions(scene.geometry, built.model.system),
+          small_reference(scene.geometry, built.model.system), slivers(scene.geometry, built.model.system),
+          bare_net(scene.geometry, built.model.system), empty_regions(scene.geometry, built.model.system),
           coarse_places(scene.geometry, built.cut, scene.interface_types)})
         built.model.warnings.insert(built.model.warnings.end(), warnings.begin(), warnings.end());
     require_memory();

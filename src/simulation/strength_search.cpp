@@ -1,6 +1,7 @@
 #include "kluft/simulation/strength_search.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -119,8 +120,8 @@ Failure failure_by_corner(const StepBench& bench, const Step& step, const Eigen:
 
 /// How far the loads have displaced blocks before strengths are reduced, as motions are measured. Of a body that has jumped, and so has
 /// moved as well, what counts as near by.
-double displaced_by_loads(const Model& model, const State& start, const StepRecord& row) {
-    return row.jumps > 0 ? share_of_jump * jump_motion : relative_motion(model.system, start.body.displacement);
+double displaced_by_loads(const Model& model, const State& state, const StepRecord& row) {
+    return row.jumps > 0 ? share_of_jump * jump_motion : relative_motion(model.system, state.stage_start.displacement);
 }
 
 /// Where a load step goes to, and how far a body that stands moves on the way (motion_scale).
@@ -130,6 +131,20 @@ struct TrialGoal {
     double displaced_by_loads = 0.0;
     StepKind kind;
 };
+
+/// How far the body has moved in all since strengths are reduced (motion_scale).
+double moved_in_all(const Model& model, const State& state) {
+    return relative_motion(model.system, state.body.displacement - state.stage_start.displacement);
+}
+
+/// What a body moves by that still stands where it did: (32b), or as far as the loads have displaced it.
+double near_by(double displaced_by_loads) { return std::max(jump_motion, displaced_by_loads); }
+
+/// Whether the body has moved on by more, as a share of its size, than the factor has grown by meanwhile: it slides, and what
+/// is gained on the way is the strength of another place. Source: (32c).
+bool slides_on(double moved, double near, double factor, double near_factor) {
+    return moved - near > std::log(factor / near_factor);
+}
 
 /// Tries a load step and commits it, after the equilibria found before, if the body stands at its end where it stood (32b), and not
 /// because a corner has caught.
@@ -144,6 +159,10 @@ Trial try_factor(const StepBench& bench, const TrialGoal& goal, State& state, Ei
     const Eigen::VectorXd& start = state.body.displacement;
     const double moved = relative_motion(bench.model.system, step.end.body.displacement - start);
     if (moved > goal.farthest) return {failure_by_motion(bench, step, start, goal.farthest), true};
+    const double in_all = moved_in_all(bench.model, step.end);
+    const double factor = strength_factor(bench.model.loads, step.end.at.stage, step.end.at.load_factor);
+    if (slides_on(in_all, near_by(goal.displaced_by_loads), factor, state.stage_start.near_factor))
+        return {failure_by_motion(bench, step, state.stage_start.displacement, 0.5 * in_all), false};
     if (moved > goal.displaced_by_loads)
         if (const auto corner = caught_corner(bench.model, corner_contacts(bench.model, state), step.end))
             return {failure_by_corner(bench, step, start, *corner), true};
@@ -154,13 +173,46 @@ Trial try_factor(const StepBench& bench, const TrialGoal& goal, State& state, Ei
     return {};
 }
 
+/// No block moves where none was found: the search has failed, and not the body.
+bool is_without_motion(const Failure& failure) {
+    return failure.kind == FailureKind::no_equilibrium && failure.moving.empty();
+}
+
+void warn_of_failed_search(const StepBench& bench, double found, const Failure& failure) {
+    bench.journal.report().warnings.push_back(fmt::format("no equilibrium was found with the strengths divided by "
+                                                          "{:.4g}, but no block moves away there either: the search "
+                                                          "has failed, and the factor of safety may be above {:.4g}. "
+                                                          "Where block {} is a sliver, `geometry.reference_spacing` "
+                                                          "leaves it out",
+                                                          failure.strength_factor,
+                                                          reduction.factor_at(state.at.load_factor),
+                                                          block_label(bench.model.system, failure.worst_block)));
+}
+
+/// A body that has moved in a jump before strengths are reduced, by less than (32b) takes for a fall.
+void warn_of_earlier_jump(const StepBench& bench, const State& state) {
+    const std::vector<Stage>& stages = bench.model.loads.stages;
+    const auto first = stages.begin();
+    if (state.at.load_factor > 0.0 || state.jumps == 0) return;
+    if (std::any_of(first, first + state.at.stage, prescribes_strain)) return;
+    const BlockSystem& system = bench.model.system;
+    const auto moved = moved_blocks(system, state.body.displacement, jump_motion);
+    if (moved.empty()) return;
+    const int block = moved.front().block;
+    bench.journal.report().warnings.push_back(
+        fmt::format("under its loads, before strengths are reduced, the body has given way in a jump and block {} has "
+                    "moved by {:.3g} m: "
+                    "the factor of safety is that of the place where it has come to rest, and not of the body as cut",
+                    block_label(system, block), state.body.displacement.segment<2>(n_block_unknowns * block).norm()));
+}
+
 /// What lies against a factor that is found: it may be that of a body which has moved into another place, as cut it has a lower
 /// one.
 class Doubts {
 public:
     Doubts(const Model& model, const State& start, double displaced_by_loads)
         : model_(model), start_(start.body.displacement), corners_(corner_contacts(model, start)),
-          far_(std::max(jump_motion, displaced_by_loads)) {}
+          far_(near_by(displaced_by_loads)) {}
 
     /// `row`: of the state.
     void look_at(const State& state, const StepRecord& row, double factor) {
@@ -226,12 +278,18 @@ double reduction_tolerance(const StrengthReduction& reduction, const SolverOptio
 }
 
 StageEnd find_strength_limit(const StepBench& bench, State& state) {
+    warn_of_earlier_jump(bench, state);
     const StrengthReduction& reduction = *bench.stage(state).strength_reduction;
     const int n_steps = bench.stage(state).steps;
     StageEnd end;
     const double displaced = displaced_by_loads(bench.model, state, bench.journal.last_row());
     Doubts doubts(bench.model, state, displaced);
     doubts.look_at(state, bench.journal.last_row(), reduction.factor_at(state.at.load_factor));
+    const auto note_place = [&] {
+        const bool stands_there = moved_in_all(bench.model, state) <= near_by(displaced);
+        if (stands_there) state.stage_start.near_factor = reduction.factor_at(state.at.load_factor);
+    };
+    note_place();
     std::vector<StepRecord> before; // equilibria that are not told yet
     if (state.at.load_factor == 0.0) end.failure = find_initial_equilibrium(bench, state, before);
     if (end.failure) return {.failure = end.failure, .step = state.at.step + 1};
@@ -257,6 +315,7 @@ StageEnd find_strength_limit(const StepBench& bench, State& state) {
                              .kind = {.regular = at == next, .last_of_stage = last}};
         const Trial trial = try_factor(bench, goal, state, end.forces, before);
         if (!trial.failure) {
+            note_place();
             doubts.look_at(state, bench.journal.last_row(), reduction.factor_at(state.at.load_factor));
             size = at == failing ? 2.0 * (at - from) : 2.0 * size;
             if (at == failing) failing = none;
@@ -270,6 +329,7 @@ StageEnd find_strength_limit(const StepBench& bench, State& state) {
     }
     const double found = reduction.factor_at(state.at.load_factor);
     if (const std::string said = doubts.warning(found); !said.empty()) bench.journal.report().warnings.push_back(said);
+    if (end.failure && is_without_motion(*end.failure)) warn_of_failed_search(bench, found, *end.failure);
     if (!end.failure) {
         bench.journal.report().warnings.push_back(
             fmt::format("the factor of safety is above {:g}, the largest strength factor of stage {}", reduction.to,

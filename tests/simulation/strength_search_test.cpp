@@ -148,5 +148,62 @@ TEST(StrengthSearch, AsksForAResidualWellBelowTheToleranceOfTheFactor) {
     EXPECT_DOUBLE_EQ(reduction_tolerance(reduction, solver), 1e-8);
 }
 
+std::string block_on_split_plane(const std::string& solver) {
+    return fmt::format(R"(kluft: 1
+analysis: {{gravity: 9.81}}
+materials: {{rock: {{density: 2600, youngs_modulus: 20 GPa, poissons_ratio: 0.25}}}}
+interfaces:
+  strong: {{kind: fracture, normal_stiffness: 1e10, shear_stiffness: 5e9, friction_angle: 35}}
+  weak: {{kind: fracture, normal_stiffness: 1e10, shear_stiffness: 5e9, friction_angle: 25}}
+geometry:
+  domain: {{rectangle: {{width: 10, height: 10}}}}
+  reference_spacing: 2
+  fractures:
+    - {{trace: [[-1, 3.636], [5, 5.8195]], interface: strong}}
+    - {{trace: [[5, 5.8195], [11, 8.003]], interface: weak}}
+boundaries: {{bottom: {{support: fixed}}}}
+stages: [{{}}, {{strength_reduction: {{to: 3}}}}]
+solver: {{{}}}
+)",
+                       solver);
+}
+
+// A block on a plane whose lower half is rougher slides down on to more of it, in small steps, and would stand with ever larger
+// factors (32c). Limit equilibrium as cut: between those of its halves, tan 25/tan 20 and tan 35/tan 20, with the share of the
+// weight on each that a rigid block on an even bed of springs has.
+TEST(StrengthSearch, WhatABlockGainsBySlidingOnIsNoStrength) {
+    const double slope = (8.003 - 3.636) / 12.0;                             // tan 20
+    const double left = 10.0 - (3.636 + slope), right = left - 10.0 * slope; // heights of the block at its sides
+    const double from_middle =
+        10.0 / 3.0 * (left + 2.0 * right) / (left + right) - 5.0; // of its centroid, over which x
+    const double tilt = 3.0 * from_middle / 5.0; // the pressure is 1 + tilt s over s in (-1, 1) along the plane
+    const double on_strong = 0.5 - 0.25 * tilt;  // of the normal force, on s in (-1, 0)
+    const double expected = (on_strong * std::tan(35.0 * degree) + (1.0 - on_strong) * std::tan(25.0 * degree)) / slope;
+    for (const char* solver : {"tolerance: 1e-3", "", "tolerance: 1e-5"}) {
+        const SceneRun run = run_scene(block_on_split_plane(solver));
+        ASSERT_TRUE(run.report.results.factor_of_safety.has_value()) << solver;
+        EXPECT_NEAR(*run.report.results.factor_of_safety, expected, 5e-3 * expected) << solver;
+    }
+}
+
+// A block of 2 m that slides 0.3 m down to a stop before strengths are reduced: less than a fall, but not the body as cut,
+// of which the factor is tan 25/tan 30 = 0.81.
+TEST(StrengthSearch, SaysThatTheBodyHasGivenWayBefore) {
+    const SceneRun run = run_scene(R"(kluft: 1
+analysis: {gravity: 10}
+materials: {rock: {density: 2600, youngs_modulus: 1e10, poissons_ratio: 0.2}}
+interfaces: {joint: {kind: fracture, normal_stiffness: 1e10, shear_stiffness: 5e9, friction_angle: 25}}
+geometry:
+  blocks:
+    - {name: floor, polygon: [[-0.366025403784, -1.366025403784], [10.026279441629, 4.633974596216], [9.526279441629, 5.5], [-0.866025403784, -0.5]], support: fixed}
+    - {name: stop, polygon: [[0, 0], [0.866025403784, 0.5], [0.616025403784, 0.933012701892], [-0.25, 0.433012701892]], support: fixed}
+    - {name: block, polygon: [[1.125833024920, 0.65], [2.857883832489, 1.65], [1.857883832489, 3.382050807569], [0.125833024920, 2.382050807569]]}
+stages: [{}, {strength_reduction: {to: 3}, steps: 10}]
+)");
+    EXPECT_TRUE(std::ranges::any_of(run.report.warnings, [](const std::string& warning) {
+        return warning.find("has given way in a jump and block 'block' has moved by 0.3 m") != std::string::npos;
+    }));
+}
+
 } // namespace
 } // namespace kluft

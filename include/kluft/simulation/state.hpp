@@ -46,6 +46,7 @@ struct BodyState {
 struct StageStart {
     Eigen::VectorXd displacement;          ///< size 6 n_blocks, m
     std::vector<double> boundary_pressure; ///< one per boundary, Pa
+    double near_factor = 0.0; ///< the largest strength factor with which the body has stood where it began (32c)
 };
 
 /// What makes the next solve cheaper. Without it a run takes longer and its path changes within the tolerances.
@@ -125,6 +126,7 @@ template <class Members, class Visit> void visit_saved(Members& state, Visit&& v
     visit("platen_points", state.body.platen_points);
     visit("stage_start_displacement", state.stage_start.displacement);
     visit("stage_start_pressure", state.stage_start.boundary_pressure);
+    visit("stage_start_near_factor", state.stage_start.near_factor);
     visit("strain_zero", state.strain_zero);
     visit("rate", state.memory.rate);
     visit("near_pairs", state.memory.near_pairs);
