@@ -898,7 +898,8 @@ std::vector<KeyRule> option_rules() {
          .type = KeyType::integer,
          .range = positive_integer,
          .fallback = "20000",
-         .doc = "Linear solves that one load step may take, broken bonds and motions included; a step that takes more "
+         .doc = "Linear solves that one load step, or one trial of a strength reduction, may take, broken bonds and "
+                "motions included; a step that takes more "
                 "ends the "
                 "run without an equilibrium, at its last balanced state, from which it can be resumed with a larger "
                 "number."},

@@ -184,8 +184,7 @@ void warn_of_failed_search(const StepBench& bench, double found, const Failure& 
                                                           "has failed, and the factor of safety may be above {:.4g}. "
                                                           "Where block {} is a sliver, `geometry.reference_spacing` "
                                                           "leaves it out",
-                                                          failure.strength_factor,
-                                                          reduction.factor_at(state.at.load_factor),
+                                                          failure.strength_factor, found,
                                                           block_label(bench.model.system, failure.worst_block)));
 }
 

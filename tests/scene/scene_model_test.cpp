@@ -12,10 +12,12 @@ namespace kluft {
 namespace {
 
 using testing::AllOf;
+using testing::Contains;
 using testing::ElementsAre;
 using testing::EndsWith;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 /// A body of 1 m by 2 m with triangles of 0.2 m, which resolve 0.05 x 0.2 = 0.01 m.
 const std::string body_of_triangles = R"(kluft: 1
@@ -179,6 +181,20 @@ TEST(SceneModel, WarnsOfAReferenceThatIsLittleBesideTheBlocks) {
     EXPECT_THAT(warnings("2.9e-3"),
                 ElementsAre(AllOf(HasSubstr("reference_spacing"), HasSubstr("0.0029 m is little beside the blocks"))));
     EXPECT_THAT(warnings("3.1e-3"), IsEmpty());
+}
+
+// Three traces cut a triangle of half a millimetre's base and height between them: 1.25e-7 of 2 m2.
+TEST(SceneModel, WarnsOfSliversWhereNoSpacingSaysWhatIsTooSmall) {
+    const auto warnings = [](const char* spacing) {
+        return warnings_of({"geometry.tessellation=null", std::string("geometry.reference_spacing=") + spacing,
+                            "interfaces.bond=null", "interfaces.crack=null",
+                            "geometry.fractures=[{trace: [[-1, 0.5], [3, 0.5]], interface: joint}, "
+                            "{trace: [[0.5, -1], [0.5, 3]], interface: joint}, "
+                            "{trace: [[-0.4995, -0.5], [2.5005, 2.5]], interface: joint}]"});
+    };
+    EXPECT_THAT(warnings("null"),
+                Contains(AllOf(HasSubstr("is a sliver of 1.25e-07 m2"), HasSubstr("reference_spacing"))));
+    EXPECT_THAT(warnings("0.2"), Not(Contains(HasSubstr("sliver"))));
 }
 
 } // namespace

@@ -15,6 +15,10 @@
 namespace kluft {
 namespace {
 
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
 constexpr int bottom = 0, right = 1, top = 2, left = 3; // of a rectangle
 
 /// A body of 1 m x 2 m, cut by two joints across the bottom and the top, with the boundaries and stages given.
@@ -291,6 +295,17 @@ TEST(StageLoads, PlatenTakesThePressureOfItsBoundaryOver) {
     for (const double factor : {0.0, 1.0}) {
         EXPECT_EQ(loads.pressures(factor), (std::vector<double>{0.0, 2e6, 0.0, 2e6}));
     }
+}
+
+TEST(StageLoads, APlatenThatIsGoneInTheNextStageIsToldOf) {
+    const std::string first = "{strain: {boundary: top, value: 0.1 %}}";
+    const auto warnings = [&](const std::string& next) {
+        return model_of("{}", "[" + first + ", " + next + "]").warnings;
+    };
+    EXPECT_THAT(warnings("{pressure: {left: 1 MPa}}"),
+                ElementsAre(HasSubstr("stage 1 has no platen on 'top' any more")));
+    EXPECT_THAT(warnings("{pressure: {top: 1 MPa}}"), IsEmpty());
+    EXPECT_THAT(warnings("{strain: {boundary: top, value: 0.2 %}}"), IsEmpty());
 }
 
 TEST(BoundaryFrame, OfAnUprightRectangleHasNormalsAlongTheAxes) {
