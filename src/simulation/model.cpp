@@ -11,6 +11,7 @@
 #include "kluft/constitutive/strength_envelope.hpp"
 #include "kluft/contact/overlap_rule.hpp"
 #include "kluft/core/diagnostics.hpp"
+#include "kluft/core/units.hpp"
 #include "kluft/kinematics/material_point.hpp"
 #include "kluft/loading/boundary_geometry.hpp"
 #include "kluft/simulation/stage_loads.hpp"
@@ -387,6 +388,29 @@ void warn_of_platens(Model& model) {
     }
 }
 
+/// What a boundary holds it holds along one direction, whichever way its sides face.
+void warn_of_bent_supports(Model& model) {
+    constexpr double much_turned = 10.0 / degrees; // of a side against the mean of the boundary
+    const BlockSystem& system = model.system;
+    for (int i = 0; i < static_cast<int>(system.boundaries.size()); ++i) {
+        const Support support = model.loads.supports[i];
+        if (support != Support::smooth && support != Support::pinned) continue;
+        const Vec2 normal = boundary_frame(system, i).normal;
+        double turned = 0.0;
+        for (const auto& [b, e] : system.boundaries[i].edges) {
+            const Edge& edge = system.blocks[b].edges[e];
+            const Vec2 own = right_normal(edge_end(system, edge) - edge_start(system, edge)).normalized();
+            turned = std::max(turned, std::acos(std::clamp(own.dot(normal), -1.0, 1.0)));
+        }
+        if (turned <= much_turned) continue;
+        model.warnings.push_back(
+            fmt::format("the support of '{}' holds its sides along their mean normal, ({:.3g}, {:.3g}), from which "
+                        "some are turned by "
+                        "up to {:.3g} degrees: a boundary for each direction holds each along its own normal",
+                        system.boundaries[i].name, normal.x(), normal.y(), turned * degrees));
+    }
+}
+
 /// What presses a specimen from the side is measured on two sides that have boundaries of their own.
 void warn_of_unmeasured_sides(Model& model) {
     const auto motion =
@@ -465,6 +489,7 @@ Model build_model(BlockSystem system, const ModelInput& input) {
     model.overlap_points = overlap_points(system, fracture_laws);
     model.system = std::move(system);
     warn_of_platens(model);
+    warn_of_bent_supports(model);
     warn_of_unmeasured_sides(model);
     refuse_contradicting_supports(model);
     return model;

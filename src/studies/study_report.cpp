@@ -282,8 +282,8 @@ std::optional<ReportAnswer> ReportBuilder::found_answer() const {
         return ReportAnswer{
             "Recommendation", advised_settings(table_, groups_, *best->group) + ", not confirmed",
             fmt::format(
-                "They are the reference itself, which no finer case of this study confirms: no cheaper settings "
-                "have an error of at most {:.3g} % {}, and that of the reference is not known. A case costs {}.",
+                "They are the reference itself, which no finer case of this study confirms: its error is not known. No "
+                "cheaper settings hold an error of {:.3g} % {} with a finer case that confirms them. A case costs {}.",
                 percent * best->bound, on_words(measure), cost_text(*best->group, best->cpu_s)),
             set_words(*best->group), false};
     return ReportAnswer{

@@ -15,9 +15,12 @@
 namespace kluft {
 namespace {
 
+using ::testing::AllOf;
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 constexpr int bottom = 0, right = 1, top = 2, left = 3; // of a rectangle
 
@@ -306,6 +309,24 @@ TEST(StageLoads, APlatenThatIsGoneInTheNextStageIsToldOf) {
                 ElementsAre(HasSubstr("stage 1 has no platen on 'top' any more")));
     EXPECT_THAT(warnings("{pressure: {top: 1 MPa}}"), IsEmpty());
     EXPECT_THAT(warnings("{strain: {boundary: top, value: 0.2 %}}"), IsEmpty());
+}
+
+// Both sides of a V are turned by 45 degrees from its mean normal; one with a drop of 0.1 m on 1 m by 5.7 degrees.
+TEST(StageLoads, ASmoothSupportOnSidesThatFaceApartIsToldOf) {
+    const auto warnings = [](const char* tip) {
+        return build_scene_model(read_scene_text(fmt::format(R"(
+kluft: 1
+materials: {{rock: {{youngs_modulus: 1 GPa, poissons_ratio: 0.2, density: 2600}}}}
+interfaces: {{joint: {{kind: fracture, normal_stiffness: 1e10, shear_stiffness: 1e10, friction_angle: 30}}}}
+geometry: {{domain: {{polygon: [[0, 0], [1, {}], [2, 0], [2, 3], [0, 3]]}}}}
+boundaries: {{floor: {{sides: [0, 1], support: smooth}}, right: {{sides: [2], support: smooth}}}}
+stages: [{{pressure: {{right: 0}}}}]
+)",
+                                                             tip)))
+            .model.warnings;
+    };
+    EXPECT_THAT(warnings("-1"), Contains(AllOf(HasSubstr("'floor' holds its sides along"), HasSubstr("45 degrees"))));
+    EXPECT_THAT(warnings("-0.1"), Not(Contains(HasSubstr("holds its sides along"))));
 }
 
 TEST(BoundaryFrame, OfAnUprightRectangleHasNormalsAlongTheAxes) {
