@@ -550,31 +550,32 @@ std::map<Face, double> dilated_faces(const BlockSystem& system, const std::vecto
     return dilated;
 }
 
-/// Where a face of a fracture comes to lie on another one of the same fracture, their asperities hold them apart as they
-/// held what lay there before: by the smaller of the two openings, by that of the one where the other has not slipped yet.
-double inherited_dilation(const BlockSystem& system, const std::map<Face, double>& dilated, const ContactKey& key) {
+/// Where a face of a fracture comes to lie on another one of the same fracture, their asperities hold them apart as far as they
+/// held what either lay on before, but no farther than they are now.
+double inherited_dilation(const BlockSystem& system, const std::map<Face, double>& dilated, const ContactKey& key,
+                          double gap) {
     const Face a(key.block_a, key.edge_a);
     const Face b(key.block_b, key.edge_b);
     const int fracture = fracture_of(system, a);
     if (fracture < 0 || fracture != fracture_of(system, b)) return 0.0;
-    const auto of_a = dilated.find(a);
-    const auto of_b = dilated.find(b);
-    if (of_a == dilated.end() || of_b == dilated.end())
-        return of_a != dilated.end() ? of_a->second : of_b != dilated.end() ? of_b->second : 0.0;
-    return std::min(of_a->second, of_b->second);
+    double opening = 0.0;
+    for (const Face& face : {a, b})
+        if (const auto found = dilated.find(face); found != dilated.end()) opening = std::max(opening, found->second);
+    return std::clamp(gap, 0.0, opening);
 }
 
-/// Whether a point of the same two faces is remembered; one that is not has opened without having dilated. `memory` is
-/// sorted.
-bool is_known_pair(const std::vector<ContactMemory>& memory, ContactKey key) {
-    key.point = std::numeric_limits<int>::min();
+/// Whether a point of the overlap of the same two faces is remembered: one that is not has opened without having dilated.
+/// `memory` is sorted.
+bool is_known_overlap(const std::vector<ContactMemory>& memory, ContactKey key) {
+    if (key.point < 0) return false; // a vertex on a face is one point
+    key.point = 0;
     const auto first = std::ranges::lower_bound(memory, key, {}, &ContactMemory::key);
     if (first == memory.end()) return false;
     key.point = first->key.point;
     return first->key == key;
 }
 
-void transfer_histories(const BlockSystem& system, const std::vector<ContactMemory>& memory,
+void transfer_histories(const BlockSystem& system, const Eigen::VectorXd& q, const std::vector<ContactMemory>& memory,
                         std::vector<ContactPoint>& points) {
     const std::map<Face, double> dilated = dilated_faces(system, memory);
     auto next = memory.begin();
@@ -582,8 +583,9 @@ void transfer_histories(const BlockSystem& system, const std::vector<ContactMemo
         while (next != memory.end() && next->key < point.key) ++next;
         if (next != memory.end() && next->key == point.key) {
             point.history = next->history;
-        } else if (!dilated.empty() && !is_known_pair(memory, point.key)) {
-            point.history.dilation = inherited_dilation(system, dilated, point.key);
+        } else if (!dilated.empty() && !is_known_overlap(memory, point.key)) {
+            point.history.dilation =
+                inherited_dilation(system, dilated, point.key, point.normal.dot(relative_position(point, q)));
         }
     }
 }
@@ -628,7 +630,7 @@ DetectedContacts detect_contacts(const BlockSystem& system, const ContactSurface
         pair_detection.run(a, all.edges_of(surface_a), b, all.edges_of(surface_b));
     }
     result.points = pair_detection.take_points();
-    transfer_histories(system, memory, result.points);
+    transfer_histories(system, q, memory, result.points);
     return result;
 }
 

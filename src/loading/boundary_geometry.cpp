@@ -188,13 +188,12 @@ PlatenForce width_across(const BlockSystem& system, int boundary) {
     return force;
 }
 
-double pressed_share_of_width(const BlockSystem& system, int boundary) {
+double pressed_length(const BlockSystem& system, int boundary) {
     const Vec2 normal = boundary_frame(system, boundary).normal;
-    double pressed = 0.0;
+    double length = 0.0;
     for_each_edge(system, boundary,
-                  [&](int, const Vec2& start, const Vec2& end) { pressed += normal.dot(right_normal(end - start)); });
-    const double width = width_across(system, boundary).width;
-    return width > 0.0 ? pressed / width : 0.0;
+                  [&](int, const Vec2& start, const Vec2& end) { length += normal.dot(right_normal(end - start)); });
+    return length;
 }
 
 double distance_across(const BlockSystem& system, int boundary) {

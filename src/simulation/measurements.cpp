@@ -108,7 +108,7 @@ Gauges make_gauges(const Model& model) {
     gauges.length = distance_across(system, gauges.moved);
     gauges.lateral = lateral_sides(system, gauges.moved);
     gauges.width = width_across(system, gauges.moved).width;
-    if (gauges.first_platen_stage >= 0) gauges.pressed_share = pressed_share_of_width(system, gauges.moved);
+    if (gauges.first_platen_stage >= 0) gauges.pressed_share = pressed_length(system, gauges.moved) / gauges.width;
     return gauges;
 }
 

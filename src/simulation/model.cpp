@@ -180,20 +180,13 @@ Net net_at(const Net& net, double spacing) {
     return {.kind = net.kind, .spacing = spacing, .edge_density = net.edge_density * net.spacing / spacing};
 }
 
-/// E that a stiffness given as a ratio refers to (Pa).
-double youngs_modulus_of_ratio(const ModelInput& input) {
-    double stiffest = 0.0;
-    for (const Material& material : input.materials) stiffest = std::max(stiffest, material.youngs_modulus);
-    return stiffest;
-}
-
 /// E and nu of a material are the rock's where the net's stiffness follows from them, and else the blocks'.
 ElasticModuli moduli_of_blocks(const Material& material, const ModelInput& input, const Net& body_net) {
     if (input.tessellation_type >= 0) {
         const InterfaceType& net = input.interface_types[input.tessellation_type];
         if (stiffness_from_ratio(net)) {
             const double ratio = net.stiffness_ratio.value_or(default_stiffness_ratio(body_net.kind));
-            const double own_ratio = ratio * youngs_modulus_of_ratio(input) / material.youngs_modulus;
+            const double own_ratio = ratio * largest_modulus(input.materials) / material.youngs_modulus;
             return in_section("interfaces." + net.name, [&] {
                 return block_moduli(material.youngs_modulus, material.poissons_ratio, input.plane, own_ratio,
                                     net.shear_ratio.value_or(default_shear_ratio), body_net);
@@ -361,16 +354,19 @@ void warn_of_narrow_platen(int moved, Model& model) {
         model.system.boundaries[moved].name, width, own, width / own));
 }
 
-/// What a platen has pressed is pressed evenly in a stage that has none there.
+/// What a platen has pressed is pressed evenly in a stage that has none there, and no support.
 void warn_of_platens_that_go(Model& model) {
     const std::vector<Stage>& stages = model.loads.stages;
     for (std::size_t i = 1; i < stages.size(); ++i) {
-        if (!stages[i - 1].motion || stages[i - 1].motion->glued) continue;
+        if (!stages[i - 1].motion) continue;
         const int boundary = stages[i - 1].motion->boundary;
-        const bool goes_on = stages[i].motion && stages[i].motion->boundary == boundary;
+        const auto& motion = stages[i].motion;
+        const bool is_held =
+            model.loads.supports[boundary] != Support::none ||
+            (motion && (motion->boundary == boundary || opposite_boundary(model.system, motion->boundary) == boundary));
         const bool is_told =
             std::ranges::any_of(stages[i].pressure, [&](const auto& each) { return each.first == boundary; });
-        if (goes_on || is_told) continue;
+        if (is_held || is_told) continue;
         model.warnings.push_back(fmt::format("stage {} has no platen on '{}' any more: the force at the end of stage "
                                              "{} goes on as an even pressure there, "
                                              "which neither holds the sides in one plane nor rubs on them",
@@ -450,7 +446,7 @@ Model build_model(BlockSystem system, const ModelInput& input) {
     const LawBench bench{.system = system,
                          .input = input,
                          .boundary_stress = boundary_stress,
-                         .youngs_modulus = youngs_modulus_of_ratio(input)};
+                         .youngs_modulus = largest_modulus(input.materials)};
     add_laws(bench, model);
     if (has_rigid_net(input)) add_law_of_broken_net(bench, model);
     add_laws_of_graded_net(system, bench, model);

@@ -206,7 +206,7 @@ void restart(Motion& motion) {
     motion.age = 0.0;
     motion.smooth.clear();
     motion.foretells = true;
-    motion.longest_step = unlimited;
+    motion.step_limit = unlimited;
     motion.velocity.setZero();
     motion.energy.driving.resize(0);
     motion.end.resize(0);
@@ -265,7 +265,7 @@ std::optional<Equilibrium> take_pseudo_step(StepInProgress& p, PlacedState& plac
     PseudoStep next = solve_step(p, placed, motion, p.displacement() + ahead * motion.velocity);
     if (!next.balanced) {
         motion.foretells = false;
-        motion.longest_step = below_unsolved * motion.step;
+        motion.step_limit = below_unsolved * motion.step;
         motion.step *= largest_cut;
         if (motion.step > least_step * motion.first) return std::nullopt;
         fail(p, next.moved, next.moved.summary.residual_ratio, FailureKind::no_equilibrium);
@@ -297,8 +297,8 @@ std::optional<Equilibrium> take_pseudo_step(StepInProgress& p, PlacedState& plac
         if (auto end = stands_with_friction(p, placed, motion)) return end;
     }
     motion.step = std::min({motion.step * std::clamp(caution * better, largest_cut, largest_growth),
-                            longest_step * motion.ordinary, motion.longest_step});
-    motion.longest_step *= return_growth;
+                            longest_step * motion.ordinary, motion.step_limit});
+    motion.step_limit *= return_growth;
     update_smooth_blocks(p, motion);
     place_again(p, placed, motion);
     break_there(p, placed, motion);

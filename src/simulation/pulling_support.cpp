@@ -1,5 +1,6 @@
 #include "kluft/simulation/pulling_support.hpp"
 
+#include <algorithm>
 #include <map>
 #include <utility>
 
@@ -23,7 +24,8 @@ bool slides_along(Support support) { return support == Support::smooth || suppor
 
 PullingSupport strongest_pulling_support(const Model& model, const State& state) {
     PullingSupport strongest;
-    if (model.loads.stages[static_cast<std::size_t>(state.at.stage)].motion) return strongest;
+    if (std::ranges::any_of(model.loads.stages, [](const Stage& stage) { return stage.motion.has_value(); }))
+        return strongest;
     double loads = 0.0;
     std::map<std::pair<int, int>, double> pulls; // by (boundary, block)
     with_body_of_state(model, state, [&](const LoadedBody& body) {
@@ -38,7 +40,8 @@ PullingSupport strongest_pulling_support(const Model& model, const State& state)
     });
     for (const auto& [of, force] : pulls)
         if (force > strongest.force)
-            strongest = {.boundary = of.first, .block = of.second, .force = force, .share = force / loads};
+            strongest = {
+                .boundary = of.first, .block = of.second, .force = force, .share = loads > 0.0 ? force / loads : 0.0};
     return strongest;
 }
 

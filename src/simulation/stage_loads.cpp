@@ -167,7 +167,7 @@ StageLoads::StageLoads(const Model& model, const StageStart& start, const Stage&
     if (is_platen_loaded_by_stress(stage)) {
         const int moved = stage.motion->boundary;
         platen_force_ = width_across(system, moved);
-        start_platen_stress_ = start_pressure_[moved] * pressed_share_of_width(system, moved);
+        start_platen_stress_ = start_pressure_[moved] * pressed_length(system, moved) / platen_force_->width;
         end_platen_stress_ = stage.motion->value;
     }
     platens_ = platens_of(model, stage);
@@ -338,10 +338,10 @@ void leave_stage(const Model& model, const StageLoads& stage_loads, const Loads&
     std::vector<double> end = stage_loads.pressures(1.0);
     for (int i = 0; i < static_cast<int>(end.size()); ++i) {
         if (!stage_loads.is_held(i)) continue;
-        PlatenForce of_unit_stress = width_across(model.system, i);
-        of_unit_stress.stress = pressed_share_of_width(model.system, i);
-        const double of_unit_pressure = of_unit_stress.at(state.body.displacement);
-        end[i] = of_unit_pressure > 0.0 ? holding_force(model.system, loads, forces, i) / of_unit_pressure : 0.0;
+        PlatenForce of_unit_pressure = width_across(model.system, i);
+        of_unit_pressure.stress = pressed_length(model.system, i) / of_unit_pressure.width;
+        const double force = of_unit_pressure.at(state.body.displacement);
+        end[i] = force > 0.0 ? holding_force(model.system, loads, forces, i) / force : 0.0;
     }
     state.stage_start.boundary_pressure = std::move(end); // from here on nothing throws
     const double travel = platen_travel(loads, state.body.displacement);

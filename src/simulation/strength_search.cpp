@@ -23,7 +23,8 @@ namespace {
 
 constexpr double reduction_balance = 0.1;   ///< of the tolerance of a factor of safety: largest `balance`
 constexpr double reduction_residual = 0.01; ///< of it: largest `tolerance`
-constexpr double share_of_jump = 0.05;      ///< between factors within the tolerance: what goes farther slides
+constexpr double less_strength = 1.002; ///< growth of the factor with which a body that does not slide stands as well
+constexpr double share_of_jump = 0.05;  ///< between factors within the tolerance: what goes farther slides
 
 StepGoal goal_with_strengths_of(const StepBench& bench, const State& state, double load_factor) {
     const double tolerance = bench.stage(state).strength_reduction->tolerance;
@@ -132,18 +133,32 @@ struct TrialGoal {
     StepKind kind;
 };
 
-/// How far the body has moved in all since strengths are reduced (motion_scale).
-double moved_in_all(const Model& model, const State& state) {
-    return relative_motion(model.system, state.body.displacement - state.stage_start.displacement);
-}
-
 /// What a body moves by that still stands where it did: (32b), or as far as the loads have displaced it.
 double near_by(double displaced_by_loads) { return std::max(jump_motion, displaced_by_loads); }
 
-/// Whether the body has moved on by more, as a share of its size, than the factor has grown by meanwhile: it slides, and what
-/// is gained on the way is the strength of another place. Source: (32c).
-bool slides_on(double moved, double near, double factor, double near_factor) {
-    return moved - near > std::log(factor / near_factor);
+/// Whether the body stands where it is with strengths that are lower by a five-hundredth, too, without a jump: what it has moved by
+/// so far was then its joints' giving way, and not the beginning of a slide.
+bool would_stand_with_less(const StepBench& bench, const State& state) {
+    const StrengthReduction& reduction = *bench.stage(state).strength_reduction;
+    const double less = reduction.load_factor_at(less_strength * reduction.factor_at(state.at.load_factor));
+    begin_load_step(bench);
+    const Step step = take_step(bench, state, goal_with_strengths_of(bench, state, std::min(1.0, less)));
+    return !step.failure && step.jumps.empty();
+}
+
+/// Keeps where the body stands at the end of a step without having slid there. False where it slides: where it has moved on by
+/// more, as a share of its size, than the factor has grown by meanwhile, and would not stand where it was with less. What is
+/// gained on the way is the strength of another place. Source: (32c).
+bool keeps_its_place(const StepBench& bench, const State& before, double near, Step& step) {
+    StageStart& place = step.end.stage_start;
+    const double factor = bench.stage(before).strength_reduction->factor_at(step.end.at.load_factor);
+    const double moved = relative_motion(bench.model.system, step.end.body.displacement - place.near_place);
+    if (moved <= near) place.near_factor = factor;
+    if (moved - near <= std::log(factor / place.near_factor)) return true;
+    if (!would_stand_with_less(bench, before)) return false;
+    place.near_place = step.end.body.displacement;
+    place.near_factor = factor;
+    return true;
 }
 
 /// Tries a load step and commits it, after the equilibria found before, if the body stands at its end where it stood (32b), and not
@@ -159,10 +174,8 @@ Trial try_factor(const StepBench& bench, const TrialGoal& goal, State& state, Ei
     const Eigen::VectorXd& start = state.body.displacement;
     const double moved = relative_motion(bench.model.system, step.end.body.displacement - start);
     if (moved > goal.farthest) return {failure_by_motion(bench, step, start, goal.farthest), true};
-    const double in_all = moved_in_all(bench.model, step.end);
-    const double factor = strength_factor(bench.model.loads, step.end.at.stage, step.end.at.load_factor);
-    if (slides_on(in_all, near_by(goal.displaced_by_loads), factor, state.stage_start.near_factor))
-        return {failure_by_motion(bench, step, state.stage_start.displacement, 0.5 * in_all), false};
+    if (!keeps_its_place(bench, state, near_by(goal.displaced_by_loads), step))
+        return {failure_by_motion(bench, step, step.end.stage_start.near_place, jump_motion), false};
     if (moved > goal.displaced_by_loads)
         if (const auto corner = caught_corner(bench.model, corner_contacts(bench.model, state), step.end))
             return {failure_by_corner(bench, step, start, *corner), true};
@@ -173,19 +186,27 @@ Trial try_factor(const StepBench& bench, const TrialGoal& goal, State& state, Ei
     return {};
 }
 
-/// No block moves where none was found: the search has failed, and not the body.
+/// Where no equilibrium was found, and no block was seen to move away either.
 bool is_without_motion(const Failure& failure) {
     return failure.kind == FailureKind::no_equilibrium && failure.moving.empty();
 }
 
+/// A block that is tiny beside the body.
+bool is_sliver(const BlockSystem& system, int block) {
+    constexpr double tiny = 1e-5; // of the mean block
+    return block >= 0 && system.blocks[block].area < tiny * area_of(system) / system.n_blocks();
+}
+
 void warn_of_failed_search(const StepBench& bench, double found, const Failure& failure) {
-    bench.journal.report().warnings.push_back(fmt::format("no equilibrium was found with the strengths divided by "
-                                                          "{:.4g}, but no block moves away there either: the search "
-                                                          "has failed, and the factor of safety may be above {:.4g}. "
-                                                          "Where block {} is a sliver, `geometry.reference_spacing` "
-                                                          "leaves it out",
-                                                          failure.strength_factor, found,
-                                                          block_label(bench.model.system, failure.worst_block)));
+    const BlockSystem& system = bench.model.system;
+    std::string warning = fmt::format(
+        "with the strengths divided by {:.6g} no equilibrium was found, and no block was seen to move away either: the "
+        "search failed there, and the factor of safety may be above {:.6g}",
+        failure.strength_factor, found);
+    if (is_sliver(system, failure.worst_block))
+        warning += fmt::format(". It failed at block {}, a sliver, which `geometry.reference_spacing` leaves out",
+                               block_label(system, failure.worst_block));
+    bench.journal.report().warnings.push_back(std::move(warning));
 }
 
 /// A body that has moved in a jump before strengths are reduced, by less than (32b) takes for a fall.
@@ -194,15 +215,16 @@ void warn_of_earlier_jump(const StepBench& bench, const State& state) {
     const auto first = stages.begin();
     if (state.at.load_factor > 0.0 || state.jumps == 0) return;
     if (std::any_of(first, first + state.at.stage, prescribes_strain)) return;
+    if (!description_of_fall(bench.model, Eigen::VectorXd::Zero(state.body.displacement.size()), state).empty()) return;
     const BlockSystem& system = bench.model.system;
     const auto moved = moved_blocks(system, state.body.displacement, jump_motion);
     if (moved.empty()) return;
     const int block = moved.front().block;
-    bench.journal.report().warnings.push_back(
-        fmt::format("under its loads, before strengths are reduced, the body has given way in a jump and block {} has "
-                    "moved by {:.3g} m: "
-                    "the factor of safety is that of the place where it has come to rest, and not of the body as cut",
-                    block_label(system, block), state.body.displacement.segment<2>(n_block_unknowns * block).norm()));
+    bench.journal.report().warnings.push_back(fmt::format(
+        "under its loads, before strengths are reduced, the body has jumped (jumps.csv), and block {} has moved by "
+        "{:.3g} m in "
+        "all: the factor of safety is that of the place where it has come to rest, and not of the body as cut",
+        block_label(system, block), state.body.displacement.segment<2>(n_block_unknowns * block).norm()));
 }
 
 /// What lies against a factor that is found: it may be that of a body which has moved into another place, as cut it has a lower
@@ -210,7 +232,7 @@ void warn_of_earlier_jump(const StepBench& bench, const State& state) {
 class Doubts {
 public:
     Doubts(const Model& model, const State& start, double displaced_by_loads)
-        : model_(model), start_(start.body.displacement), corners_(corner_contacts(model, start)),
+        : model_(model), start_(start.stage_start.displacement), corners_(corner_contacts(model, start)),
           far_(near_by(displaced_by_loads)) {}
 
     /// `row`: of the state.
@@ -284,14 +306,13 @@ StageEnd find_strength_limit(const StepBench& bench, State& state) {
     const double displaced = displaced_by_loads(bench.model, state, bench.journal.last_row());
     Doubts doubts(bench.model, state, displaced);
     doubts.look_at(state, bench.journal.last_row(), reduction.factor_at(state.at.load_factor));
-    const auto note_place = [&] {
-        const bool stands_there = moved_in_all(bench.model, state) <= near_by(displaced);
-        if (stands_there) state.stage_start.near_factor = reduction.factor_at(state.at.load_factor);
-    };
-    note_place();
     std::vector<StepRecord> before; // equilibria that are not told yet
     if (state.at.load_factor == 0.0) end.failure = find_initial_equilibrium(bench, state, before);
     if (end.failure) return {.failure = end.failure, .step = state.at.step + 1};
+    if (state.at.load_factor == 0.0) {
+        state.stage_start.near_place = state.body.displacement;
+        state.stage_start.near_factor = reduction.factor_at(0.0);
+    }
     const auto width = [&](double to) { // of the factors from the last equilibrium on, relative
         return reduction.factor_at(to) / reduction.factor_at(state.at.load_factor) - 1.0;
     };
@@ -314,7 +335,6 @@ StageEnd find_strength_limit(const StepBench& bench, State& state) {
                              .kind = {.regular = at == next, .last_of_stage = last}};
         const Trial trial = try_factor(bench, goal, state, end.forces, before);
         if (!trial.failure) {
-            note_place();
             doubts.look_at(state, bench.journal.last_row(), reduction.factor_at(state.at.load_factor));
             size = at == failing ? 2.0 * (at - from) : 2.0 * size;
             if (at == failing) failing = none;

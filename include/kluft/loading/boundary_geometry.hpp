@@ -52,8 +52,7 @@ using Side = std::vector<int>;
 /// its outer edges where that is more, as with columns side by side; it grows in proportion to the former.
 [[nodiscard]] PlatenForce width_across(const BlockSystem& system, int boundary);
 
-/// The length on which a pressure on a boundary presses along its normal over the width of width_across, as cut: what the
-/// pressure is multiplied by to have the axial stress. 0 for a boundary without a normal.
-[[nodiscard]] double pressed_share_of_width(const BlockSystem& system, int boundary);
+/// The length on which a pressure on a boundary presses along its normal, as cut (m). 0 for a boundary without a normal.
+[[nodiscard]] double pressed_length(const BlockSystem& system, int boundary);
 
 } // namespace kluft

@@ -38,6 +38,7 @@ struct StrengthReduction {
     std::vector<int> interface_types; ///< whose strengths are divided; empty: all
 
     [[nodiscard]] double factor_at(double load_factor) const { return from + load_factor * (to - from); }
+    [[nodiscard]] double load_factor_at(double factor) const { return (factor - from) / (to - from); }
 };
 
 struct Stage {

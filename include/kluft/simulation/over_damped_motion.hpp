@@ -39,8 +39,8 @@ struct Motion {
     Eigen::VectorXd start;                                     ///< displacement (m)
     Eigen::VectorXd velocity; ///< of the step before (Pa/m); zero where the forces have just changed
     bool foretells = true;    ///< the velocity tells where the next step goes; no longer once one was not solved
-    double longest_step = std::numeric_limits<double>::infinity(); ///< below the one that was not solved last
-    Eigen::VectorXd detected;                                      ///< displacement at which contacts were detected (m)
+    double step_limit = std::numeric_limits<double>::infinity(); ///< below the step that was not solved last
+    Eigen::VectorXd detected;                                    ///< displacement at which contacts were detected (m)
     Eigen::VectorXd early; ///< displacement before the motion had gone halfway to a collapse (m)
     MotionEnergy energy;
     double age = 0.0;         ///< pseudo-time since the forces have changed

@@ -17,7 +17,7 @@ struct PullingSupport {
     double share = 0.0; ///< of the sum of the magnitudes of all weights, pressures and forces on the body
 };
 
-/// The largest pull of a committed state. None in a stage whose platen moves: a test may pull its specimen.
+/// The largest pull of a committed state. None where a platen moves in any stage: a test may pull its specimen.
 [[nodiscard]] PullingSupport strongest_pulling_support(const Model& model, const State& state);
 
 /// What is to be said of one that pulls with more than a hundredth of the loads; "" where there is none.

@@ -46,7 +46,10 @@ struct BodyState {
 struct StageStart {
     Eigen::VectorXd displacement;          ///< size 6 n_blocks, m
     std::vector<double> boundary_pressure; ///< one per boundary, Pa
-    double near_factor = 0.0; ///< the largest strength factor with which the body has stood where it began (32c)
+    /// Of a stage that reduces strengths: where the body stands without having slid there, displacement (m), and the largest
+    /// strength factor with which it has stood near by (32c).
+    Eigen::VectorXd near_place;
+    double near_factor = 0.0;
 };
 
 /// What makes the next solve cheaper. Without it a run takes longer and its path changes within the tolerances.
@@ -126,7 +129,8 @@ template <class Members, class Visit> void visit_saved(Members& state, Visit&& v
     visit("platen_points", state.body.platen_points);
     visit("stage_start_displacement", state.stage_start.displacement);
     visit("stage_start_pressure", state.stage_start.boundary_pressure);
-    visit("stage_start_near_factor", state.stage_start.near_factor);
+    visit("near_place", state.stage_start.near_place);
+    visit("near_factor", state.stage_start.near_factor);
     visit("strain_zero", state.strain_zero);
     visit("rate", state.memory.rate);
     visit("near_pairs", state.memory.near_pairs);
