@@ -210,6 +210,51 @@ stages: [{{steps: 4}}, {{strength_reduction: {{to: 3}}}}]
     EXPECT_NEAR(*run.report.results.factor_of_safety, resistance / (5.0 * 60.0), 3e-3 * resistance / (5.0 * 60.0));
 }
 
+// Three traces nearly meet in a point and cut a sliver of 4e-6 m2, at which the search fails, at factors that depend on the number
+// of steps. The factor of the same slope without it is its reference.
+TEST(SlowStrengthSearch, AFactorThatASliverStopsIsTold) {
+    const auto slope = [](int load_steps, int steps, const char* spacing) {
+        return run_scene(fmt::format(R"(kluft: 1
+analysis: {{gravity: 10}}
+materials:
+  rock: {{youngs_modulus: 1e10, poissons_ratio: 0.25, density: 2600}}
+  heavy: {{youngs_modulus: 5e9, poissons_ratio: 0.2, density: 3000}}
+interfaces:
+  a: {{kind: fracture, friction_angle: 35.77102948617499, normal_stiffness: 1e10, shear_stiffness: 5e9, cohesion: 35287.6531677876}}
+  b: {{kind: fracture, friction_angle: 28.9668047465078, normal_stiffness: 1e10, shear_stiffness: 5e9}}
+geometry:
+  material: rock
+  regions: [{{polygon: [[4, 4], [20, 4], [20, 20], [4, 20]], material: heavy}}]
+  domain: {{polygon: [[-2, -3], [14, -3], [14, 10], [6, 10], [0.5, 0], [-2, 0]]}}
+  fractures:
+    - {{trace: [[-1, -1.0], [21.217009742657872, 10.46317923155026]], interface: a}}
+    - {{trace: [[-1, 1.2], [20.854563155181086, 13.339936956022518]], interface: a}}
+    - {{trace: [[-1, 3.7], [20.671960668386443, 16.162990042036903]], interface: a}}
+    - {{trace: [[6.299542341682513, -19.665293192791843], [-0.9877736639631225, 19.665293192791843]], interface: b}}
+    - {{trace: [[11.581771747707558, -19.187654134850234], [0.29745895492046515, 19.187654134850234]], interface: b}}
+    - {{trace: [[12.705943843802945, -19.59450775496888], [4.692139294036488, 19.59450775496888]], interface: b}}
+    - {{trace: [[18.067072033057812, -19.089716559040898], [6.13682112279113, 19.089716559040898]], interface: b}}
+  {}
+boundaries: {{bottom: {{sides: [0], support: fixed}}, right: {{sides: [1], support: fixed}}}}
+stages: [{{steps: {}}}, {{gravity: [-1, -10], steps: {}}}, {{strength_reduction: {{to: 6}}, steps: {}}}]
+)",
+                                     spacing, load_steps, load_steps, steps));
+    };
+    const SceneRun whole = slope(2, 12, "reference_spacing: 0.5");
+    ASSERT_TRUE(whole.report.results.factor_of_safety.has_value());
+    const double expected = *whole.report.results.factor_of_safety;
+    for (const auto& [load_steps, steps] : {std::pair(2, 12), std::pair(2, 50), std::pair(2, 100), std::pair(20, 12)}) {
+        SCOPED_TRACE(fmt::format("{} and {} steps", load_steps, steps));
+        const SceneRun run = slope(load_steps, steps, "");
+        ASSERT_TRUE(run.report.results.factor_of_safety.has_value());
+        const bool is_told = std::ranges::any_of(run.report.warnings, [](const std::string& warning) {
+            return warning.find("the search failed there, and the factor of safety may be above") != std::string::npos;
+        });
+        EXPECT_LT(*run.report.results.factor_of_safety, 1.003 * expected);
+        EXPECT_TRUE(is_told || *run.report.results.factor_of_safety > 0.997 * expected);
+    }
+}
+
 // A block of 2 m that slides 0.3 m down to a stop before strengths are reduced: less than a fall, but not the body as cut,
 // of which the factor is tan 25/tan 30 = 0.81.
 TEST(StrengthSearch, SaysThatTheBodyHasGivenWayBefore) {
