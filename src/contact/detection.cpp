@@ -30,6 +30,9 @@ constexpr double least_penetration = 1e-9;
 constexpr double straight = 1e-4;
 /// Faces of two blocks that meet in a vertex go on in one another if they turn by less (rad), as motions of blocks turn them.
 constexpr double flush = 0.02;
+/// What rises from where a tip's plane comes out by a smaller angle than of this cosine, 60 degrees, is the ground before it, and holds
+/// no tip: that breaks off, or rides over.
+constexpr double flattest_riser = 0.5;
 /// A corner is round over this part of the shorter edge: where two corners meet, the direction in which they touch is between the faces'.
 constexpr double corner_rounding = 1e-3;
 /// Two points of a fracture that were nearer than this part of its edge were one point; what is between is round-off.
@@ -468,6 +471,9 @@ private:
         if (go_on_straight(at_end ? arriving : leaving.direction, edge.direction) ||
             go_on_straight(at_end ? leaving.direction : arriving, other_side))
             return false;
+        const Vec2 along_floor = at_end ? arriving : -leaving.direction;
+        const Vec2 up_riser = at_end ? edge.start - edge.end : edge.end - edge.start;
+        if (along_floor.dot(up_riser) > flattest_riser * along_floor.norm() * up_riser.norm()) return false;
         return is_notch(of_target) || std::ranges::any_of(system_.blocks[target].edges, [&](const Edge& other) {
                    return other.interface >= 0 && (at_end ? other.start : other.end) == vertex;
                });

@@ -34,14 +34,20 @@ double load_over_strength(double normal_traction, double shear_traction, const S
     return std::max(tension, shear);
 }
 
-BondWatch::BondWatch(const Model& model, CrackCriterion criterion) : model_(model) {
-    if (criterion != CrackCriterion::principal_stress || !model.has_potential_cracks) return;
+std::vector<int> bonds_of_large_blocks(const Model& model) {
     const std::vector<Interface>& interfaces = model.system.interfaces;
     const bool has_net =
         std::ranges::any_of(interfaces, [](const Interface& each) { return each.origin == EdgeOrigin::tessellation; });
+    std::vector<int> bonds;
     for (int i = 0; i < model.system.n_interfaces(); ++i)
         if (model.bonds[interfaces[i].interface_type] && is_of_large_blocks(model.system, has_net, interfaces[i]))
-            interfaces_.push_back(i);
+            bonds.push_back(i);
+    return bonds;
+}
+
+BondWatch::BondWatch(const Model& model, CrackCriterion criterion) : model_(model) {
+    if (criterion == CrackCriterion::principal_stress && model.has_potential_cracks)
+        interfaces_ = bonds_of_large_blocks(model);
 }
 
 void BondWatch::step(const StepRecord& record, const State& state) {

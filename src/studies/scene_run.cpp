@@ -15,7 +15,6 @@
 #include "kluft/output/state_file.hpp"
 #include "kluft/reference/explicit_simulation.hpp"
 #include "kluft/scene/scene_as_run.hpp"
-#include "kluft/simulation/bond_bending.hpp"
 #include "kluft/simulation/contact_pressure.hpp"
 #include "kluft/simulation/corner_contact.hpp"
 #include "kluft/simulation/fingerprint.hpp"
@@ -132,6 +131,7 @@ void ContactWatch::step(const StepRecord& record, const State& state) {
         largest_stress_ = std::max(largest_stress_, std::abs(stress));
     corners_.step(record, state);
     bonds_.step(record, state);
+    bending_.step(record, state);
 }
 
 void warn_of_contacts(const Model& model, const State& state, const ContactWatch& watch, RunReport& report) {
@@ -143,11 +143,12 @@ void warn_of_contacts(const Model& model, const State& state, const ContactWatch
         if (report.status == RunStatus::interrupted) {
             add(watch.corners().warning());
             add(watch.bonds().warning());
+            add(watch.bending().warning());
             return;
         }
         for (const std::string& warning :
              {contact_pressure_warning(model, state, watch.largest_stress()), corner_contact_warning(model, state),
-              watch.corners().warning(), watch.bonds().warning(), bond_bending_warning(model, state),
+              watch.corners().warning(), watch.bonds().warning(), watch.bending().warning(),
               rocking_joint_warning(model, state), pulling_support_warning(model, state),
               report.status == RunStatus::done ? unstable_equilibrium_warning(model, state) : ""})
             add(warning);

@@ -37,15 +37,43 @@ cracks: {{criterion: interface_traction}}
     return run_scene(read_scene_text(text, {}, "row.yaml"));
 }
 
+/// Of a run whose load steps are followed.
+std::string bending_warning(const SceneRun& run) {
+    BendingWatch watch(run.model);
+    watch.step(run.history.back(), run.state);
+    return watch.warning();
+}
+
 // The fibre stress of a cantilever, 3 rho g L^2/h: 7.8 MPa at 10 m, 1.95 MPa at 5 m.
 TEST(BondBending, OfGivenBlocksIsWarnedOf) {
     const SceneRun longer = row_of_blocks(10);
     ASSERT_TRUE(stands(longer));
-    EXPECT_THAT(bond_bending_warning(longer.model, longer.state),
+    EXPECT_THAT(bending_warning(longer),
                 AllOf(HasSubstr("'wall'"), HasSubstr("'b0'"), HasSubstr("7.8 MPa, 7.8 times its tensile strength")));
     const SceneRun shorter = row_of_blocks(5);
     ASSERT_TRUE(stands(shorter));
-    EXPECT_THAT(bond_bending_warning(shorter.model, shorter.state), IsEmpty());
+    EXPECT_THAT(bending_warning(shorter), IsEmpty());
+}
+
+// A column of 1 m by 5 m on a bonded trace, without a net, under 0.4 g from the side: the fibre stress at its foot is
+// rho H (6 a H/2/b - g) with b = 1 m, 2500*5*(0.4*9.81*15 - 9.81) = 613 kPa.
+TEST(BondBending, OfATraceWithoutANetIsWarnedOf) {
+    const SceneRun run = run_scene(R"(kluft: 1
+analysis: {gravity: [3.924, -9.81], kinematics: rigid}
+materials: {rock: {density: 2500, youngs_modulus: 20 GPa, poissons_ratio: 0.25, cohesion: 1 MPa, friction_angle: 40, tensile_strength: 100 kPa}}
+interfaces:
+  bond: {kind: potential_crack, fails_to: crack, normal_stiffness: 1000 GPa/m, shear_stiffness: 500 GPa/m}
+  crack: {kind: fracture, friction_angle: 30, normal_stiffness: 1000 GPa/m, shear_stiffness: 500 GPa/m}
+geometry:
+  domain: {polygon: [[0, -1], [1, -1], [1, 0], [1, 5], [0, 5], [0, 0]]}
+  fractures: [{trace: [[-0.5, 0], [1.5, 0]], interface: bond}]
+boundaries: {bottom: {sides: [0], support: fixed}}
+stages: [{steps: 2}]
+cracks: {criterion: interface_traction}
+)");
+    ASSERT_TRUE(stands(run)) << run.report.diagnosis;
+    EXPECT_THAT(bending_warning(run),
+                AllOf(HasSubstr("blocks 0 and 1 bends"), HasSubstr("0.613 MPa, 6.1 times its tensile strength")));
 }
 
 } // namespace

@@ -1,10 +1,14 @@
 // The factor of safety of a slope with two sets of joints.
+#include <array>
+#include <cmath>
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "kluft/core/units.hpp"
 #include "support/scene_run.hpp"
 
 namespace kluft {
@@ -84,6 +88,40 @@ stages:
     EXPECT_THAT(run.report.warnings,
                 testing::Contains(testing::AllOf(testing::HasSubstr("the net has locked"),
                                                  testing::ContainsRegex("; 1\\.[0-9]* is the factor"))));
+}
+
+/// A slope of 10 m, 3 m back at its crest, with flat ground before its toe and a joint that comes out at a height on its face.
+SceneRun slope_with_ground_before_it(double dip, double height, double cohesion, double friction_angle) {
+    const double x = 0.3 * height;
+    const double slope = std::tan(dip / degrees);
+    return run_scene(fmt::format(R"(kluft: 1
+analysis: {{gravity: 9.81}}
+materials: {{rock: {{density: 2500, youngs_modulus: 10 GPa, poissons_ratio: 0.25}}}}
+interfaces: {{joint: {{kind: fracture, friction_angle: {}, cohesion: {}, normal_stiffness: 1e10, shear_stiffness: 5e9}}}}
+geometry:
+  reference_spacing: 2
+  domain: {{polygon: [[-10, -5], [30, -5], [30, 10], [3, 10], [0, 0], [-10, 0]]}}
+  fractures: [{{trace: [[{:.17g}, {:.17g}], [{:.17g}, 11]], interface: joint}}]
+boundaries: {{base: {{sides: [0], support: fixed}}, right: {{sides: [1], support: fixed}}}}
+stages: [{{steps: 5}}, {{strength_reduction: {{to: 5}}, steps: 20}}]
+)",
+                                 friction_angle, cohesion, x, height, x + (11.0 - height) / slope));
+}
+
+// Plane failure (Hoek and Bray): F = (c L + W cos tan phi)/(W sin), whether the plane comes out on the face or at the toe, where
+// the ground before it would hold the tip of the wedge alone.
+TEST(JointedSlope, PlaneThroughTheToeIsNotHeldByTheGroundBeforeIt) {
+    for (const auto& [dip, height, cohesion, friction] :
+         {std::array{40.0, 0.0, 20e3, 30.0}, std::array{40.0, 0.2, 20e3, 30.0}, std::array{40.0, 0.0, 0.0, 50.0},
+          std::array{35.0, 0.0, 20e3, 30.0}, std::array{55.0, 0.0, 60e3, 30.0}}) {
+        SCOPED_TRACE(fmt::format("dip {} height {} cohesion {}", dip, height, cohesion));
+        const SceneRun run = slope_with_ground_before_it(dip, height, cohesion, friction);
+        const double rise = 10.0 - height, sin = std::sin(dip / degrees), cos = std::cos(dip / degrees);
+        const double weight = 2500.0 * 9.81 * 0.5 * rise * (rise * cos / sin - 0.3 * rise);
+        const double expected = (cohesion * rise / sin + weight * cos * std::tan(friction / degrees)) / (weight * sin);
+        ASSERT_TRUE(run.report.results.factor_of_safety.has_value());
+        EXPECT_NEAR(*run.report.results.factor_of_safety, expected, 3e-3 * expected);
+    }
 }
 
 } // namespace

@@ -19,6 +19,9 @@ constexpr double clear_overload = 1.1; ///< of a bond's strength: an event is me
 /// whichever is more. Pa, the normal one positive in tension. Zero where the strength is.
 [[nodiscard]] double load_over_strength(double normal_traction, double shear_traction, const Strength& strength);
 
+/// The interfaces with a bond in the body as cut between given blocks, or on a trace between blocks larger than the cells of a net.
+[[nodiscard]] std::vector<int> bonds_of_large_blocks(const Model& model);
+
 /// Follows a run in which bonds fail by the mean stress of their two blocks (CrackCriterion::principal_stress), and remembers
 /// that bond of given blocks, or of a trace between blocks larger than the cells of a net, whose own traction was the most of its
 /// strength. Costs nothing where there is none. `model` must outlive it.

@@ -8,6 +8,7 @@
 #include "kluft/output/run_writer.hpp"
 #include "kluft/output/summary.hpp"
 #include "kluft/scene/scene.hpp"
+#include "kluft/simulation/bond_bending.hpp"
 #include "kluft/simulation/model.hpp"
 #include "kluft/simulation/overloaded_bonds.hpp"
 #include "kluft/simulation/overloaded_corners.hpp"
@@ -45,7 +46,8 @@ RunReport run_stages(const Model& model, const Scene& scene, State& state, StepO
 /// What the warnings at the end of a run need to know of its load steps. The model must outlive it.
 class ContactWatch {
 public:
-    ContactWatch(const Model& model, CrackCriterion criterion) : corners_(model), bonds_(model, criterion) {}
+    ContactWatch(const Model& model, CrackCriterion criterion)
+        : corners_(model), bonds_(model, criterion), bending_(model) {}
 
     /// A committed load step.
     void step(const StepRecord& record, const State& state);
@@ -54,10 +56,12 @@ public:
     [[nodiscard]] double largest_stress() const { return largest_stress_; }
     [[nodiscard]] const CornerWatch& corners() const { return corners_; }
     [[nodiscard]] const BondWatch& bonds() const { return bonds_; }
+    [[nodiscard]] const BendingWatch& bending() const { return bending_; }
 
 private:
     CornerWatch corners_;
     BondWatch bonds_;
+    BendingWatch bending_;
     double largest_stress_ = 0.0;
 };
 
