@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <string>
 #include <tuple>
@@ -145,8 +146,8 @@ std::optional<CurveDifference> difference_of_curves(const FinishedRun& a, const 
     const auto peak = peak_row(a.fine_rows(), a.platen_stage);
     if (!peak || !a.numbers.peak_strain || !b.numbers.peak_strain) return std::nullopt;
     if (*a.numbers.peak_strain * *b.numbers.peak_strain < 0.0) return std::nullopt; // one pressed, one pulled
-    return curve_difference(platen_rows(a.history, a.platen_stage.value_or(0)),
-                            platen_rows(b.history, b.platen_stage.value_or(0)),
+    return curve_difference(platen_rows(a.fine_rows(), a.platen_stage.value_or(0)),
+                            platen_rows(b.fine_rows(), b.platen_stage.value_or(0)),
                             std::min(std::abs(*a.numbers.peak_strain), std::abs(*b.numbers.peak_strain)),
                             std::abs(peak->differential_stress));
 }
@@ -317,15 +318,29 @@ std::vector<CrackMatch> match_cracks(const std::vector<CrackRecord>& a, const st
     return matches;
 }
 
+namespace {
+
+double just_beyond(double x) { return std::nextafter(x, std::numeric_limits<double>::infinity()); }
+
+} // namespace
+
 std::vector<Vec2> growing_curve(const std::vector<StepRecord>& rows) {
     std::vector<Vec2> curve;
     const auto last =
         std::find_if(rows.rbegin(), rows.rend(), [](const StepRecord& row) { return row.axial_strain != 0.0; });
     const double sense = last != rows.rend() && last->axial_strain < 0.0 ? -1.0 : 1.0; // of the platen
+    double before = std::numeric_limits<double>::quiet_NaN();                          // strain of the row before
     for (const StepRecord& row : rows) {
         const Vec2 point = sense * Vec2(row.axial_strain, row.differential_stress);
         if (!row.balanced || !point.allFinite()) continue;
-        if (curve.empty() || point.x() > curve.back().x()) curve.push_back(point);
+        const bool drops = point.x() == std::exchange(before, point.x()); // as where bonds break
+        if (curve.empty() || point.x() > curve.back().x()) {
+            curve.push_back(point);
+        } else if (drops && point.x() == curve.back().x()) {
+            curve.emplace_back(just_beyond(point.x()), point.y());
+        } else if (drops && just_beyond(point.x()) == curve.back().x()) {
+            curve.back().y() = point.y();
+        }
     }
     return curve;
 }

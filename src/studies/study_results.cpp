@@ -62,11 +62,14 @@ std::vector<std::optional<double>> quantities_in(const Json& summary, const std:
     return values;
 }
 
-/// Nothing of a run that moves no platen: its strains follow from loads, and are no curve.
+/// By all equilibria, with those at which bonds break between the ends of the load steps. Nothing of a run that moves no platen:
+/// its strains follow from loads, and are no curve.
 std::vector<Vec2> curve_in(const fs::path& directory, const Json& summary) {
     if (!number_in(summary, "platen_stage")) return {};
     try {
-        const auto rows = read_history(directory / "history.csv", curve_columns);
+        const fs::path equilibria = directory / "equilibria.csv";
+        auto rows = fs::exists(equilibria) ? read_history(equilibria, curve_columns) : std::vector<StepRecord>{};
+        if (rows.empty()) rows = read_history(directory / "history.csv", curve_columns);
         return growing_curve(platen_rows(rows, value_or(summary, "platen_stage", 0)));
     } catch (const InputError&) {
         return {};

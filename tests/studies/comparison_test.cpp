@@ -121,6 +121,15 @@ TEST(CurveDifference, LooksAtBalancedRowsOfGrowingStrainOnly) {
     EXPECT_NEAR(curve_difference(line, disturbed, 0.01, 1e6)->largest, 0.0, 1e-12);
 }
 
+// Where bonds break the stress falls at one strain: from 1 MPa at 0.5 % to 0.2 MPa, at which it stays.
+TEST(CurveDifference, KeepsADropAtItsStrain) {
+    const Rows coarse{row(0.0, 0.0),     row(0.005, 1e6),   row(0.005, 0.8e6),
+                      row(0.005, 0.4e6), row(0.005, 0.2e6), row(0.01, 0.2e6)};
+    const Rows fine{row(0.0, 0.0), row(0.005, 1e6), row(0.005, 0.2e6), row(0.0051, 0.2e6), row(0.01, 0.2e6)};
+    EXPECT_NEAR(curve_difference(coarse, fine, 0.01, 1e6)->largest, 0.0, 1e-9);
+    EXPECT_NEAR(*curve_distance(growing_curve(fine), growing_curve(coarse)), 0.0, 1e-9);
+}
+
 TEST(CurveDifference, IsNotKnownWithoutACommonRangeOrAStress) {
     const Rows line{row(0.0, 0.0), row(0.01, 1e6)};
     EXPECT_FALSE(curve_difference(line, line, 0.0, 1e6));

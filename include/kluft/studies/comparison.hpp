@@ -43,7 +43,8 @@ inline constexpr int n_curve_points = 201;
 [[nodiscard]] std::optional<CurveDifference>
 curve_difference(const std::vector<StepRecord>& a, const std::vector<StepRecord>& b, double end, double scale);
 
-/// (axial strain, differential stress) of the balanced rows whose strain grows beyond all before.
+/// (axial strain, differential stress) of the balanced rows whose strain grows beyond all before, and of those that follow such a
+/// row at its strain: a drop, whose strains differ by their last digit.
 [[nodiscard]] std::vector<Vec2> growing_curve(const std::vector<StepRecord>& rows);
 
 /// L2 distance of two growing curves over the strains that both have, on n_curve_points, relative to the L2 norm of the
