@@ -124,7 +124,7 @@ private:
             stage.motion = PlatenMotion{static_cast<PlatenControl>(i), *boundary, platen.number("value"),
                                         platen.boolean("glued"), context_.place(platen, "boundary")};
             check_platen(platen, *name, stage);
-            if (stage.motion->value < 0.0 && !stage.motion->glued && !was_moved(*boundary))
+            if (stage.motion->value < 0.0 && !stage.motion->glued && !was_pressed(*boundary))
                 context_.warn(
                     platen, "value",
                     "the platen leaves the body, which it holds in tension only if it is glued (glued: true)");
@@ -149,9 +149,13 @@ private:
     }
 
     /// In an earlier stage: a platen may go back from where it has pressed.
-    [[nodiscard]] bool was_moved(int boundary) const {
-        return std::ranges::any_of(
-            loads_.stages, [&](const Stage& stage) { return stage.motion && stage.motion->boundary == boundary; });
+    /// By a platen or a pressure of an earlier stage.
+    [[nodiscard]] bool was_pressed(int boundary) const {
+        return std::ranges::any_of(loads_.stages, [&](const Stage& stage) {
+            const auto pressure = stage.pressure.find(boundary);
+            const bool by_pressure = pressure != stage.pressure.end() && pressure->second > 0.0;
+            return by_pressure || (stage.motion && stage.motion->boundary == boundary);
+        });
     }
 
     /// tan of the friction angle.

@@ -108,5 +108,12 @@ TEST(ImplausibleValues, SymmetricTangentIsToldOfWhereStrengthsAreReduced) {
     EXPECT_THAT(warnings_of_block_with({"solver.tangent=symmetric"}), IsEmpty());
 }
 
+// A platen that goes out at once holds nothing, unless something has pressed its boundary before: triaxial extension.
+TEST(PlatenThatGoesOut, IsWarnedOfWhereNothingWasPressedBefore) {
+    EXPECT_THAT(warnings_of_block_with({"stages.1.strain.value=-0.1 %"}),
+                ElementsAre(HasSubstr("the platen leaves the body")));
+    EXPECT_THAT(warnings_of_block_with({"stages.1.strain.value=-0.1 %", "stages.0.pressure.top=1 MPa"}), IsEmpty());
+}
+
 } // namespace
 } // namespace kluft
