@@ -128,13 +128,14 @@ std::optional<double> delta_error(const std::optional<Mat2>& covariance, const V
 } // namespace
 
 PeakUse use_of(const PeakPoint& point) {
-    if (!point.moves_platen || !point.peak_reached || !point.balanced || point.net_locked) return PeakUse::bound;
+    if (!bound_reason(point).empty()) return PeakUse::bound;
     return in_tension(point) ? PeakUse::tension : PeakUse::strength;
 }
 
 std::string bound_reason(const PeakPoint& point) {
     if (!point.moves_platen) return "moves no platen";
     if (point.net_locked) return "net locked";
+    if (point.unloaded) return "sides unloaded";
     if (!point.peak_reached) return "not yet falling";
     return point.balanced ? "" : "unbalanced";
 }

@@ -184,7 +184,8 @@ PeakPoint peak_point(const std::string& run, const std::vector<StepRecord>& equi
             .sigma_3 = low,
             .sigma_1 = high,
             .peak_reached = is_strength(numbers),
-            .net_locked = numbers.net_locked};
+            .net_locked = numbers.net_locked,
+            .unloaded = is_unloaded_before_fall(equilibria, *peak, platen_stage)};
 }
 
 bool is_envelope_csv(std::string_view text) { return text.starts_with(own_columns); }

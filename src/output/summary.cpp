@@ -393,6 +393,26 @@ std::optional<StepRecord> peak_row(const std::vector<StepRecord>& rows, std::opt
                        platen_sense(rows, platen_stage));
 }
 
+bool is_unloaded_before_fall(const std::vector<StepRecord>& rows, const StepRecord& peak,
+                             std::optional<int> platen_stage) {
+    constexpr double of_lateral = 0.02; // of the peak
+    constexpr double of_axial = 1e-3;
+    const double sense = platen_sense(rows, platen_stage);
+    const double fallen = sense * peak.axial_stress - fall_after_peak * std::abs(peak.axial_stress);
+    double least = peak.lateral_stress;
+    const auto at = std::ranges::find_if(rows, [&](const StepRecord& row) {
+        return row.balanced && row.stage == peak.stage && row.axial_stress == peak.axial_stress;
+    });
+    for (const StepRecord& row : std::ranges::subrange(at, rows.end())) {
+        if (!row.balanced) continue;
+        const double relieved = std::max(0.0, sense * (peak.lateral_stress - row.lateral_stress));
+        if (sense * row.axial_stress + relieved <= fallen) break;
+        least = std::min(least, row.lateral_stress);
+    }
+    return peak.lateral_stress - least >
+           std::max(of_lateral * std::abs(peak.lateral_stress), of_axial * std::abs(peak.axial_stress));
+}
+
 CurveNumbers curve_numbers(const std::vector<StepRecord>& equilibria, const std::vector<StepRecord>& history,
                            std::optional<int> platen_stage, Plane plane) {
     CurveNumbers numbers;

@@ -63,6 +63,21 @@ TEST(Envelope, TakesTheSmallerStressAtThePeakOfAPulledRunAsSigma3) {
     EXPECT_TRUE(point.peak_reached);
 }
 
+// Pressed to 20 MPa under 5 MPa, held there while the sides are unloaded, and broken under 3.3 MPa: no strength under 5 MPa.
+TEST(Envelope, TakesNoPeakThatStoodWhileItsSidesWereUnloaded) {
+    const std::vector<Vec2> stresses{{0.0, 0.0}, {20e6, 5e6}, {19.999e6, 4e6}, {19.998e6, 3.3e6}, {10e6, 3.2e6}};
+    std::vector<StepRecord> rows(stresses.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        rows[i].axial_stress = stresses[i].x();
+        rows[i].lateral_stress = stresses[i].y();
+    }
+    const PeakPoint unloaded = peak_point("unloaded", rows, 0);
+    EXPECT_EQ(use_of(unloaded), PeakUse::bound);
+    EXPECT_EQ(bound_reason(unloaded), "sides unloaded");
+    for (StepRecord& row : rows) row.lateral_stress = 5e6;
+    EXPECT_EQ(use_of(peak_point("triaxial", rows, 0)), PeakUse::strength);
+}
+
 const Envelope tested_rock{0.16e6, 36.2 * degree};
 
 std::vector<PeakPoint> two_points() {

@@ -20,17 +20,18 @@ struct PeakPoint {
     bool balanced = true;     ///< false: the run ended out of balance
     bool net_locked = false;  ///< loose blocks of the net of potential cracks carried the load, as masonry does
     bool moves_platen = true; ///< false: a run under given loads, which has no strength of a test
+    bool unloaded = false; ///< the lateral stress had been lowered before the stress fell: it failed under another one
 };
 
 /// What a test says about the strength.
 enum class PeakUse {
     strength, ///< a point of the compressive strength, sigma_3 >= 0
     tension,  ///< a tensile strength, sigma_3 = -sigma_t < 0
-    bound     ///< no strength: no platen, not yet falling, out of balance or locked
+    bound     ///< no strength: no platen, sides unloaded, not yet falling, out of balance or locked
 };
 
 [[nodiscard]] PeakUse use_of(const PeakPoint& point);
-/// "moves no platen", "not yet falling", "unbalanced", "net locked", or "" for a strength.
+/// "moves no platen", "sides unloaded", "not yet falling", "unbalanced", "net locked", or "" for a strength.
 [[nodiscard]] std::string bound_reason(const PeakPoint& point);
 
 /// A number from measurements with its standard error, which is unknown where nothing is left over to tell the scatter.

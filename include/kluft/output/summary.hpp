@@ -57,6 +57,11 @@ struct CurveNumbers {
 /// balanced row. Where the net is locked, only of the rows up to the first one with so many bonds failed.
 [[nodiscard]] std::optional<StepRecord> peak_row(const std::vector<StepRecord>& rows, std::optional<int> platen_stage);
 
+/// Whether the sides were pressed less, by more than 2 % of the peak's lateral stress and 0.1 % of its axial one, before the stress fell from the peak: the body
+/// then failed under another lateral stress than that at its peak.
+[[nodiscard]] bool is_unloaded_before_fall(const std::vector<StepRecord>& rows, const StepRecord& peak,
+                                           std::optional<int> platen_stage);
+
 /// Computes the numbers from the rows of equilibria.csv (peak) and history.csv (the rest; also the peak when there are
 /// no equilibria). Unbalanced rows count in `unbalanced_steps` only.
 ///
