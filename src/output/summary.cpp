@@ -403,11 +403,11 @@ bool is_unloaded_before_fall(const std::vector<StepRecord>& rows, const StepReco
     const auto at = std::ranges::find_if(rows, [&](const StepRecord& row) {
         return row.balanced && row.stage == peak.stage && row.axial_stress == peak.axial_stress;
     });
-    for (const StepRecord& row : std::ranges::subrange(at, rows.end())) {
-        if (!row.balanced) continue;
-        const double relieved = std::max(0.0, sense * (peak.lateral_stress - row.lateral_stress));
-        if (sense * row.axial_stress + relieved <= fallen) break;
-        least = std::min(least, row.lateral_stress);
+    for (auto row = at; row != rows.end(); ++row) {
+        if (!row->balanced) continue;
+        const double relieved = std::max(0.0, sense * (peak.lateral_stress - row->lateral_stress));
+        if (sense * row->axial_stress + relieved <= fallen) break;
+        least = std::min(least, row->lateral_stress);
     }
     return peak.lateral_stress - least >
            std::max(of_lateral * std::abs(peak.lateral_stress), of_axial * std::abs(peak.axial_stress));
