@@ -102,10 +102,11 @@ TEST_F(GeoJson, AMapOfAnotherFormatIsRefusedWithTheCommandThatConvertsIt) {
         const std::string message = message_of([&] { return read_map_traces({.file = file}); });
         const std::string name = file.string();
         const std::string stem = name.substr(0, name.size() - 4);
-        EXPECT_EQ(message, name +
-                               ": expected a map in GeoJSON (.geojson, .json), a GeoPackage (.gpkg) or a shapefile "
-                               "(.shp), found a file of another format; `ogr2ogr " +
-                               stem + ".gpkg " + name + "` makes a GeoPackage of what GDAL reads");
+        EXPECT_EQ(
+            message,
+            fmt::format("{}: expected a map in GeoJSON (.geojson, .json), a GeoPackage (.gpkg) or a shapefile (.shp), "
+                        "found a file of another format; `ogr2ogr {}.gpkg {}` makes a GeoPackage of what GDAL reads",
+                        name, stem, name));
     }
     const auto text = written_as(".txt", R"({"type": "LineString", "coordinates": [[0, 0], [1, 1]]})");
     EXPECT_EQ(read_map_traces({.file = text}).traces.size(), 1U);

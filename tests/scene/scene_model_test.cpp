@@ -185,12 +185,12 @@ TEST(SceneModel, WarnsOfAReferenceThatIsLittleBesideTheBlocks) {
 
 // Three traces cut a triangle of half a millimetre's base and height between them: 1.25e-7 of 2 m2.
 TEST(SceneModel, WarnsOfSliversWhereNoSpacingSaysWhatIsTooSmall) {
-    const auto warnings = [](const char* spacing) {
+    const std::string traces =
+        R"(geometry.fractures=[{trace: [[-1, 0.5], [3, 0.5]], interface: joint}, {trace: [[0.5, -1], [0.5, 3]], interface: joint},
+                               {trace: [[-0.4995, -0.5], [2.5005, 2.5]], interface: joint}])";
+    const auto warnings = [&](const char* spacing) {
         return warnings_of({"geometry.tessellation=null", std::string("geometry.reference_spacing=") + spacing,
-                            "interfaces.bond=null", "interfaces.crack=null",
-                            "geometry.fractures=[{trace: [[-1, 0.5], [3, 0.5]], interface: joint}, "
-                            "{trace: [[0.5, -1], [0.5, 3]], interface: joint}, "
-                            "{trace: [[-0.4995, -0.5], [2.5005, 2.5]], interface: joint}]"});
+                            "interfaces.bond=null", "interfaces.crack=null", traces});
     };
     EXPECT_THAT(warnings("null"),
                 Contains(AllOf(HasSubstr("is a sliver of 1.25e-07 m2"), HasSubstr("reference_spacing"))));
