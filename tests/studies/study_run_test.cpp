@@ -17,6 +17,7 @@
 #include <sys/wait.h>
 
 #include "kluft/core/diagnostics.hpp"
+#include "kluft/output/atomic_file.hpp"
 #include "kluft/output/directory_lock.hpp"
 #include "kluft/studies/ready_made_studies.hpp"
 #include "kluft/studies/study_emit.hpp"
