@@ -94,4 +94,6 @@ void form_sets(const GeometrySpec& spec, BlockSystem& system) {
     }
 }
 
+double sliver_area(const BlockSystem& system) { return 1e-5 * area_of(system) / system.n_blocks(); }
+
 } // namespace kluft

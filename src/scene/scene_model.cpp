@@ -223,21 +223,19 @@ std::vector<std::string> small_reference(const GeometrySpec& geometry, const Blo
 
 /// Traces that nearly meet in one point cut slivers, unless a spacing says what is too small for a block.
 std::vector<std::string> slivers(const GeometrySpec& geometry, const BlockSystem& system) {
-    constexpr double least_share = 1e-5; // of the mean block
     if (geometry.tessellation || geometry.reference_spacing > 0.0 || system.outline_type >= 0) return {};
-    const double mean = area_of(system) / system.n_blocks();
+    const double least = sliver_area(system);
+    const auto n = std::ranges::count_if(system.blocks, [&](const Block& each) { return each.area < least; });
+    if (n == 0) return {};
     const auto smallest = std::ranges::min_element(system.blocks, {}, &Block::area);
-    if (smallest == system.blocks.end() || smallest->area >= least_share * mean) return {};
     const int b = static_cast<int>(smallest - system.blocks.begin());
-    const auto n =
-        std::ranges::count_if(system.blocks, [&](const Block& each) { return each.area < least_share * mean; });
     return {fmt::format(
         "geometry: block {} at {} is a sliver of {:.3g} m2{}, where the mean block has {:.3g} m2: such pieces between "
         "traces that nearly meet in one point may decide what a run finds; geometry.reference_spacing merges what is "
         "small "
         "beside it with a neighbour",
         block_label(system, b), place_text(system.origin + smallest->centroid), smallest->area,
-        n > 1 ? fmt::format(", one of {}", n) : "", mean)};
+        n > 1 ? fmt::format(", one of {}", n) : "", area_of(system) / system.n_blocks())};
 }
 
 /// The blocks of the scene's body.

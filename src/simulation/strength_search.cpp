@@ -191,19 +191,13 @@ bool is_without_motion(const Failure& failure) {
     return failure.kind == FailureKind::no_equilibrium && failure.moving.empty();
 }
 
-/// A block that is tiny beside the body.
-bool is_sliver(const BlockSystem& system, int block) {
-    constexpr double tiny = 1e-5; // of the mean block
-    return block >= 0 && system.blocks[block].area < tiny * area_of(system) / system.n_blocks();
-}
-
 void warn_of_failed_search(const StepBench& bench, double found, const Failure& failure) {
     const BlockSystem& system = bench.model.system;
     std::string warning = fmt::format(
         "with the strengths divided by {:.6g} no equilibrium was found, and no block was seen to move away either: the "
         "search failed there, and the factor of safety may be above {:.6g}",
         failure.strength_factor, found);
-    if (is_sliver(system, failure.worst_block))
+    if (failure.worst_block >= 0 && system.blocks[failure.worst_block].area < sliver_area(system))
         warning += fmt::format(". It failed at block {}, a sliver, which `geometry.reference_spacing` leaves out",
                                block_label(system, failure.worst_block));
     bench.journal.report().warnings.push_back(std::move(warning));

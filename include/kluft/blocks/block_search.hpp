@@ -30,4 +30,7 @@ namespace kluft {
 /// Throws InputError for a set without a block.
 void form_sets(const GeometrySpec& spec, BlockSystem& system);
 
+/// A hundred-thousandth of the mean block (m2): a smaller one is a sliver, a piece between traces that nearly meet in one point.
+[[nodiscard]] double sliver_area(const BlockSystem& system);
+
 } // namespace kluft

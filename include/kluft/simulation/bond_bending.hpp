@@ -11,7 +11,7 @@
 namespace kluft {
 
 /// Follows a run and remembers the bond of given blocks, or of a trace between blocks larger than the cells of a net, one of
-/// whose ends was pulled most over its tensile strength. Criteria judge mean stresses or tractions (docs/theory.md, section 6), in a
+/// whose ends was pulled most of those that were pulled by more than twice their tensile strength. Criteria judge mean stresses or tractions (docs/theory.md, section 6), in a
 /// net those of the several bonds that a crack would have to cut. Costs nothing where there is none. `model` must outlive it.
 class BendingWatch {
 public:
@@ -20,7 +20,7 @@ public:
     /// A committed load step.
     void step(const StepRecord& record, const State& state);
 
-    /// What is to be said where that was more than twice the tensile strength; "" where it was not.
+    /// What is to be said of it; "" where there is none.
     [[nodiscard]] std::string warning() const;
 
 private:
