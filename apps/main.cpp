@@ -297,14 +297,16 @@ void add_envelope_command(CLI::App& app, Command& command) {
         ->take_all()
         ->allow_extra_args(false);
     sub->add_option("--title", arguments->title, "Title of the picture")->capture_default_str();
-    sub->footer("Runs that had neither fallen nor levelled off, ended unbalanced or whose net locked are bounds: they "
-                "are drawn and listed, but not fitted.\nRuns that pull, and rows of tables with sigma_3 below zero, "
-                "give the tensile strength.\n"
-                "Other columns of tables: run, peak_reached, balanced, net_locked (0 or 1).\n"
-                "Examples:\n"
-                "  kluft envelope results/case-5-all results/case-3-all results/case-4-all results/case-6-all\n"
-                "  kluft envelope field-tests.csv results/case-3-all --tension '0.1 MPa' --tension '0.12 MPa'\n"
-                "  kluft envelope results/low results/high -o both.png --compare 'field tests=0.16 MPa, 36.2 deg'");
+    sub->footer(
+        "Runs that had neither fallen nor levelled off, whose sides were unloaded before the stress fell, that "
+        "move no platen, ended unbalanced or whose net locked are bounds: they are drawn and listed, but not "
+        "fitted.\nRuns that pull, and rows of tables with sigma_3 below zero, "
+        "give the tensile strength.\n"
+        "Other columns of tables: run, and peak_reached, balanced, net_locked, unloaded, moves_platen (0 or 1).\n"
+        "Examples:\n"
+        "  kluft envelope results/case-5-all results/case-3-all results/case-4-all results/case-6-all\n"
+        "  kluft envelope field-tests.csv results/case-3-all --tension '0.1 MPa' --tension '0.12 MPa'\n"
+        "  kluft envelope results/low results/high -o both.png --compare 'field tests=0.16 MPa, 36.2 deg'");
     sub->callback([arguments, &command] { command = [arguments] { return kluft::envelope(*arguments); }; });
 }
 

@@ -196,11 +196,12 @@ bool is_envelope_json(std::string_view text) {
 }
 
 std::string envelope_csv(const std::vector<PeakPoint>& points, const StrengthFit& fit) {
-    std::string text = fmt::format("{},peak_reached,balanced,net_locked,use\n", own_columns);
+    std::string text = fmt::format("{},peak_reached,balanced,net_locked,unloaded,moves_platen,use\n", own_columns);
     for (const PeakPoint& point : points)
-        text += fmt::format("{},{:.17g},{:.17g},{:.17g},{:d},{:d},{:d},{}\n", quoted_cell(point.run), point.sigma_3,
-                            point.sigma_1, fit.envelope.sigma_1(point.sigma_3), point.peak_reached, point.balanced,
-                            point.net_locked, use_name(use_of(point)));
+        text +=
+            fmt::format("{},{:.17g},{:.17g},{:.17g},{:d},{:d},{:d},{:d},{:d},{}\n", quoted_cell(point.run),
+                        point.sigma_3, point.sigma_1, fit.envelope.sigma_1(point.sigma_3), point.peak_reached,
+                        point.balanced, point.net_locked, point.unloaded, point.moves_platen, use_name(use_of(point)));
     return text;
 }
 

@@ -79,7 +79,8 @@ std::vector<Cell> cells_of_line(std::string_view line) {
     return cells;
 }
 
-const std::vector<std::string> column_names{"sigma_3", "sigma_1", "run", "peak_reached", "balanced", "net_locked"};
+const std::vector<std::string> column_names{"sigma_3",  "sigma_1",    "run",      "peak_reached",
+                                            "balanced", "net_locked", "unloaded", "moves_platen"};
 enum Column : std::size_t {
     sigma_3_column,
     sigma_1_column,
@@ -87,6 +88,8 @@ enum Column : std::size_t {
     peak_reached_column,
     balanced_column,
     net_locked_column,
+    unloaded_column,
+    moves_platen_column,
     n_known
 };
 
@@ -94,7 +97,7 @@ enum Column : std::size_t {
 struct TableLayout {
     std::size_t n_columns = 0;
     std::array<std::optional<std::size_t>, n_known> index;
-    std::array<double, n_known> factor{1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
+    std::array<double, n_known> factor{1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
 };
 
 /// The messages of a file so far, each with its place.
@@ -220,6 +223,8 @@ PeakPoint read_row(const std::vector<Cell>& cells, std::size_t line, const Table
     point.peak_reached = read_flag(cells, line, peak_reached_column, layout, true, flaws);
     point.balanced = read_flag(cells, line, balanced_column, layout, true, flaws);
     point.net_locked = read_flag(cells, line, net_locked_column, layout, false, flaws);
+    point.unloaded = read_flag(cells, line, unloaded_column, layout, false, flaws);
+    point.moves_platen = read_flag(cells, line, moves_platen_column, layout, true, flaws);
     return point;
 }
 

@@ -157,11 +157,11 @@ TEST(EnvelopeText, WarnsOfStressesThatSeemToBeWithoutUnits) {
 TEST(EnvelopeTable, HasAColumnForEachThingThatIsKnownOfATest) {
     const auto points = many_points();
     const std::string text = envelope_csv(points, fit_strength(points));
-    EXPECT_THAT(
-        text, ::testing::StartsWith("run,sigma_3,sigma_1,fitted_sigma_1,peak_reached,balanced,net_locked,use\nc0,0,"));
-    EXPECT_THAT(text, ContainsRegex("\nrising,[^\n]*,0,1,0,bound\n"));
-    EXPECT_THAT(text, ContainsRegex("\nlocked,[^\n]*,1,1,1,bound\n"));
-    EXPECT_THAT(text, ContainsRegex("\nt1,[^\n]*,1,1,0,tension\n"));
+    EXPECT_THAT(text, ::testing::StartsWith("run,sigma_3,sigma_1,fitted_sigma_1,"
+                                            "peak_reached,balanced,net_locked,unloaded,moves_platen,use\nc0,0,"));
+    EXPECT_THAT(text, ContainsRegex("\nrising,[^\n]*,0,1,0,0,1,bound\n"));
+    EXPECT_THAT(text, ContainsRegex("\nlocked,[^\n]*,1,1,1,0,1,bound\n"));
+    EXPECT_THAT(text, ContainsRegex("\nt1,[^\n]*,1,1,0,0,1,tension\n"));
 }
 
 TEST(EnvelopeDocument, HoldsEveryNumberAndNullForWhatIsNotKnown) {

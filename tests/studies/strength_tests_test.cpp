@@ -1,5 +1,8 @@
 #include "kluft/studies/strength_tests.hpp"
 
+#include <numbers>
+#include <optional>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,6 +12,7 @@
 #include "kluft/output/history_table.hpp"
 #include "kluft/output/summary.hpp"
 #include "output/temporary_directory.hpp"
+#include "support/units.hpp"
 
 namespace kluft {
 namespace {
@@ -69,6 +73,8 @@ TEST_F(StrengthTable, IsAlsoTheOneThatAnEnvelopeWrites) {
                                         {"d", 0.5e6, 4e6, false},
                                         {"e", 0.5e6, 4e6, true, false},
                                         {"f", 0.5e6, 4e6, true, true, true},
+                                        {.run = "sides", .sigma_3 = 2e6, .sigma_1 = 6e6, .unloaded = true},
+                                        {.run = "slope", .sigma_1 = 4e6, .moves_platen = false},
                                         {"g", -0.1e6, 0.0}};
     const auto again = read(envelope_csv(points, fit_strength(points)));
     ASSERT_EQ(again.size(), points.size());
@@ -78,11 +84,11 @@ TEST_F(StrengthTable, IsAlsoTheOneThatAnEnvelopeWrites) {
         EXPECT_EQ(again[i].sigma_1, points[i].sigma_1);
         EXPECT_EQ(again[i].peak_reached, points[i].peak_reached);
         EXPECT_EQ(again[i].balanced, points[i].balanced);
-        EXPECT_EQ(again[i].net_locked, points[i].net_locked);
+        EXPECT_EQ(bound_reason(again[i]), bound_reason(points[i]));
     }
 }
 
-// The table as it was before it had the columns balanced, net_locked and use.
+// The table as it was before it had further columns than peak_reached.
 TEST_F(StrengthTable, IsAlsoTheOneOfEarlierVersions) {
     const auto points =
         read("run,sigma_3,sigma_1,fitted_sigma_1,peak_reached\nc0,0,500000,510000,1\nc1,1e6,5e6,5e6,0\n");
@@ -138,6 +144,7 @@ protected:
         rows[0].axial_stress = lateral_;
         rows[1].axial_stress = peak;
         rows[2].axial_stress = last;
+        rows[2].lateral_stress = lateral_at_end_.value_or(lateral_);
         std::string table = history_header() + '\n';
         for (const StepRecord& row : rows) table += table_row(row) + '\n';
         write_file(directory_ / "history.csv", table);
@@ -154,6 +161,7 @@ protected:
         write_file(directory_ / "summary.json", text);
     }
     double lateral_ = 0.2e6;
+    std::optional<double> lateral_at_end_; ///< where the sides are unloaded
     TemporaryDirectory directory_;
 };
 
@@ -163,6 +171,25 @@ TEST_F(PeakOfRun, OfACompressionTestIsTheLargestAxialStress) {
     EXPECT_EQ(point.sigma_1, 1.4e6);
     EXPECT_EQ(point.sigma_3, 0.2e6);
     EXPECT_EQ(use_of(point), PeakUse::strength);
+}
+
+// A joint of 1 MPa and 30 degrees fails at sigma_1 = 2 c cos(phi)/(1 - sin(phi)) + 3 sigma_3 = 2 sqrt(3) MPa + 3 sigma_3. The third
+// test stands at 20 MPa under 8 MPa until its sides have 1 MPa.
+TEST_F(PeakOfRun, AndItsRowInATableGiveTheSameEnvelope) {
+    std::vector<PeakPoint> points;
+    for (const double sigma_3 : {2e6, 8e6}) {
+        lateral_ = sigma_3;
+        write_run(1.0, 2e6 * std::numbers::sqrt3 + 3.0 * sigma_3, sigma_3, RunStatus::done);
+        points.push_back(read_peak(directory_.path(), "strength"));
+    }
+    lateral_at_end_ = 1e6;
+    write_run(1.0, 20e6, 19.9e6, RunStatus::done);
+    points.push_back(read_peak(directory_.path(), "unloaded"));
+    ASSERT_EQ(bound_reason(points.back()), "sides unloaded");
+    write_file(directory_ / "tests.csv", envelope_csv(points, fit_strength(points)));
+    const Envelope again = fit_strength(read_strength_table(directory_ / "tests.csv")).envelope;
+    EXPECT_NEAR(again.cohesion, 1e6, 1.0);
+    EXPECT_NEAR(again.friction_angle, 30.0 * degree, 1e-6);
 }
 
 TEST_F(PeakOfRun, OfARunWithoutAPlatenIsNone) {

@@ -19,8 +19,8 @@ namespace kluft {
 [[nodiscard]] PeakPoint peak_point(const std::string& run, const std::vector<StepRecord>& equilibria,
                                    std::optional<int> platen_stage = std::nullopt);
 
-/// Columns `run,sigma_3,sigma_1,fitted_sigma_1,peak_reached,balanced,net_locked,use` (Pa), one row per test; `use` is
-/// strength, tension or bound. Names with commas or quotes are quoted (RFC 4180).
+/// Columns `run,sigma_3,sigma_1,fitted_sigma_1,peak_reached,balanced,net_locked,unloaded,moves_platen,use` (Pa), one row per
+/// test; `use` is strength, tension or bound. Names with commas or quotes are quoted (RFC 4180). read_strength_table reads it.
 [[nodiscard]] std::string envelope_csv(const std::vector<PeakPoint>& points, const StrengthFit& fit);
 /// Whether a text is such a table, and whether one is what envelope_json writes.
 [[nodiscard]] bool is_envelope_csv(std::string_view text);

@@ -18,7 +18,8 @@ namespace kluft {
 ///   sigma_3, sigma_1                   principal stresses at failure, positive in compression, in Pa or in the unit of
 ///                                      the name: `sigma_1 (MPa)`; a tension test has sigma_1 = 0, sigma_3 = -sigma_t
 ///   run                                name; else that of the file with the number of the row
-///   peak_reached, balanced, net_locked 0 or 1 (false, true); what is missing or empty is that of a strength
+///   peak_reached, balanced, net_locked, unloaded, moves_platen
+///                                      0 or 1 (false, true); what is missing or empty is that of a strength
 /// Other columns do not matter, unless one looks like a missing one of these. The table that envelope_csv writes is one.
 /// Throws InputError with every flaw by file, line and column: a missing column, a cell that is no such value, sigma_1
 /// below sigma_3, a stress beyond 1e15 Pa, no row.
