@@ -11,8 +11,9 @@
 namespace kluft {
 
 /// Follows a run and remembers the bond of given blocks, or of a trace between blocks larger than the cells of a net, one of
-/// whose ends was pulled most of those that were pulled by more than twice their tensile strength. Criteria judge mean stresses or tractions (docs/theory.md, section 6), in a
-/// net those of the several bonds that a crack would have to cut. Costs nothing where there is none. `model` must outlive it.
+/// whose ends was pulled by most of its tensile strength, more than twice that; of bonds without one the most pulled. Criteria
+/// judge mean stresses or tractions (docs/theory.md, section 6), in a net those of the several bonds that a crack would have to
+/// cut. Costs nothing where there is none. `model` must outlive it.
 class BendingWatch {
 public:
     explicit BendingWatch(const Model& model);
@@ -28,7 +29,7 @@ private:
         int interface = -1;
         int step = 0;
         double tension = 0.0; ///< at the end (Pa)
-        double load = 0.0;    ///< over the tensile strength
+        double load = 0.0;    ///< over the tensile strength; infinite without one
     };
 
     const Model& model_;
