@@ -124,7 +124,7 @@ private:
             stage.motion = PlatenMotion{static_cast<PlatenControl>(i), *boundary, platen.number("value"),
                                         platen.boolean("glued"), context_.place(platen, "boundary")};
             check_platen(platen, *name, stage);
-            if (stage.motion->value < 0.0 && !stage.motion->glued && !was_pressed(*boundary))
+            if (stage.motion->value < 0.0 && !stage.motion->glued && !is_pressed(*boundary))
                 context_.warn(
                     platen, "value",
                     "the platen leaves the body, which it holds in tension only if it is glued (glued: true)");
@@ -148,14 +148,16 @@ private:
                         boundaries_[static_cast<std::size_t>(stage.motion->boundary)]));
     }
 
-    /// In an earlier stage: a platen may go back from where it has pressed.
-    /// By a platen or a pressure of an earlier stage.
-    [[nodiscard]] bool was_pressed(int boundary) const {
-        return std::ranges::any_of(loads_.stages, [&](const Stage& stage) {
+    /// At the end of the stages so far: by the pressure that acts there, or by a platen, which may go back from where it has
+    /// pressed.
+    [[nodiscard]] bool is_pressed(int boundary) const {
+        bool pressed = false;
+        for (const Stage& stage : loads_.stages) {
             const auto pressure = stage.pressure.find(boundary);
-            const bool by_pressure = pressure != stage.pressure.end() && pressure->second > 0.0;
-            return by_pressure || (stage.motion && stage.motion->boundary == boundary);
-        });
+            if (pressure != stage.pressure.end()) pressed = pressure->second > 0.0;
+            if (stage.motion && stage.motion->boundary == boundary) pressed = true;
+        }
+        return pressed;
     }
 
     /// tan of the friction angle.

@@ -108,11 +108,17 @@ TEST(ImplausibleValues, SymmetricTangentIsToldOfWhereStrengthsAreReduced) {
     EXPECT_THAT(warnings_of_block_with({"solver.tangent=symmetric"}), IsEmpty());
 }
 
-// A platen that goes out at once holds nothing, unless something has pressed its boundary before: triaxial extension.
-TEST(PlatenThatGoesOut, IsWarnedOfWhereNothingWasPressedBefore) {
+// A platen that goes out at once holds nothing, unless something presses its boundary until then: triaxial extension.
+TEST(PlatenThatGoesOut, IsWarnedOfWhereNothingPressesItsBoundary) {
     EXPECT_THAT(warnings_of_block_with({"stages.1.strain.value=-0.1 %"}),
                 ElementsAre(HasSubstr("the platen leaves the body")));
     EXPECT_THAT(warnings_of_block_with({"stages.1.strain.value=-0.1 %", "stages.0.pressure.top=1 MPa"}), IsEmpty());
+    EXPECT_THAT(warnings_of_block_with({"stages=[{pressure: {top: 1 MPa}}, {pressure: {top: 0}}, "
+                                        "{strain: {boundary: top, value: -0.1 %}}]"}),
+                ElementsAre(HasSubstr("the platen leaves the body")));
+    EXPECT_THAT(warnings_of_block_with({"stages=[{pressure: {top: 0}}, {pressure: {top: 1 MPa}}, "
+                                        "{strain: {boundary: top, value: -0.1 %}}]"}),
+                IsEmpty());
 }
 
 } // namespace
