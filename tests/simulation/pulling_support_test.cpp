@@ -2,6 +2,7 @@
 #include "kluft/simulation/pulling_support.hpp"
 
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -17,7 +18,8 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 /// A block on a plane that rises to the right at 20 degrees, between the sides of its body.
-SceneRun block_on_plane(double friction_angle, const std::string& boundaries) {
+SceneRun block_on_plane(double friction_angle, const std::string& boundaries,
+                        const std::vector<std::string>& overrides = {}) {
     return run_scene(fmt::format(R"(kluft: 1
 analysis: {{gravity: 10}}
 materials: {{rock: {{density: 2600, youngs_modulus: 20 GPa, poissons_ratio: 0.25}}}}
@@ -29,7 +31,8 @@ geometry:
 boundaries: {{bottom: {{support: fixed}}, {}}}
 stages: [{{steps: 2}}]
 )",
-                                 friction_angle, boundaries));
+                                 friction_angle, boundaries),
+                     overrides);
 }
 
 // Without friction the support alone holds the block: P = W tan 20.
@@ -42,6 +45,32 @@ TEST(PullingSupport, OfABlockThatWouldSlideIsNamedWithItsForce) {
     EXPECT_NEAR(found.force, weight * (8.003 - 3.636) / 12.0, 1e-3 * found.force);
     EXPECT_THAT(pulling_support_warning(run.model, run.state),
                 AllOf(HasSubstr("'right' pulls block 1"), HasSubstr("in tension")));
+}
+
+// 300 m of rock below it weigh 70 times as much as the block, of 42 m2.
+TEST(PullingSupport, IsToldWhateverLiesBelowTheJoint) {
+    const SceneRun run = block_on_plane(
+        0.0, "right: {support: smooth}",
+        {"geometry.domain.rectangle.height=310", "geometry.fractures.0.trace=[[-1, 303.636], [11, 308.003]]"});
+    ASSERT_TRUE(stands(run)) << run.report.diagnosis;
+    EXPECT_THAT(pulling_support_warning(run.model, run.state), HasSubstr("'right' pulls block 1"));
+}
+
+TEST(PullingSupport, MayBeAFixedOneOfABlockOnAJoint) {
+    const SceneRun run = block_on_plane(0.0, "right: {support: fixed}");
+    ASSERT_TRUE(stands(run)) << run.report.diagnosis;
+    EXPECT_THAT(pulling_support_warning(run.model, run.state), HasSubstr("'right' pulls block 1"));
+}
+
+// A joint that is soft in shear leaves to the support what its friction could hold as well: tan 45 is more than twice tan 20.
+TEST(PullingSupport, IsNoneWhereFrictionCouldHoldTheBlock) {
+    const std::vector<std::string> soft{"interfaces.joint.shear_stiffness=1e8"};
+    const SceneRun rough = block_on_plane(45.0, "right: {support: smooth}", soft);
+    ASSERT_TRUE(stands(rough)) << rough.report.diagnosis;
+    EXPECT_THAT(pulling_support_warning(rough.model, rough.state), IsEmpty());
+    const SceneRun slippery = block_on_plane(10.0, "right: {support: smooth}", soft);
+    ASSERT_TRUE(stands(slippery)) << slippery.report.diagnosis;
+    EXPECT_THAT(pulling_support_warning(slippery.model, slippery.state), HasSubstr("'right' pulls block 1"));
 }
 
 TEST(PullingSupport, IsNoneOfOneThatPresses) {

@@ -9,18 +9,21 @@
 
 namespace kluft {
 
-/// A boundary with a smooth or pinned support that pulls a block outward.
+/// A boundary whose support pulls a piece of the body, a block and those that bonds hold to it, outward.
 struct PullingSupport {
-    int boundary = -1;
-    int block = -1;
-    double force = 0.0; ///< normal to the boundary, of all held vertices of the block (N/m); 0: none pulls
-    double share = 0.0; ///< of the sum of the magnitudes of all weights, pressures and forces on the body
+    int boundary = -1;  ///< -1: none pulls
+    int block = -1;     ///< of the piece the one that is pulled most
+    int n_blocks = 0;   ///< of the piece
+    double force = 0.0; ///< normal to the sides of the piece on the boundary, of all its held vertices (N/m)
 };
 
-/// The largest pull of a committed state. None where a platen moves in any stage: a test may pull its specimen.
+/// The largest pull of a committed state that the joints around the piece could not take over: it is more than what their
+/// points in contact still lack of Coulomb's limit, by a twentieth of the loads or the contact forces on the piece. None on a
+/// piece without a joint, or that is fixed elsewhere, too, and none where a platen moves in any stage: a test may pull its
+/// specimen.
 [[nodiscard]] PullingSupport strongest_pulling_support(const Model& model, const State& state);
 
-/// What is to be said of one that pulls with more than a hundredth of the loads; "" where there is none.
+/// What is to be said of one; "" where there is none.
 [[nodiscard]] std::string pulling_support_warning(const Model& model, const State& state);
 
 } // namespace kluft
