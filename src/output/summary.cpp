@@ -427,6 +427,7 @@ CurveNumbers curve_numbers(const std::vector<StepRecord>& equilibria, const std:
             platen_stage && !numbers.net_locked && falls_after_peak(all, *peak, platen_sense(all, platen_stage));
         numbers.levelled_off = platen_stage && !numbers.net_locked && !numbers.peak_reached &&
                                levels_off(platen_rows(all, *platen_stage), platen_sense(all, platen_stage));
+        numbers.sides_unloaded = is_strength(numbers) && is_unloaded_before_fall(all, *peak, platen_stage);
     }
     if (numbers.peak_reached) numbers.residual_stress = residual_stress(history, platen_stage, *numbers.peak_strain);
     if (platen_stage) add_elastic_constants(all, history, *platen_stage, plane, numbers);
@@ -445,6 +446,7 @@ bool is_strength(const CurveNumbers& numbers) { return numbers.peak_reached || n
 
 std::string peak_remark(const CurveNumbers& numbers) {
     if (numbers.net_locked) return "net locked";
+    if (numbers.sides_unloaded) return "sides unloaded";
     if (numbers.levelled_off) return "levelled off";
     return numbers.peak_reached ? "" : "not yet falling";
 }

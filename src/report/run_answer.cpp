@@ -70,6 +70,13 @@ RunAnswer strength(const RunFacts& facts) {
             fmt::format("The largest axial stress before nearly all bonds of the net had failed, {}.", place);
         return answer;
     }
+    if (numbers.sides_unloaded) {
+        answer.value = "at least " + value;
+        answer.sentence = fmt::format("The largest axial stress of all balanced states, {}; the sides were unloaded "
+                                      "before it fell, so that the body failed under another lateral stress.",
+                                      place);
+        return answer;
+    }
     if (numbers.peak_reached) {
         answer.sentence =
             fmt::format("The largest axial stress of all balanced states, {}; it falls behind it.", place);

@@ -35,6 +35,7 @@ namespace {
 std::string peak_in_words(const CurveNumbers& numbers, RunStatus status) {
     if (numbers.net_locked)
         return " before the net locked (its loose cells carry more without a bond: no strength of the rock)";
+    if (numbers.sides_unloaded) return ", from which it fell after the sides were unloaded";
     if (numbers.peak_reached) return "";
     return status == RunStatus::collapsed ? ", above which nothing stands" : fmt::format(" ({})", peak_remark(numbers));
 }

@@ -300,6 +300,18 @@ TEST(Summary, AStressThatLevelsOffIsAStrength) {
     EXPECT_FALSE(has_levelled_off({held.begin() + 1, held.end()})); // as in equilibria.csv
 }
 
+// Pressed to 20 MPa under 5 MPa and held there while its sides go down to 3.3 MPa, where it breaks.
+TEST(Summary, SaysThatTheSidesWereUnloadedBeforeTheStressFell) {
+    Rows rows{row(0, 0, 0, 0, 0, 5e6), row(1, 1, 1e-3, 15e6, 0, 5e6), row(2, 1, 1e-3, 15.999e6, 0, 4e6),
+              row(3, 1, 1e-3, 16.698e6, 0, 3.3e6), row(4, 1, 1.1e-3, 6.8e6, 0, 3.2e6)};
+    const auto unloaded = curve_numbers(rows, rows, 1, Plane::strain);
+    EXPECT_TRUE(unloaded.peak_reached && unloaded.sides_unloaded);
+    EXPECT_EQ(peak_remark(unloaded), "sides unloaded");
+    rows.pop_back(); // not broken yet
+    EXPECT_EQ(peak_remark(curve_numbers(rows, rows, 1, Plane::strain)), "not yet falling");
+    EXPECT_FALSE(curve_numbers(triangle(100e6, 0.3), triangle(100e6, 0.3), 1, Plane::strain).sides_unloaded);
+}
+
 TEST(Summary, HasNotLevelledOffOutOfBalanceOrWhereLoadsTurn) {
     const auto with = [](auto change) {
         Rows rows = yielding(0.0, 0.2e6);

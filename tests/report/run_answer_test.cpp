@@ -81,6 +81,15 @@ TEST(RunAnswer, OfACurveThatHasLevelledOffIsAStrength) {
     EXPECT_THAT(answer.warnings, Not(Contains(StartsWith("No peak yet"))));
 }
 
+TEST(RunAnswer, OfATestWhoseSidesWereUnloadedIsABound) {
+    RunFacts facts = pressed();
+    facts.numbers.sides_unloaded = true;
+    const RunAnswer answer = run_answer(facts);
+    EXPECT_EQ(answer.value, "at least 16 MPa");
+    EXPECT_FALSE(answer.firm);
+    EXPECT_THAT(answer.sentence, HasSubstr("under another lateral stress"));
+}
+
 TEST(RunAnswer, OfALockedNetIsNoStrengthOfTheRock) {
     RunFacts facts = pressed();
     facts.numbers.peak_reached = false;

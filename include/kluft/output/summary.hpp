@@ -24,6 +24,7 @@ struct CurveNumbers {
     /// No peak is reached, and the differential stress has changed by 1 % or less over the last third of the platen's way, all of it in
     /// balance, at one lateral stress: what slides without end, as a joint of Coulomb friction does.
     bool levelled_off = false;
+    bool sides_unloaded = false; ///< see is_unloaded_before_fall; of the rows, not kept in summary.json
     /// Mean axial stress over the last 10 % of the strain (Pa); none where the peak lies in the last 20 %. A run that a drop
     /// of the stress ended has none either, which its rows do not tell.
     std::optional<double> residual_stress;
@@ -57,8 +58,9 @@ struct CurveNumbers {
 /// balanced row. Where the net is locked, only of the rows up to the first one with so many bonds failed.
 [[nodiscard]] std::optional<StepRecord> peak_row(const std::vector<StepRecord>& rows, std::optional<int> platen_stage);
 
-/// Whether the sides were pressed less, by more than 2 % of the peak's lateral stress and 0.1 % of its axial one, before the stress fell from the peak: the body
-/// then failed under another lateral stress than that at its peak.
+/// Whether the sides were pressed less, by more than 2 % of the peak's lateral stress and 0.1 % of its axial one, before the
+/// stress fell by 1 % from the peak: the body then failed under another lateral stress than that at its peak. What the lateral
+/// stress has lost is no fall of the axial one, as of an elastic body whose sides are relieved.
 [[nodiscard]] bool is_unloaded_before_fall(const std::vector<StepRecord>& rows, const StepRecord& peak,
                                            std::optional<int> platen_stage);
 
@@ -81,7 +83,8 @@ void clear_round_off(double modulus, CurveNumbers& numbers);
 /// Whether the largest axial stress is a strength: it falls behind it, or has levelled off.
 [[nodiscard]] bool is_strength(const CurveNumbers& numbers);
 
-/// What is to be said beside a peak that is not reached: "levelled off", "not yet falling" or "net locked"; "" beside one that is.
+/// What is to be said beside a peak: "net locked", "sides unloaded", "levelled off" or "not yet falling"; "" beside one behind which
+/// the stress fell under the same lateral stress.
 [[nodiscard]] std::string peak_remark(const CurveNumbers& numbers);
 
 /// The name of a status in summary.json.
