@@ -31,6 +31,16 @@ inline void load(const double* from, Wide& to) { std::memcpy(&to, from, sizeof t
 
 inline void store(const Wide& from, double* to) { std::memcpy(to, &from, sizeof from); }
 
+constexpr int ahead = 256; ///< numbers (measured: 64 to 1 024 are alike)
+
+/// Asks the memory for as many numbers as eight rows of four columns have, before they are needed: a factor is larger than
+/// the caches, and a processor by itself follows its short columns too late (measured: 19 MB take twice the time).
+inline void ask_for(const float* numbers) {
+    constexpr int line = 16;
+    __builtin_prefetch(numbers);
+    __builtin_prefetch(numbers + line);
+}
+
 inline double sum(const Wide& v) { return ((v[0] + v[1]) + (v[2] + v[3])) + ((v[4] + v[5]) + (v[6] + v[7])); }
 
 } // namespace
@@ -69,7 +79,9 @@ KLUFT_WIDE_REGISTERS void eliminate_forward(int n_columns, int n_rows, const flo
         x[j + 1] = xb;
         x[j + 2] = xc;
         x[j + 3] = xd;
+        const float* const next = d + n_rows + ahead;
         for (int i = j + 4; i < n_rows; i += width) {
+            ask_for(next + 4 * (i - j - 4));
             load(a + i, la);
             load(b + i, lb);
             load(c + i, lc);
@@ -110,8 +122,10 @@ KLUFT_WIDE_REGISTERS void substitute_back(int n_columns, int n_rows, const float
         const float* const b = a + n_rows;
         const float* const c = b + n_rows;
         const float* const d = c + n_rows;
+        const float* const next = a - 4 * static_cast<std::ptrdiff_t>(n_rows) - ahead;
         Wide sum_a{}, sum_b{}, sum_c{}, sum_d{};
         for (int i = end; i < n_rows; i += width) {
+            ask_for(next + 4 * (i - end));
             load(a + i, la);
             load(b + i, lb);
             load(c + i, lc);
