@@ -30,9 +30,9 @@ constexpr double least_penetration = 1e-9;
 constexpr double straight = 1e-4;
 /// Faces of two blocks that meet in a vertex go on in one another if they turn by less (rad), as motions of blocks turn them.
 constexpr double flush = 0.02;
-/// What rises from where a tip's plane comes out by a smaller angle than of this cosine, 60 degrees, is the ground before it, and holds
-/// no tip: that breaks off, or rides over.
-constexpr double flattest_riser = 0.5;
+/// A tip whose plane comes out within this part of the smaller block beside the foot of what rises before it stands at that foot: a map
+/// has no more digits.
+constexpr double at_the_foot = 2e-3;
 /// A corner is round over this part of the shorter edge: where two corners meet, the direction in which they touch is between the faces'.
 constexpr double corner_rounding = 1e-3;
 /// Two points of a fracture that were nearer than this part of its edge were one point; what is between is round-off.
@@ -174,7 +174,12 @@ public:
         shallow_ = -least_penetration * smaller;
         overlapping_.clear();
         for (const auto& edge_a : edges_a) {
-            for (const auto& edge_b : edges_b) append_overlap(a, edge_a, b, edge_b);
+            for (const auto& edge_b : edges_b) {
+                if (slides_onto_ground(a, edge_a, edges_a, b, edge_b) ||
+                    slides_onto_ground(b, edge_b, edges_b, a, edge_a))
+                    continue;
+                append_overlap(a, edge_a, b, edge_b);
+            }
         }
         if (bonded_pair_) return;
         append_vertices(a, edges_a, b, edges_b, false);
@@ -471,12 +476,48 @@ private:
         if (go_on_straight(at_end ? arriving : leaving.direction, edge.direction) ||
             go_on_straight(at_end ? leaving.direction : arriving, other_side))
             return false;
-        const Vec2 along_floor = at_end ? arriving : -leaving.direction;
-        const Vec2 up_riser = at_end ? edge.start - edge.end : edge.end - edge.start;
-        if (along_floor.dot(up_riser) > flattest_riser * along_floor.norm() * up_riser.norm()) return false;
+        if (leans_away(leaving, edge, at_end)) return false;
         return is_notch(of_target) || std::ranges::any_of(system_.blocks[target].edges, [&](const Edge& other) {
                    return other.interface >= 0 && (at_end ? other.start : other.end) == vertex;
                });
+    }
+
+    /// Whether a tip at an end of a face leans away from it, as a sharp wedge does whose plane comes out where the ground before a slope
+    /// begins: what presses on it from there would bend it off, or have it ride over. A tip whose bisector leans over the face, as
+    /// the toe of a dam does over a riser, is pressed into its block.
+    [[nodiscard]] static bool leans_away(const CurrentEdge& leaving, const CurrentEdge& face, bool at_end) {
+        const Vec2 bisector = leaving.direction - (leaving.start - leaving.before).normalized();
+        const Vec2 from_tip = at_end ? -face.direction : face.direction;
+        return bisector.dot(from_tip) < -straight * bisector.norm();
+    }
+
+    /// Whether a tip as cut stood so near beside an end of the target's edge, a void between the two, that it is held there no
+    /// better than at that end: its other face lies on a block, the edge rises before that face, and it leans away from the edge.
+    [[nodiscard]] bool is_ground_before(int owner, const CurrentEdge& leaving, int target,
+                                        const CurrentEdge& edge) const {
+        const Edge& side = reference(target, edge.edge);
+        const Vec2 tip = edge_start(system_, reference(owner, leaving.edge));
+        const double from_start = (tip - edge_start(system_, side)).norm();
+        const double from_end = (tip - edge_end(system_, side)).norm();
+        const bool at_end = from_end < from_start;
+        const double smaller = std::min(system_.blocks[owner].size, system_.blocks[target].size);
+        if (std::min(from_start, from_end) > at_the_foot * smaller) return false;
+        const Edge& before_void = reference(owner, at_end ? leaving.edge : leaving.arriving);
+        const Edge& on_face = reference(owner, at_end ? leaving.arriving : leaving.edge);
+        if (!are_outlines(side, before_void) || on_face.interface < 0) return false;
+        const Vec2 along_face = at_end ? leaving.start - leaving.before : leaving.direction;
+        const Vec2 from_tip = at_end ? -edge.direction : edge.direction;
+        return right_normal(along_face.normalized()).dot(from_tip) < -flush && leans_away(leaving, edge, at_end);
+    }
+
+    /// Whether a face of an interface has such a tip at one of its ends, and the target's edge is the ground before it.
+    [[nodiscard]] bool slides_onto_ground(int owner, const CurrentEdge& face, std::span<const CurrentEdge> faces,
+                                          int target, const CurrentEdge& edge) const {
+        if (reference(target, edge.edge).interface >= 0 || reference(owner, face.edge).interface < 0) return false;
+        return std::ranges::any_of(faces, [&](const CurrentEdge& leaving) {
+            return (leaving.edge == face.edge || leaving.arriving == face.edge) &&
+                   is_ground_before(owner, leaving, target, edge);
+        });
     }
 
     /// Whether two faces of two blocks that meet in a vertex are in one line there, and the blocks on its two sides.
@@ -509,6 +550,7 @@ private:
             return;
         if (!points_at(leaving, outward)) return;
         if (is_common && !beside_void && !faces_are_apart(owner, target, swapped)) return;
+        if (!is_common && is_ground_before(owner, leaving, target, edge)) return;
         if (overlap_covers(leaving.edge, edge.edge, swapped) || overlap_covers(leaving.arriving, edge.edge, swapped))
             return;
         if (is_held_by_another_face(leaving, edge, gap, edges, swapped)) return;

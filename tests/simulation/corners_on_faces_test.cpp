@@ -81,9 +81,8 @@ TEST(CornersOnFaces, PolygonsSlideOnTheirSides) {
             corners += fmt::format("{}[{:.12g}, {:.12g}]", i == 0 ? "" : ", ", radius * std::cos(at),
                                    1.001 + radius * std::sin(at));
         }
-        EXPECT_NEAR(factor_of_safety(9, 30, floor_of_rock + "    - {name: block, polygon: [" + corners + "]}\n"),
-                    expected, 2e-3 * expected)
-            << sides;
+        const std::string blocks = fmt::format("{}    - {{name: block, polygon: [{}]}}\n", floor_of_rock, corners);
+        EXPECT_NEAR(factor_of_safety(9, 30, blocks), expected, 2e-3 * expected) << sides;
     }
 }
 
@@ -167,6 +166,21 @@ TEST(BesideVoids, AToeIsHeldByTheRiserBehindIt) {
         } else {
             EXPECT_LT(motion_of(two, "dam"), 0.01)
                 << lean; // its toe, which faces the bottom of the riser, is pressed a little below it
+        }
+    }
+}
+
+// A cube is held by a riser over whose face it leans, touching it or a millimetre before it: with a friction of 10 degrees alone it would slide down the plane of 20 degrees.
+TEST(BesideVoids, ARiserHoldsWhatLeansOverIt) {
+    for (const double gap : {0.0, 1e-3}) {
+        for (const double riser : {61.0, 75.0, 90.0}) {
+            const std::string blocks = fmt::format(
+                "    - {{name: base, polygon: [[-8, -3], [12, -3], [12, 2], [{0:.12g}, 2], [{1:.12g}, 0], [-8, 0]], "
+                "support: fixed}}\n    - {{name: dam, polygon: [[0, 0], [4, 0], [4, 4], [0, 4]]}}\n",
+                4.0 + gap + 2.0 / std::tan(riser * degree), 4.0 + gap);
+            const SceneRun run = run_scene(blocks_on_a_slope(20, 10, blocks, "{steps: 5}"));
+            EXPECT_TRUE(stands(run)) << riser << " " << gap << run.report.diagnosis;
+            EXPECT_LT(motion_of(run, "dam"), gap + 1e-3) << riser;
         }
     }
 }

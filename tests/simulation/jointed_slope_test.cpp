@@ -90,37 +90,76 @@ stages:
                                                  testing::ContainsRegex("; 1\\.[0-9]* is the factor"))));
 }
 
-/// A slope of 10 m, 3 m back at its crest, with flat ground before its toe and a joint that comes out at a height on its face.
-SceneRun slope_with_ground_before_it(double dip, double height, double cohesion, double friction_angle) {
-    const double x = 0.3 * height;
-    const double slope = std::tan(dip / degrees);
+/// A slope of 10 m with ground before its toe, that rises away from it, and a joint that comes out at a height on its face.
+struct SlopeWithGround {
+    double dip = 40.0;   ///< of the joint, degrees
+    double face = 73.3;  ///< degrees
+    double height = 0.0; ///< m
+    double cohesion = 20e3;
+    double friction_angle = 30.0;
+    double ground = 0.0; ///< degrees
+    bool has_spacing = true;
+};
+
+SceneRun run_slope(const SlopeWithGround& slope) {
+    const double back = 1.0 / std::tan(slope.face / degrees);
     return run_scene(fmt::format(R"(kluft: 1
 analysis: {{gravity: 9.81}}
 materials: {{rock: {{density: 2500, youngs_modulus: 10 GPa, poissons_ratio: 0.25}}}}
 interfaces: {{joint: {{kind: fracture, friction_angle: {}, cohesion: {}, normal_stiffness: 1e10, shear_stiffness: 5e9}}}}
 geometry:
-  reference_spacing: 2
-  domain: {{polygon: [[-10, -5], [30, -5], [30, 10], [3, 10], [0, 0], [-10, 0]]}}
+  {}
+  domain: {{polygon: [[-10, -5], [30, -5], [30, 10], [{:.17g}, 10], [0, 0], [-10, {:.17g}]]}}
   fractures: [{{trace: [[{:.17g}, {:.17g}], [{:.17g}, 11]], interface: joint}}]
 boundaries: {{base: {{sides: [0], support: fixed}}, right: {{sides: [1], support: fixed}}}}
 stages: [{{steps: 5}}, {{strength_reduction: {{to: 5}}, steps: 20}}]
 )",
-                                 friction_angle, cohesion, x, height, x + (11.0 - height) / slope));
+                                 slope.friction_angle, slope.cohesion, slope.has_spacing ? "reference_spacing: 2" : "",
+                                 10.0 * back, 10.0 * std::tan(slope.ground / degrees), slope.height * back,
+                                 slope.height,
+                                 slope.height * back + (11.0 - slope.height) / std::tan(slope.dip / degrees)));
 }
 
-// Plane failure (Hoek and Bray): F = (c L + W cos tan phi)/(W sin), whether the plane comes out on the face or at the toe, where
-// the ground before it would hold the tip of the wedge alone.
+/// Plane failure (Hoek and Bray): F = (c L + W cos tan phi)/(W sin), of the part above where the joint comes out.
+double factor_of_plane_failure(const SlopeWithGround& slope) {
+    const double rise = 10.0 - slope.height;
+    const double sin = std::sin(slope.dip / degrees), cos = std::cos(slope.dip / degrees);
+    const double weight = 2500.0 * 9.81 * 0.5 * rise * rise * (cos / sin - 1.0 / std::tan(slope.face / degrees));
+    return (slope.cohesion * rise / sin + weight * cos * std::tan(slope.friction_angle / degrees)) / (weight * sin);
+}
+
+// The tip of the wedge, sharp and leaning away, would otherwise be held by the ground alone: 2.7 to above 5. Thin wedges before a vertical
+// face lose cohesion at their ends, where they open, and have up to 1.3 % less.
 TEST(JointedSlope, PlaneThroughTheToeIsNotHeldByTheGroundBeforeIt) {
-    for (const auto& [dip, height, cohesion, friction] :
-         {std::array{40.0, 0.0, 20e3, 30.0}, std::array{40.0, 0.2, 20e3, 30.0}, std::array{40.0, 0.0, 0.0, 50.0},
-          std::array{35.0, 0.0, 20e3, 30.0}, std::array{55.0, 0.0, 60e3, 30.0}}) {
-        SCOPED_TRACE(fmt::format("dip {} height {} cohesion {}", dip, height, cohesion));
-        const SceneRun run = slope_with_ground_before_it(dip, height, cohesion, friction);
-        const double rise = 10.0 - height, sin = std::sin(dip / degrees), cos = std::cos(dip / degrees);
-        const double weight = 2500.0 * 9.81 * 0.5 * rise * (rise * cos / sin - 0.3 * rise);
-        const double expected = (cohesion * rise / sin + weight * cos * std::tan(friction / degrees)) / (weight * sin);
+    for (const SlopeWithGround& slope :
+         {SlopeWithGround{}, SlopeWithGround{.height = 0.2}, SlopeWithGround{.cohesion = 0.0, .friction_angle = 50.0},
+          SlopeWithGround{.dip = 35.0}, SlopeWithGround{.dip = 55.0, .cohesion = 60e3},
+          SlopeWithGround{.dip = 61.0, .face = 80.0, .cohesion = 60e3},
+          SlopeWithGround{.dip = 65.0, .face = 80.0, .cohesion = 60e3},
+          SlopeWithGround{.dip = 65.0, .face = 90.0, .cohesion = 50e3},
+          SlopeWithGround{.dip = 75.0, .face = 90.0, .cohesion = 50e3}, SlopeWithGround{.ground = 25.0},
+          SlopeWithGround{.ground = -10.0}}) {
+        SCOPED_TRACE(
+            fmt::format("dip {} face {} height {} ground {}", slope.dip, slope.face, slope.height, slope.ground));
+        const SceneRun run = run_slope(slope);
+        const double expected = factor_of_plane_failure(slope);
         ASSERT_TRUE(run.report.results.factor_of_safety.has_value());
-        EXPECT_NEAR(*run.report.results.factor_of_safety, expected, 3e-3 * expected);
+        EXPECT_LT(*run.report.results.factor_of_safety, 1.003 * expected);
+        EXPECT_GT(*run.report.results.factor_of_safety, (slope.face < 90.0 ? 0.997 : 0.985) * expected);
+    }
+}
+
+// A joint that comes out a little above the toe, as round-off and the digits of maps have it, and no spacing by which that would be mended: the
+// tip comes to lie on the ground, and was held there (1.46 to 2.73).
+TEST(JointedSlope, PlaneThatComesOutJustAboveTheToeIsNotHeldByTheGround) {
+    for (const double height : {1e-6, 1e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2}) {
+        for (const bool has_spacing : {true, false}) {
+            const SlopeWithGround slope{.height = height, .has_spacing = has_spacing};
+            const double expected = factor_of_plane_failure(slope);
+            const SceneRun run = run_slope(slope);
+            ASSERT_TRUE(run.report.results.factor_of_safety.has_value());
+            EXPECT_NEAR(*run.report.results.factor_of_safety, expected, 3e-3 * expected) << height << has_spacing;
+        }
     }
 }
 
