@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "kluft/blocks/block_search.hpp"
+#include "kluft/blocks/narrow_neck.hpp"
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/core/memory.hpp"
 #include "kluft/core/place_text.hpp"
@@ -238,6 +239,21 @@ std::vector<std::string> slivers(const GeometrySpec& geometry, const BlockSystem
         n > 1 ? fmt::format(", one of {}", n) : "", area_of(system) / system.n_blocks())};
 }
 
+/// Where a trace passes a corner of the body closely, two parts hang together on what is between.
+std::vector<std::string> necks(const GeometrySpec& geometry, const BlockSystem& system) {
+    if (geometry.tessellation) return {};
+    const std::vector<NarrowNeck> found = narrow_necks(system);
+    if (found.empty()) return {};
+    const auto beside = [](const NarrowNeck& neck) { return neck.width / std::sqrt(neck.smaller_part); };
+    const NarrowNeck& neck = *std::ranges::min_element(found, {}, beside);
+    return {fmt::format(
+        "geometry: block {} is {:.2g} m wide at {}, beside a part of it of {:.3g} m2{}: a block does not break, and "
+        "what "
+        "hangs on so narrow a neck is held by it; a trace that is meant to part it has to meet the corner there",
+        block_label(system, neck.block), neck.width, place_text(system.origin + neck.at), neck.smaller_part,
+        found.size() > 1 ? fmt::format(", one of {} such blocks", found.size()) : "")};
+}
+
 /// The blocks of the scene's body.
 CutBody cut_body(const Scene& scene) {
     try {
@@ -278,7 +294,8 @@ SceneModel build_scene_model(const Scene& scene) {
          {lost_fractures(scene, built.cut), fine_details(scene.geometry, built.cut),
           pruned_pieces(scene.geometry, built.cut), closed_outcrops(scene.geometry, built.cut),
           small_reference(scene.geometry, built.model.system), slivers(scene.geometry, built.model.system),
-          bare_net(scene.geometry, built.model.system), empty_regions(scene.geometry, built.model.system),
+          necks(scene.geometry, built.model.system), bare_net(scene.geometry, built.model.system),
+          empty_regions(scene.geometry, built.model.system),
           coarse_places(scene.geometry, built.cut, scene.interface_types)})
         built.model.warnings.insert(built.model.warnings.end(), warnings.begin(), warnings.end());
     require_memory();

@@ -33,7 +33,7 @@ struct Overlap {
 
 /// Sums over the contact points of an overlap.
 struct Touching {
-    double length = 0.0;
+    double length = 0.0;   ///< none, of a vertex on a face: what its point stands for is of the iteration
     double pressing = 0.0; ///< N/m, in compression
     double acting = 0.0;   ///< magnitudes of the forces (N/m)
     Vec2 place = Vec2::Zero();
@@ -47,7 +47,7 @@ Overlaps pressed_overlaps(const LoadedBody& body, const Eigen::VectorXd& q) {
         const PointTraction traction = contact_traction(*body.laws, point, q);
         if (traction.normal >= 0.0) continue;
         Touching& touching = overlaps[{point.block_a, point.block_b, point.key.edge_a, point.key.edge_b}];
-        touching.length += point.weight;
+        if (point.key.point >= 0) touching.length += point.weight;
         touching.pressing -= point.weight * traction.normal;
         touching.acting += point.weight * Vec2(traction.normal, traction.shear).norm();
         touching.place = current_position(*body.system, q, point.block_a, point.xi_a);
@@ -93,11 +93,12 @@ std::vector<CornerContact> corner_contacts(const Model& model, const State& stat
 
 std::string description(const Model& model, const CornerContact& corner) {
     const int other = corner.held == corner.block_a ? corner.block_b : corner.block_a;
-    return fmt::format(
-        "a corner holds block {}: its contact with block {}, {:.2g} mm long at about {}, carries {:.3g} kN/m, "
-        "{:.3g} % of what acts on it",
-        block_label(model.system, corner.held), block_label(model.system, other), 1e3 * corner.length,
-        place_text(corner.place), 1e-3 * corner.force, 100.0 * corner.share);
+    const std::string length = corner.length > 0.0 ? fmt::format("{:.2g} mm long", 1e3 * corner.length) : "a point";
+    return fmt::format("a corner holds block {}: its contact with block {}, {} at about {}, carries {:.3g} kN/m, "
+                       "{:.3g} % of what acts "
+                       "on it",
+                       block_label(model.system, corner.held), block_label(model.system, other), length,
+                       place_text(corner.place), 1e-3 * corner.force, 100.0 * corner.share);
 }
 
 std::string corner_contact_warning(const Model& model, const State& state) {

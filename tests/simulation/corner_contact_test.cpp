@@ -54,6 +54,27 @@ TEST(CornerContact, ThatHoldsABlockIsWarnedOf) {
     EXPECT_THAT(ledge.report.warnings, Not(Contains(HasSubstr("corner"))));
 }
 
+// A tip of 50 degrees at the foot of a riser of 80: a point has no length, whatever part of the edge it stands for.
+TEST(CornerContact, APointThatHoldsABlockIsWarnedOf) {
+    const std::string text = R"(kluft: 1
+analysis: {gravity: [-5, -8.660254]}
+materials: {rock: {density: 2600, youngs_modulus: 20 GPa, poissons_ratio: 0.25}}
+interfaces: {joint: {kind: fracture, friction_angle: 20, normal_stiffness: 100 GPa/m, shear_stiffness: 50 GPa/m}}
+geometry:
+  blocks:
+    - {name: plane, polygon: [[-2, -1], [3, -1], [3, 0], [0, 0], [-0.0353, 0.2], [-2, 0.2]], support: fixed}
+    - {name: slab, polygon: [[0, 0], [1, 0], [1, 0.5], [0.41955, 0.5]]}
+stages: [{steps: 1}]
+)";
+    const SceneRun run = run_scene(read_scene_text(text, {}, "tip.yaml"));
+    ASSERT_TRUE(stands(run)) << run.report.diagnosis;
+    const auto found = corner_contacts(run.model, run.state);
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_EQ(found[0].length, 0.0);
+    EXPECT_THAT(corner_contact_warning(run.model, run.state),
+                HasSubstr("a corner holds block 'slab': its contact with block 'plane', a point at"));
+}
+
 /// A specimen of 1 m by 2.5 m with two joints through its middle, of 50 degrees one way and so many the other.
 SceneRun crossing_joints(double angle) {
     const double slope = std::tan(angle * std::numbers::pi / 180.0);

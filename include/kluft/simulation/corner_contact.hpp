@@ -16,7 +16,7 @@ struct CornerContact {
     int block_a = 0;
     int block_b = 0;
     int held = 0;              ///< the one of them
-    double length = 0.0;       ///< m
+    double length = 0.0;       ///< m; none where a vertex lies on a face
     double force = 0.0;        ///< in compression (N/m)
     double share = 0.0;        ///< of what acts on the held block
     Vec2 place = Vec2::Zero(); ///< in the moved body, scene coordinates (m)

@@ -1,0 +1,42 @@
+#include "kluft/blocks/narrow_neck.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "blocks/cut_scenes.hpp"
+#include "kluft/blocks/block_cutter.hpp"
+
+namespace kluft {
+namespace {
+
+/// A slope of 10 m with flat ground before its toe, which lies at the origin, and a joint of 40 degrees that passes below the toe.
+BlockSystem slope_with_joint_below_toe(double depth) {
+    const double slope = std::tan(40.0 * std::numbers::pi / 180.0);
+    GeometrySpec spec;
+    spec.domain = {{-10, -5}, {30, -5}, {30, 10}, {3, 10}, {0, 0}, {-10, 0}};
+    cut_scenes::add_trace(spec, {{-12, -12 * slope - depth}, {20, 20 * slope - depth}});
+    return cut_blocks(spec).system;
+}
+
+// The wedge before the joint, 44.6 m2, and the ground, which the joint cuts off below at 5 m, hang together by d cos 40.
+TEST(NarrowNeck, IsFoundWhereAJointPassesBelowACorner) {
+    for (const double depth : {1e-9, 1e-6, 1e-3, 0.03}) {
+        const auto necks = narrow_necks(slope_with_joint_below_toe(depth));
+        ASSERT_EQ(necks.size(), 1U) << depth;
+        EXPECT_NEAR(necks[0].width, depth * std::cos(40.0 * std::numbers::pi / 180.0), 1e-6 * depth + 1e-14);
+        const double of_ground = 10.0 * 5.0 - 0.5 * 5.0 * 5.0 / std::tan(40.0 * std::numbers::pi / 180.0);
+        EXPECT_NEAR(necks[0].smaller_part, of_ground, 10.0 * depth + 0.01);
+    }
+}
+
+// Above the toe, or far enough below it, nothing hangs together that narrowly.
+TEST(NarrowNeck, IsNoneWhereBlocksAreParted) {
+    for (const double depth : {-1e-3, 0.0, 0.5})
+        EXPECT_THAT(narrow_necks(slope_with_joint_below_toe(depth)), testing::IsEmpty()) << depth;
+}
+
+} // namespace
+} // namespace kluft
