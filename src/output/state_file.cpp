@@ -18,7 +18,7 @@ namespace kluft {
 
 namespace {
 
-constexpr int format_version = 14;
+constexpr int format_version = 15;
 constexpr std::string_view format_name = "kluft state";
 
 constexpr std::string_view seal = "\nkluft digest "; // before the digest of all that stands before the seal

@@ -74,7 +74,8 @@ public:
                 const bool unbalanced = !has_platen_velocity() && state_.unbalanced_in_succession > 0;
                 end.causes = causes_of(end);
                 if (end.ends_run() || last || unbalanced) return journal_.ended(state_, end);
-                leave_stage(model_, loads, motion_.loads(), motion_.evaluate().forces, state_);
+                state_.body.holding_forces = holding_forces(model_, loads, motion_.loads(), motion_.evaluate().forces);
+                leave_stage(model_, loads, motion_.loads(), state_);
                 state_.costs = journal_.costs();
             }
         });

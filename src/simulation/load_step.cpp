@@ -133,12 +133,9 @@ void begin_load_step(const StepBench& bench) {
 }
 
 StageEnd commit_regular_step(const StepBench& bench, Step step, bool last_of_stage, State& state) {
-    Eigen::VectorXd forces = std::move(step.forces);
     const bool ends = last_of_stage || (step.balanced && has_dropped(bench.stage(state), step.end.stresses));
     commit(std::move(step), {.last_of_stage = ends}, state, bench.journal);
-    StageEnd end = end_after(bench, state);
-    end.forces = std::move(forces);
-    return end;
+    return end_after(bench, state);
 }
 
 StageEnd end_after(const StepBench& bench, const State& state) {

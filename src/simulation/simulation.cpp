@@ -104,11 +104,10 @@ void report_estimate(double accuracy, const State& state, RunReport& report) {
 }
 
 /// The next stage starts from the loads at the end of this one.
-void end_stage(const StepBench& bench, Eigen::VectorXd forces, State& state) {
-    if (forces.size() == 0) forces = measure_state(bench, state, 1.0).measured.forces; // resumed at the end of a stage
+void end_stage(const StepBench& bench, State& state) {
     const LoadsAt at = loads_at(bench, state, 1.0);
     const RunCosts costs = bench.journal.costs();
-    leave_stage(bench.model, bench.loads, at.loads, forces, state);
+    leave_stage(bench.model, bench.loads, at.loads, state);
     state.costs = costs;
 }
 
@@ -125,6 +124,7 @@ State initial_state(const Model& model) {
     }
     state.body.bond_shear.assign(static_cast<std::size_t>(n_bond_points) * model.system.interfaces.size(), 0.0);
     state.stage_start.boundary_pressure.assign(model.system.boundaries.size(), 0.0);
+    state.body.holding_forces.assign(model.system.boundaries.size(), 0.0);
     return state;
 }
 
@@ -144,7 +144,7 @@ RunReport run_simulation(const Model& model, const CrackOptions& cracks, const S
             end.causes = causes_of(bench, state, end);
             if (!end.failure && state.unbalanced_in_succession == 0) warn_of_fall(bench, state);
             if (end.ends_run() || last || state.unbalanced_in_succession > 0) return journal.ended(state, end);
-            end_stage(bench, std::move(end.forces), state);
+            end_stage(bench, state);
         }
     });
     if (solver.accuracy > 0.0) report_estimate(solver.accuracy, state, report);

@@ -333,15 +333,14 @@ PlatenHold hold_of(const Model& model, const StageLoads& stage_loads, const Body
     return {std::move(loads.platen_points), std::move(loads.constraints), std::move(loads.friction)};
 }
 
-void leave_stage(const Model& model, const StageLoads& stage_loads, const Loads& loads, const Eigen::VectorXd& forces,
-                 State& state) {
+void leave_stage(const Model& model, const StageLoads& stage_loads, const Loads& loads, State& state) {
     std::vector<double> end = stage_loads.pressures(1.0);
     for (int i = 0; i < static_cast<int>(end.size()); ++i) {
         if (!stage_loads.is_held(i)) continue;
         PlatenForce of_unit_pressure = width_across(model.system, i);
         of_unit_pressure.stress = pressed_length(model.system, i) / of_unit_pressure.width;
         const double force = of_unit_pressure.at(state.body.displacement);
-        end[i] = force > 0.0 ? holding_force(model.system, loads, forces, i) / force : 0.0;
+        end[i] = force > 0.0 ? state.body.holding_forces[i] / force : 0.0;
     }
     state.stage_start.boundary_pressure = std::move(end); // from here on nothing throws
     const double travel = platen_travel(loads, state.body.displacement);
@@ -353,6 +352,14 @@ void leave_stage(const Model& model, const StageLoads& stage_loads, const Loads&
     state.at.step_in_stage = 0;
     state.at.load_factor = 0.0;
     state.stresses.largest_in_stage = 0.0;
+}
+
+std::vector<double> holding_forces(const Model& model, const StageLoads& stage_loads, const Loads& loads,
+                                   const Eigen::VectorXd& forces) {
+    std::vector<double> holding(model.system.boundaries.size(), 0.0);
+    for (int i = 0; i < static_cast<int>(holding.size()); ++i)
+        if (stage_loads.is_held(i)) holding[i] = holding_force(model.system, loads, forces, i);
+    return holding;
 }
 
 double holding_force(const BlockSystem& system, const Loads& loads, const Eigen::VectorXd& forces, int boundary) {

@@ -172,7 +172,7 @@ void reach(StepInProgress& p, PlacedState placed, const Equilibrium& found) {
     step.end.at.load_factor = found.load_factor;
     Measured measured = measure(p, placed, at, found);
     step.row = std::move(measured.row);
-    step.forces = std::move(measured.forces);
+    step.end.body.holding_forces = holding_forces(p.bench.model, p.bench.loads, at.loads, measured.forces);
     step.balanced = step.balanced && found.balanced;
     step.worst_share = std::max(step.worst_share, found.viscous_share);
     note_stresses(p, loaded_body(p.bench.model, placed.placement, at));

@@ -163,8 +163,7 @@ bool keeps_its_place(const StepBench& bench, const State& before, double near, S
 
 /// Tries a load step and commits it, after the equilibria found before, if the body stands at its end where it stood (32b), and not
 /// because a corner has caught.
-Trial try_factor(const StepBench& bench, const TrialGoal& goal, State& state, Eigen::VectorXd& forces,
-                 std::vector<StepRecord>& before) {
+Trial try_factor(const StepBench& bench, const TrialGoal& goal, State& state, std::vector<StepRecord>& before) {
     begin_load_step(bench);
     Step step = take_step(bench, state, goal_with_strengths_of(bench, state, goal.load_factor));
     if (step.failure) {
@@ -179,7 +178,6 @@ Trial try_factor(const StepBench& bench, const TrialGoal& goal, State& state, Ei
     if (moved > goal.displaced_by_loads)
         if (const auto corner = caught_corner(bench.model, corner_contacts(bench.model, state), step.end))
             return {failure_by_corner(bench, step, start, *corner), true};
-    forces = std::move(step.forces);
     step.equilibria.insert(step.equilibria.begin(), before.begin(), before.end());
     before.clear();
     commit(std::move(step), goal.kind, state, bench.journal);
@@ -327,7 +325,7 @@ StageEnd find_strength_limit(const StepBench& bench, State& state) {
                              .farthest = is_enclosed ? share_of_jump * jump_motion : jump_motion,
                              .displaced_by_loads = displaced,
                              .kind = {.regular = at == next, .last_of_stage = last}};
-        const Trial trial = try_factor(bench, goal, state, end.forces, before);
+        const Trial trial = try_factor(bench, goal, state, before);
         if (!trial.failure) {
             doubts.look_at(state, bench.journal.last_row(), reduction.factor_at(state.at.load_factor));
             size = at == failing ? 2.0 * (at - from) : 2.0 * size;

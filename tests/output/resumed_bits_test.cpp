@@ -101,6 +101,17 @@ constexpr const char* reduced = "boundaries: {bottom: {support: pinned}}\n"
                                 "stages: [{pressure: {left: 0.1 MPa, right: 0.1 MPa, top: 0.15 MPa}, steps: 3}, "
                                 "{strength_reduction: {from: 1, to: 1.2}, steps: 4}]";
 
+/// Stages that begin with the force of the platen of the one before.
+constexpr const char* unloaded_sides =
+    "boundaries: {bottom: {support: smooth}}\n"
+    "stages: [{pressure: {left: 0.1 MPa, right: 0.1 MPa, top: 0.1 MPa}, steps: 2}, "
+    "{strain: {boundary: top, value: 0.3 %}, steps: 3}, {pressure: {left: 0.05 MPa, right: 0.05 MPa}, steps: 3}]";
+constexpr const char* other_platens =
+    "boundaries: {bottom: {support: smooth}, left: {support: smooth}}\n"
+    "stages: [{pressure: {right: 0.1 MPa, top: 0.1 MPa}, steps: 2}, {stress: {boundary: top, value: 0.2 MPa}, steps: "
+    "2}, "
+    "{strain: {boundary: right, value: 0.1 %}, steps: 2}, {stress: {boundary: top, value: 0.25 MPa}, steps: 2}]";
+
 INSTANTIATE_TEST_SUITE_P(
     All, ResumedBits,
     ::testing::Values(
@@ -109,6 +120,8 @@ INSTANTIATE_TEST_SUITE_P(
         RepeatableScene{"Fracture", with_fracture, pressed, "solver: {repeatable: true}"},
         RepeatableScene{"ContactsKept", with_fracture, pressed, "solver: {repeatable: true, detection_every: 4}"},
         RepeatableScene{"StrengthReduction", with_fracture, reduced, "solver: {repeatable: true}"},
+        RepeatableScene{"PressureAfterAPlaten", with_fracture, unloaded_sides, "solver: {repeatable: true}"},
+        RepeatableScene{"PlatenAfterAPlaten", triangles, other_platens, "solver: {repeatable: true}"},
         RepeatableScene{"AllThatFail", triangles, pressed, "cracks: {update: all}\nsolver: {repeatable: true}"}),
     [](const auto& scene) { return std::string(scene.param.name); });
 

@@ -33,6 +33,7 @@ State state_of(int n_blocks) {
                              InterfaceStatus::tension_crack, InterfaceStatus::shear_crack};
     state.body.bond_shear = {1.0, -2.0, 3.0, 0.1};
     state.body.contacts = {{{0, 1, 2, 3, -1}, {1.25e5, 1e-7}}, {{4, 5, 6, 7, 2}, {-0.1, 0.0}}};
+    state.body.holding_forces = {3e5, 0.0, -1.0 / 7.0};
     state.stage_start.boundary_pressure = {2e5, 0.0, 1.0 / 7.0};
     state.unbalanced_in_succession = 2;
     state.imbalance = {1, 0.25, {{1, Vec2(0.6, -0.8), 0}, {0, Vec2::Zero(), -1}}};
@@ -71,6 +72,7 @@ void expect_same(const State& a, const State& b) {
         EXPECT_EQ(a.body.contacts[i].history.shear_trial, b.body.contacts[i].history.shear_trial);
         EXPECT_EQ(a.body.contacts[i].history.dilation, b.body.contacts[i].history.dilation);
     }
+    EXPECT_EQ(a.body.holding_forces, b.body.holding_forces);
     EXPECT_EQ(a.stage_start.boundary_pressure, b.stage_start.boundary_pressure);
     EXPECT_EQ(a.is_settled, b.is_settled);
     EXPECT_EQ(a.stresses, b.stresses);
@@ -121,6 +123,7 @@ TEST(StateFile, ANumberThatIsNoneIsRefusedAndTheStateSavedBeforeStays) {
         [](State& state) { state.body.bond_shear.back() = none; },
         [](State& state) { state.body.contacts[1].history.shear_trial = none; },
         [](State& state) { state.body.contacts[0].history.dilation = none; },
+        [](State& state) { state.body.holding_forces[0] = none; },
         [](State& state) { state.stage_start.boundary_pressure[2] = none; },
         [](State& state) { state.at.load_factor = none; }};
     for (const auto& plant : plants) {

@@ -335,7 +335,7 @@ solver: {tolerance: 1e-10, balance: 1e-9}
     KeepsStateOfFirstStage resumed(ignored);
     ASSERT_EQ(run_simulation(model, scene.cracks, scene.solver, kept, resumed, stop).status, RunStatus::done);
     EXPECT_GT(whole.last().axial_stress, 1e5);
-    EXPECT_NEAR(resumed.last().axial_stress, whole.last().axial_stress, 1e-6 * whole.last().axial_stress);
+    EXPECT_EQ(resumed.last().axial_stress, whole.last().axial_stress);
 }
 
 TEST(SlowSimulation, SameSceneTwiceGivesTheSameBits) {

@@ -135,7 +135,7 @@ public:
     void enter() { loads.emplace(enter_stage(model, state)); }
     /// Goes on to the next stage from the end of a load step.
     void leave(const Step& step) {
-        leave_stage(model, *loads, step.in_place.at.loads, step.forces, state);
+        leave_stage(model, *loads, step.in_place.at.loads, state);
         enter();
     }
     [[nodiscard]] StepBench bench() { return {model, cracks, options, *loads, search, journal, stop}; }

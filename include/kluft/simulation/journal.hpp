@@ -31,9 +31,8 @@ struct StageEnd {
     std::optional<Failure> failure;         ///< the run ends here
     int step = 0;                           ///< the load step that failed, through all stages
     std::optional<double> factor_of_safety; ///< the failure is what was looked for
-    Eigen::VectorXd forces; ///< at the end, internal - external without the supports' (N/m); empty without a load step
-    std::vector<std::string> causes; ///< of an end out of balance that are likely, in words
-    bool has_dropped = false;        ///< the axial stress, by stop_after_drop of the stage: the run ends here
+    std::vector<std::string> causes;        ///< of an end out of balance that are likely, in words
+    bool has_dropped = false;               ///< the axial stress, by stop_after_drop of the stage: the run ends here
 
     /// Whether the stage has no more load steps, and the run no more stages.
     [[nodiscard]] bool ends_run() const { return failure || has_dropped; }

@@ -83,9 +83,12 @@ void move_loads(const Model& model, const StageLoads& stage_loads, int stage, do
 [[nodiscard]] StageLoads enter_stage(const Model& model, State& state);
 
 /// Goes on to the next stage, with the pressures of the end of this one; on a boundary that was held it is the one with the
-/// normal force of its platen or support, over the current mean width. `loads` are those at the end of the stage, `forces` = internal - external forces without the supports'.
-void leave_stage(const Model& model, const StageLoads& stage_loads, const Loads& loads, const Eigen::VectorXd& forces,
-                 State& state);
+/// normal force of its platen or support, over the current mean width. `loads` are those at the end of the stage.
+void leave_stage(const Model& model, const StageLoads& stage_loads, const Loads& loads, State& state);
+
+/// Those of a state's body, under the loads of one of its stage: `forces` = internal - external forces without the supports'.
+[[nodiscard]] std::vector<double> holding_forces(const Model& model, const StageLoads& stage_loads, const Loads& loads,
+                                                 const Eigen::VectorXd& forces);
 
 /// Normal force of the platen or support that holds a boundary (N/m, positive in compression). `forces` = internal - external
 /// forces without the supports'.

@@ -40,6 +40,9 @@ struct BodyState {
     std::vector<double> bond_shear; ///< shear traction at the two Gauss points of each bond, size 2 n_interfaces, Pa
     std::vector<ContactMemory> contacts;    ///< of touching contact points, sorted by key
     std::vector<PlatenPoint> platen_points; ///< of the stage's platens
+    /// On each boundary that the stage holds, the normal force of its platen or support at the last equilibrium (N/m, positive in
+    /// compression), else 0: what the next stage begins with.
+    std::vector<double> holding_forces;
 };
 
 /// What the loads of a stage are counted from.
@@ -127,6 +130,7 @@ template <class Members, class Visit> void visit_saved(Members& state, Visit&& v
     visit("bond_shear", state.body.bond_shear);
     visit("contacts", state.body.contacts);
     visit("platen_points", state.body.platen_points);
+    visit("holding_forces", state.body.holding_forces);
     visit("stage_start_displacement", state.stage_start.displacement);
     visit("stage_start_pressure", state.stage_start.boundary_pressure);
     visit("near_place", state.stage_start.near_place);

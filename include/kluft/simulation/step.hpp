@@ -37,7 +37,6 @@ struct Step {
     std::optional<Failure> failure;  ///< the step did not come to its goal
     std::string lost_contact;        ///< a warning, "" without reason
     LoadedPlacement in_place;        ///< at the last equilibrium
-    Eigen::VectorXd forces;          ///< there: internal - external, without the supports' (N/m)
 
     /// What is left of a step that fails after an unbalanced equilibrium, or on the way to one: all up to its last
     /// balanced one.
