@@ -40,6 +40,7 @@ ExitCode compare(const CompareArguments& arguments) {
     const fs::path directory =
         arguments.output.empty() ? default_directory(arguments.directories) : fs::path(arguments.output);
     require_no_file(directory);
+    require_no_other_comparison(directory);
     const auto names = run_names(arguments.directories);
     for (const auto& name : arguments.directories) require_results(name);
     const FinishedRun a = read_finished_run(arguments.directories.front(), names.front());

@@ -83,6 +83,17 @@ double limit_of(const std::string& text) {
     return *reading.value / mega;
 }
 
+/// The picture that is drawn where no name was given: one that Kluft drew gives way to it.
+fs::path default_picture(const fs::path& picture) {
+    std::error_code error;
+    if (fs::is_regular_file(picture, error) && !is_drawn_png(read_file(picture)))
+        throw InputError(
+            fmt::format("{}: expected a picture that Kluft drew or none, found another file, which would be "
+                        "lost; choose a name with -o",
+                        picture.string()));
+    return picture;
+}
+
 void announce(const fs::path& picture) { say("{}\n", picture.string()); }
 
 void draw_curve(const DrawArguments& arguments, const std::vector<fs::path>& pictures) {
@@ -197,8 +208,9 @@ void draw_state_of_run(const DrawArguments& arguments) {
     if (!arguments.scale.empty()) plot.magnification = scale_of(arguments.scale);
     if (!arguments.window.empty()) plot.window = window_of(arguments.window, system.origin);
     plot.heading = heading_of_state(directory, step, plot.magnification);
-    const fs::path picture =
-        arguments.picture.empty() ? fmt::format("{}-{}-{}.png", run_name(directory), name, step) : arguments.picture;
+    const fs::path picture = arguments.picture.empty()
+                                 ? default_picture(fmt::format("{}-{}-{}.png", run_name(directory), name, step))
+                                 : fs::path(arguments.picture);
     write_file(picture, draw_state(system, fields, plot, picture_format(picture)));
     announce(picture);
 }
@@ -233,7 +245,7 @@ void draw_several_runs(const DrawArguments& arguments) {
     if (arguments.blocks || arguments.histories)
         throw InputError(fmt::format("--{}: expected one directory of results, found several",
                                      arguments.blocks ? "blocks" : "histories"));
-    draw_curve(arguments, {arguments.picture.empty() ? fs::path("curves.png") : fs::path(arguments.picture)});
+    draw_curve(arguments, {arguments.picture.empty() ? default_picture("curves.png") : fs::path(arguments.picture)});
 }
 
 void draw_scene(const DrawArguments& arguments) {
@@ -246,7 +258,8 @@ void draw_scene(const DrawArguments& arguments) {
     BlocksPlot plot = plot_of(scene);
     if (!arguments.title.empty()) plot.title = arguments.title;
     for (const char bond : built.model.bonds) plot.bonded_types.push_back(bond != 0);
-    const fs::path picture = arguments.picture.empty() ? source.stem().string() + ".png" : arguments.picture;
+    const fs::path picture =
+        arguments.picture.empty() ? default_picture(source.stem().string() + ".png") : fs::path(arguments.picture);
     write_geometry(picture, built.model.system, plot);
     announce(picture);
 }

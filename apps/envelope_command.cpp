@@ -13,6 +13,7 @@
 #include "failure.hpp"
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/output/atomic_file.hpp"
+#include "kluft/output/canvas.hpp"
 #include "kluft/output/envelope.hpp"
 #include "kluft/output/run_writer.hpp"
 #include "kluft/scene/quantity.hpp"
@@ -55,7 +56,7 @@ std::vector<fs::path> files_of(const fs::path& picture) {
     return {picture, fs::path(picture).replace_extension(".csv"), fs::path(picture).replace_extension(".json")};
 }
 
-/// A table or numbers beside the picture that are of something else.
+/// The picture, or a table or numbers beside it, that are of something else.
 void require_own_files(const std::vector<fs::path>& files) {
     std::error_code ignored;
     const auto refuse = [](const fs::path& file) {
@@ -64,6 +65,8 @@ void require_own_files(const std::vector<fs::path>& files) {
                         "beside it with this one",
                         file.string()));
     };
+    if (files[0].extension() == ".png" && fs::is_regular_file(files[0], ignored) && !is_drawn_png(read_file(files[0])))
+        refuse(files[0]);
     if (fs::is_regular_file(files[1], ignored) && !is_envelope_csv(read_file(files[1]))) refuse(files[1]);
     if (fs::is_regular_file(files[2], ignored) && !is_envelope_json(read_file(files[2]))) refuse(files[2]);
 }

@@ -29,6 +29,18 @@ MapFormat map_format(const fs::path& file) {
     throw InputError(fmt::format("-o: expected a file that ends in .gpkg or .geojson, found {}", file.string()));
 }
 
+/// The map that is written where no name was given: one of an earlier export gives way to it.
+fs::path default_map(const fs::path& directory) {
+    fs::path file = run_name(directory) + ".gpkg";
+    std::error_code error;
+    if (fs::is_regular_file(file, error) && !is_own_geopackage(read_file(file)))
+        throw InputError(
+            fmt::format("{}: expected a map that kluft export made or none, found another file, which would "
+                        "be lost; choose a name with -o",
+                        file.string()));
+    return file;
+}
+
 FieldNames names_in(const Scene& scene) {
     FieldNames names;
     for (const Material& each : scene.materials) names.materials.push_back(each.name);
@@ -43,8 +55,7 @@ ExitCode export_map(const ExportArguments& arguments) {
     const fs::path directory = arguments.directory;
     if (!fs::is_directory(directory))
         throw InputError(directory.string() + ": expected a directory of results, found none");
-    const fs::path file =
-        arguments.output.empty() ? fs::path(run_name(directory) + ".gpkg") : fs::path(arguments.output);
+    const fs::path file = arguments.output.empty() ? default_map(directory) : fs::path(arguments.output);
     const MapFormat format = map_format(file);
     require_directory_of(file.string());
     require_possible_output(file.string());

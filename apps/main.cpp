@@ -334,7 +334,8 @@ void add_study_command(CLI::App& app, Command& command) {
         ->excludes(emit);
     sub->add_option("--quantity", arguments->quantity,
                     "Quantity of the study that the report is about (default: its first one)");
-    sub->add_flag("--force", arguments->force, "Replace results of a study of another scene in the directory");
+    sub->add_flag("--force", arguments->force,
+                  "Replace results of another scene, of other settings and files that no study made");
     sub->add_flag("--quiet", arguments->quiet, "No progress");
     sub->footer("Cases that have ended are not run again; interrupted ones go on from their saved states.\n"
                 "Exit codes: 0 all cases ended, 1 some failed or are missing, 2 bad input, 4 out of disk or memory, "

@@ -174,15 +174,19 @@ ExitCode study(const StudyArguments& arguments) {
     require_no_file(directory);
     if (!is_locked(directory)) require_no_run_in(directory); // a run that holds it is named below
     const std::string holder = "kluft study " + arguments.words.back();
+    const auto require_own = [&](const ReadStudy& read) {
+        if (arguments.force) return;
+        require_no_other_study(read, directory,
+                               arguments.emit.empty() ? std::vector<std::string>{} : emitted_files(arguments.emit));
+    };
     std::optional<DirectoryLock> lock;
     if (!place.ready_made.empty()) {
         if (!arguments.collect) lock.emplace(directory, holder);
-        if (!arguments.force)
-            require_no_other_study(read_study_text(place.ready_made, arguments.overrides, place.file), directory);
+        require_own(read_study_text(place.ready_made, arguments.overrides, place.file));
         write_ready_made(place);
     }
     const ReadStudy read = read_study(place.file, arguments.overrides);
-    if (!arguments.force) require_no_other_study(read, directory);
+    require_own(read);
     refuse_unknown_quantity(read.study, arguments.quantity);
     if (arguments.collect) {
         if (!fs::is_directory(directory))

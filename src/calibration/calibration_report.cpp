@@ -156,6 +156,24 @@ struct ReportPage {
     ReportDocument parts;
 };
 
+/// Name of a curve's pictures, without the ending.
+std::string stem_of(const CalibrationTarget& target) {
+    std::string stem = target.name;
+    std::ranges::replace(stem, ' ', '-');
+    return stem;
+}
+
+/// Names of all files that write_calibration may write.
+std::vector<std::string> written_files(const Calibration& calibration) {
+    std::vector<std::string> names{"calibrated.yaml", "calibration.json", "report.html"};
+    std::vector<std::string> stems{"progress", "envelope"};
+    for (const CalibrationTarget& target : calibration.targets)
+        if (is_curve(target)) stems.push_back(stem_of(target));
+    for (const std::string& stem : stems)
+        for (const char* ending : {".png", ".svg"}) names.push_back(stem + ending);
+    return names;
+}
+
 void add_picture(const std::string& stem, const CurvePlot& plot, ReportPage& page) {
     const std::string svg = draw_curves(plot, PictureFormat::svg);
     write_file(page.directory / (stem + ".svg"), svg);
@@ -250,9 +268,7 @@ void add_curve(const Calibration& calibration, const CalibrationTarget& target, 
     plot.x_name = "axial strain (%)";
     plot.y_name = "differential stress (MPa)";
     plot.curves = {in_plot_units("measured", target.curve), in_plot_units("calibrated", found)};
-    std::string stem = target.name;
-    std::ranges::replace(stem, ' ', '-');
-    add_picture(stem, plot, page);
+    add_picture(stem_of(target), plot, page);
 }
 
 void add_envelope(const Calibration& calibration, const CalibrationTarget& target, const CalibrationResult& result,
@@ -349,26 +365,24 @@ std::string calibration_text(const Calibration& calibration, const CalibrationRe
 void require_no_other_calibration(const Calibration& calibration, const fs::path& directory) {
     require_no_run_in(directory);
     const fs::path earlier = directory / "calibration.json";
-    const fs::path scene = directory / "calibrated.yaml";
     std::error_code error;
-    if (!fs::exists(earlier, error) && fs::exists(scene, error))
-        throw InputError(scene.string() +
-                         ": expected a calibrated.yaml that a calibration wrote or none, found another "
-                         "one, which would be lost; -o names another directory");
-    if (!fs::exists(earlier, error)) return;
-    const Json json = Json::parse(read_file(earlier), nullptr, false);
-    const std::string of = json.is_object() ? json.value("scene", Json()).dump() : "";
-    if (!of.empty() && of != Json(calibration.scene.string()).dump())
+    const Json json =
+        fs::is_regular_file(earlier, error) ? Json::parse(read_file(earlier), nullptr, false) : Json(nullptr);
+    if (!json.is_object() || !json.contains("scene"))
+        return require_no_foreign_file(directory, written_files(calibration), "a calibration",
+                                       "-o names another directory");
+    if (json["scene"] != Json(calibration.scene.string()))
         throw InputError(
             fmt::format("{}: expected results of this calibration or none, found those of one of the scene {}; -o "
                         "names another directory",
-                        directory.string(), of));
+                        directory.string(), json["scene"].dump()));
 }
 
 void write_calibration(const Calibration& calibration, const CalibrationResult& result, const fs::path& directory) {
     make_directory(directory);
+    write_file(directory / "calibration.json",
+               calibration_json(calibration, result)); // first: it says whose the others are
     write_file(directory / "calibrated.yaml", calibrated_scene(calibration, result, directory));
-    write_file(directory / "calibration.json", calibration_json(calibration, result));
     write_file(directory / "report.html", report_html(report_of(calibration, result, directory)));
 }
 

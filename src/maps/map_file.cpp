@@ -1,5 +1,6 @@
 #include "kluft/maps/map_file.hpp"
 
+#include <array>
 #include <memory>
 #include <utility>
 
@@ -302,8 +303,10 @@ SpatialReference lengths_of_no_system() {
 }
 
 OGRLayerH create_layer(const OpenMap& map, const std::string& name, OGRwkbGeometryType type,
-                       const SpatialReference& reference, const GdalMessages& messages) {
-    OGRLayerH const layer = KLUFT_GDAL(GDALDatasetCreateLayer)(map.get(), name.c_str(), reference.get(), type, nullptr);
+                       const SpatialReference& reference, const GdalMessages& messages, std::string option = {}) {
+    std::array<char*, 2> options{option.empty() ? nullptr : option.data(), nullptr};
+    OGRLayerH const layer =
+        KLUFT_GDAL(GDALDatasetCreateLayer)(map.get(), name.c_str(), reference.get(), type, options.data());
     if (layer == nullptr) refuse_to_write(messages);
     return layer;
 }
@@ -311,9 +314,9 @@ OGRLayerH create_layer(const OpenMap& map, const std::string& name, OGRwkbGeomet
 void write_geopackage(const OpenMap& map, const std::vector<MapLayer>& layers, const GdalMessages& messages) {
     for (const MapLayer& layer : layers) {
         const bool has_lines = !layer.features.empty() && !layer.features.front().lines.empty();
-        OGRLayerH const written =
-            create_layer(map, layer.name, has_lines ? wkbLineString : wkbPolygon,
-                         layer.crs.empty() ? lengths_of_no_system() : reference_of(layer.crs), messages);
+        OGRLayerH const written = create_layer(map, layer.name, has_lines ? wkbLineString : wkbPolygon,
+                                               layer.crs.empty() ? lengths_of_no_system() : reference_of(layer.crs),
+                                               messages, fmt::format("DESCRIPTION={}", geopackage_mark));
         create_fields(written, layer, messages);
         (void)KLUFT_GDAL(GDALDatasetStartTransaction)(map.get(), FALSE);
         add_features(written, layer, false, messages);

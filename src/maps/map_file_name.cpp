@@ -42,4 +42,8 @@ std::vector<fs::path> companions(const fs::path& file) {
     return files;
 }
 
+bool is_own_geopackage(std::string_view content) {
+    return content.starts_with("SQLite format 3") && content.find(geopackage_mark) != std::string_view::npos;
+}
+
 } // namespace kluft

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <numbers>
 
@@ -10,6 +11,7 @@
 #include <cairo-svg.h>
 #include <cairo.h>
 #include <fmt/format.h>
+#include <zlib.h>
 
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/core/memory.hpp"
@@ -104,6 +106,23 @@ std::string svg_text(const Vec2& at, const std::string& text, const TextStyle& s
                                   "stroke-linejoin=\"round\" paint-order=\"stroke\"",
                                   2.0 * style.halo);
     return fmt::format("<text {}>{}</text>\n", attributes, xml_text(text));
+}
+
+constexpr std::size_t head_of_png = 33; ///< bytes of the signature and of the chunk IHDR
+
+std::string big_endian(std::uint32_t number) {
+    std::string bytes;
+    for (const unsigned shift : {24U, 16U, 8U, 0U}) bytes += static_cast<char>(number >> shift & 0xffU);
+    return bytes;
+}
+
+/// The chunk of a PNG that says what made it.
+std::string maker_chunk() {
+    using namespace std::string_literals;
+    const std::string text = "Software\0Kluft"s, named = "tEXt" + text;
+    const auto* const bytes = reinterpret_cast<const Bytef*>(named.data()); // NOLINT: bytes are bytes
+    const auto check = ::crc32(0, bytes, static_cast<uInt>(named.size()));
+    return big_endian(static_cast<std::uint32_t>(text.size())) + named + big_endian(static_cast<std::uint32_t>(check));
 }
 
 void draw_on(cairo_surface_t* surface, double width, double height, double scale,
@@ -306,8 +325,13 @@ std::string draw_picture(PictureFormat format, double width, double height, doub
                                                          static_cast<int>(std::lround(height * pixels_per_point))));
         draw_on(surface.get(), width, height, pixels_per_point, draw);
         check(cairo_surface_write_to_png_stream(surface.get(), collect, &bytes));
+        bytes.insert(head_of_png, maker_chunk());
     }
     return bytes;
+}
+
+bool is_drawn_png(std::string_view content) {
+    return content.size() > head_of_png && content.substr(head_of_png).starts_with(maker_chunk());
 }
 
 } // namespace kluft

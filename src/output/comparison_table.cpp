@@ -202,4 +202,9 @@ std::string comparison_json(const ComparisonTable& table) {
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
+bool is_comparison_json(std::string_view text) {
+    const Json json = Json::parse(text, nullptr, false);
+    return json.is_object() && json.contains("agree") && json.contains("matching_distance");
+}
+
 } // namespace kluft

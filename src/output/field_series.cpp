@@ -147,6 +147,12 @@ std::vector<int> kept_steps(const fs::path& directory) {
     return steps;
 }
 
+std::string first_kept_file(const fs::path& directory) {
+    std::vector<std::string> names;
+    for (const FoundFile& file : files_in(directory)) names.push_back(file.path.lexically_relative(directory).string());
+    return names.empty() ? std::string{} : *std::ranges::min_element(names);
+}
+
 std::vector<int> FieldSeries::steps() const {
     std::vector<int> steps;
     for (const Kept& each : kept_) steps.push_back(each.step);

@@ -159,10 +159,12 @@ std::vector<std::string> result_names() {
 }
 
 std::string first_result_in(const fs::path& directory) {
+    std::vector<std::string> names = result_names();
+    names.emplace_back("run.log");
     std::error_code error;
-    for (const std::string& name : result_names())
+    for (const std::string& name : names)
         if (fs::exists(fs::symlink_status(directory / name, error))) return name;
-    return {};
+    return first_kept_file(directory);
 }
 
 void remove_results(const fs::path& directory) {

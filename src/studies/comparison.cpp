@@ -1,12 +1,15 @@
 #include "kluft/studies/comparison.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
 #include <string>
+#include <system_error>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -14,11 +17,14 @@
 #include "kluft/output/atomic_file.hpp"
 #include "kluft/output/blocks_picture.hpp"
 #include "kluft/output/curve_picture.hpp"
+#include "kluft/studies/earlier_results.hpp"
 
 namespace kluft {
 
 namespace {
 
+/// What write_comparison writes beside compare.json.
+constexpr std::array pictures_and_text{"compare.md", "curves.png", "curves.svg", "cracks.png", "cracks.svg"};
 constexpr double rounding = 1e-6; ///< of the reach: cracks exactly one spacing apart are matched
 const Colour matched_colour = colour(0x1A1A1A);
 
@@ -424,27 +430,37 @@ CracksPlot cracks_plot(const FinishedRun& a, const FinishedRun& b, const std::ve
     return plot;
 }
 
+void require_no_other_comparison(const std::filesystem::path& directory) {
+    const std::filesystem::path earlier = directory / "compare.json";
+    std::error_code error;
+    const bool is_ours = std::filesystem::is_regular_file(earlier, error) && is_comparison_json(read_file(earlier));
+    if (is_ours) return;
+    std::vector<std::string> names(pictures_and_text.begin(), pictures_and_text.end());
+    names.emplace_back("compare.json");
+    require_no_foreign_file(directory, names, "a comparison", "-o names another directory");
+}
+
 void write_comparison(const std::filesystem::path& directory, const FinishedRun& a, const FinishedRun& b,
                       Comparison& comparison) {
     make_directory(directory);
-    for (const char* name : {"compare.md", "compare.json", "curves.png", "curves.svg", "cracks.png", "cracks.svg"})
-        remove_file(directory / name);
+    for (const char* name : pictures_and_text) remove_file(directory / name);
     ComparisonTable& table = comparison.table;
+    const Model* const model = a.model ? &*a.model : b.model ? &*b.model : nullptr;
+    table.pictures = {"curves.png"};
+    if (model != nullptr) table.pictures.emplace_back("cracks.png");
+    write_file(directory / "compare.json", comparison_json(table)); // first: it says whose the others are
     CurvePlot curves = stress_strain_plot(fmt::format("{} and {}", a.name, b.name),
                                           {{a.name, a.history, a.equilibria, a.platen_stage.value_or(0)},
                                            {b.name, b.history, b.equilibria, b.platen_stage.value_or(0)}});
     curves.curves.back().dashed = true;
     for (const char* name : {"curves.png", "curves.svg"}) write_curves(directory / name, curves);
-    table.pictures = {"curves.png"};
-    if (const Model* const model = a.model ? &*a.model : b.model ? &*b.model : nullptr) {
+    if (model != nullptr) {
         const CracksPlot cracks = cracks_plot(a, b, comparison.matches);
         write_cracks(directory / "cracks.png", model->system, cracks);
         if (model->system.n_blocks() <= most_blocks_in_svg)
             write_cracks(directory / "cracks.svg", model->system, cracks);
-        table.pictures.emplace_back("cracks.png");
     }
     write_file(directory / "compare.md", comparison_markdown(table));
-    write_file(directory / "compare.json", comparison_json(table));
 }
 
 } // namespace kluft

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 #include <system_error>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -56,6 +57,16 @@ void require_no_run_in(const fs::path& directory) {
         throw InputError(directory.string() +
                          ": expected another directory than that of a run, found a history.csv in it; "
                          "-o names another one");
+}
+
+void require_no_foreign_file(const fs::path& directory, const std::vector<std::string>& names,
+                             const std::string& writer, const std::string& way_out) {
+    std::error_code error;
+    for (const std::string& name : names)
+        if (fs::exists(fs::symlink_status(directory / name, error)))
+            throw InputError(
+                fmt::format("{}: expected a {} that {} wrote or none, found another one, which would be lost; {}",
+                            (directory / name).string(), name, writer, way_out));
 }
 
 bool has_own_scene_file(const fs::path& directory, const Scene& scene) {

@@ -54,6 +54,10 @@ std::string time_option(const Study& study) {
 
 } // namespace
 
+std::vector<std::string> emitted_files(const std::string& format) {
+    return {"run-case", format == "make" ? "Makefile" : "study.slurm"};
+}
+
 std::string case_script() {
     return R"script(#!/bin/bash
 # run-case N: runs line N (from 0) of cases.txt, from its saved state where there is one. Signals make it save its

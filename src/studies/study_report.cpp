@@ -863,24 +863,24 @@ void ReportBuilder::add_recommendation() {
     add(ReportList{std::move(accurate)});
 }
 
-/// Pictures of an earlier report.
-void remove_pictures(const fs::path& directory) {
-    std::vector<fs::path> old;
+} // namespace
+
+std::vector<std::string> study_pictures_in(const fs::path& directory) {
+    std::vector<std::string> names;
     std::error_code error;
     for (fs::directory_iterator entry(directory, error), end; !error && entry != end; entry.increment(error)) {
-        const std::string name = entry->path().filename().string();
+        std::string name = entry->path().filename().string();
         if (name.starts_with(picture_prefix) && (name.ends_with(".png") || name.ends_with(".svg")))
-            old.push_back(entry->path());
+            names.push_back(std::move(name));
     }
-    for (const fs::path& path : old) remove_file(path);
+    std::ranges::sort(names);
+    return names;
 }
-
-} // namespace
 
 void write_study_report(const StudyTable& table, const fs::path& directory, const StudyReportOptions& options) {
     ReportBuilder builder(table, directory, options);
     make_directory(directory);
-    remove_pictures(directory);
+    for (const std::string& picture : study_pictures_in(directory)) remove_file(directory / picture);
     const ReportDocument document = builder.build();
     write_file(directory / "study.md", report_markdown(document));
     write_file(directory / "study.html", report_html(document));

@@ -20,6 +20,8 @@
 #include "kluft/output/progress_line.hpp"
 #include "kluft/output/summary.hpp"
 #include "kluft/studies/comparison.hpp"
+#include "kluft/studies/earlier_results.hpp"
+#include "kluft/studies/study_report.hpp"
 
 namespace kluft {
 
@@ -306,39 +308,82 @@ std::string noted_scene(const fs::path& scene, const fs::path& directory) {
 
 namespace {
 
-/// Directories of cases of another scene than this study's, with that scene.
-std::vector<std::pair<fs::path, std::string>> cases_of_other_scenes(const ReadStudy& read, const fs::path& directory) {
-    const std::string scene = noted_scene(read.study.scene, directory);
-    std::vector<std::pair<fs::path, std::string>> others;
+constexpr const char* ways_out = "--force replaces it, -o names another directory";
+
+struct NotedCase {
+    fs::path directory;
+    std::string scene; ///< by its way from the directory of the study
+};
+
+/// What the cases in the directory say of themselves.
+std::vector<NotedCase> noted_cases(const fs::path& directory) {
+    std::vector<NotedCase> cases;
     std::error_code error;
     for (fs::directory_iterator entry(directory / "cases", error), end; !error && entry != end;
          entry.increment(error)) {
-        std::string earlier = value_or(json_of(entry->path() / "case.json"), "scene", scene);
-        if (earlier != scene) others.emplace_back(entry->path(), std::move(earlier));
+        std::string scene = value_or(json_of(entry->path() / "case.json"), "scene", std::string{});
+        if (!scene.empty()) cases.push_back({entry->path(), std::move(scene)});
     }
-    return others;
+    return cases;
+}
+
+/// Cases of another scene than this study's.
+std::vector<NotedCase> cases_of_other_scenes(const ReadStudy& read, const fs::path& directory) {
+    const std::string scene = noted_scene(read.study.scene, directory);
+    std::vector<NotedCase> cases = noted_cases(directory);
+    std::erase_if(cases, [&](const NotedCase& each) { return each.scene == scene; });
+    return cases;
+}
+
+/// Whether something says that the directory is that of a study.
+bool is_of_study(const fs::path& directory) {
+    const fs::path table = directory / "study.csv";
+    std::error_code error;
+    return !noted_cases(directory).empty() ||
+           (fs::is_regular_file(table, error) && read_file(table).starts_with("case,variant,"));
+}
+
+/// Whether something stands in the directory but what a study leaves there that was killed while it wrote case.json.
+bool has_something(const fs::path& directory) {
+    const fs::path unfinished = partial_name(directory / "case.json");
+    std::error_code error;
+    const fs::directory_iterator entries(directory, error);
+    return std::any_of(begin(entries), end(entries), [&](const auto& entry) { return entry.path() != unfinished; });
+}
+
+/// A directory of a case that no study has made.
+void require_no_foreign_case(const ReadStudy& read, const fs::path& directory) {
+    for (const PlannedCase& one : read.cases) {
+        const fs::path place = case_directory(directory, one);
+        if (json_of(place / "case.json").is_null() && has_something(place))
+            throw InputError(
+                fmt::format("{}: expected a case that a study made or none, found another directory, which would be "
+                            "lost; {}",
+                            place.string(), ways_out));
+    }
 }
 
 } // namespace
 
 void remove_other_study(const ReadStudy& read, const fs::path& directory) {
     std::error_code ignored; // prepare_case tells what cannot be written
-    for (const auto& [place, scene] : cases_of_other_scenes(read, directory)) fs::remove_all(place, ignored);
+    for (const NotedCase& each : cases_of_other_scenes(read, directory)) fs::remove_all(each.directory, ignored);
 }
 
-void require_no_other_study(const ReadStudy& read, const fs::path& directory) {
+void require_no_other_study(const ReadStudy& read, const fs::path& directory, const std::vector<std::string>& further) {
     if (const auto others = cases_of_other_scenes(read, directory); !others.empty())
         throw InputError(
             fmt::format("{}: expected results of a study of {} or none, found those of a study of {} in {}; --force "
                         "replaces them, -o names another directory",
-                        directory.string(), noted_scene(read.study.scene, directory), others.front().second,
-                        others.front().first.string()));
-    std::error_code error;
-    if (fs::exists(directory / "study.csv", error) && !fs::exists(directory / "cases.txt", error))
-        throw InputError(
-            fmt::format("{}: expected a table of a study or none, found one of something else, which would be lost; "
-                        "--force replaces it, -o names another directory",
-                        (directory / "study.csv").string()));
+                        directory.string(), noted_scene(read.study.scene, directory), others.front().scene,
+                        others.front().directory.string()));
+    if (!is_of_study(directory)) {
+        std::vector<std::string> names{"study.csv", "study.md", "study.html", "cases.txt"};
+        for (const auto& more : {further, study_pictures_in(directory)})
+            names.insert(names.end(), more.begin(), more.end());
+        require_no_foreign_file(directory, names, "a study", ways_out);
+    }
+    require_no_foreign_case(read, directory);
 }
 
 void prepare_case(const fs::path& directory, const PlannedCase& one, const std::string& scene) {

@@ -774,6 +774,14 @@ TEST_F(CommandLine, ResultsWithoutASceneAreReplacedWhereTheirStateIsOfTheSameSce
     expect_refused({"run", "tiny.yaml", "-o", "mine"},
                    HasSubstr("mine: expected results of this scene or none, found cracks.csv"));
     EXPECT_EQ(content_of(path("mine/cracks.csv")), "measured");
+    fs::remove(path("mine/cracks.csv"));
+    fs::create_directory(path("mine/contacts"));
+    for (const std::string name : {"run.log", "contacts/000000.csv"}) {
+        write("mine/" + name, "measured");
+        expect_refused({"run", "tiny.yaml", "-o", "mine"}, HasSubstr("found " + name + " and no scene.yaml"));
+        EXPECT_EQ(content_of(path("mine/" + name)), "measured");
+        fs::remove(path("mine/" + name));
+    }
 }
 
 TEST_F(CommandLine, SceneThatWasChangedBesideItsResultsIsAnotherOne) {
@@ -1540,6 +1548,23 @@ TEST_F(CommandLine, DrawMakesPicturesOfScenesAndRuns) {
     EXPECT_THAT(content_of(path("both.svg")), HasSubstr("</svg>"));
 }
 
+TEST_F(CommandLine, PicturesAndMapsThatNobodyNamedReplaceTheirLikeOnly) {
+    write("tiny.yaml", tiny_scene);
+    ASSERT_EQ(kluft({"run", "tiny.yaml", "-o", "r", "--quiet", "--set", "output.pictures=false"}).code, 0);
+    std::vector<std::pair<std::string, Words>> files{{"tiny.png", {"draw", "tiny.yaml"}},
+                                                     {"curves.png", {"draw", "r", "r"}},
+                                                     {"r-sigma_1-0.png", {"draw", "r", "--step", "0"}}};
+    if (gdal_problem().empty()) files.push_back({"r.gpkg", {"export", "r"}});
+    for (const auto& [name, words] : files) {
+        write(name, "mine");
+        expect_refused(words,
+                       AllOf(StartsWith(name + ": expected a "), HasSubstr("would be lost; choose a name with -o")));
+        EXPECT_EQ(content_of(path(name)), "mine");
+        EXPECT_EQ(kluft(with(words, {"-o", name})).code, 0);
+        for (int i = 0; i < 2; ++i) EXPECT_EQ(kluft(words).code, 0) << name;
+    }
+}
+
 TEST_F(CommandLine, DrawMakesAPictureOfAKeptStateByAField) {
     write("tiny.yaml", tiny_scene);
     ASSERT_EQ(kluft({"run", "tiny.yaml", "-o", "r", "--set", "output.pictures=false"}).code, 0);
@@ -1671,6 +1696,11 @@ stages: [{name: pressure, pressure: {top: 1 MPa}, steps: 1}]
         EXPECT_TRUE(json["quantities"].contains("curve_mean"));
         EXPECT_EQ(fs::exists(path("c/cracks.png")), runs != Words({"bare", "bare"}));
     }
+    fs::remove(path("c/compare.json"));
+    write("c/compare.md", "mine");
+    expect_refused({"compare", "plain", "tiny", "-o", "c"},
+                   HasSubstr("c/compare.md: expected a compare.md that a comparison wrote or none"));
+    EXPECT_EQ(content_of(path("c/compare.md")), "mine");
 }
 
 TEST_F(CommandLine, CompareRefusesWhatIsNoRun) {
@@ -1764,9 +1794,11 @@ TEST_F(CommandLine, EnvelopeTakesNoResultsPlace) {
         EXPECT_EQ(content_of(path(name)), "of a laboratory\n");
         fs::remove(path(name));
     }
+    write("envelope.png", "mine");
+    expect_refused({"envelope", "good.csv"}, HasSubstr("envelope.png is no file of an envelope"));
+    EXPECT_EQ(content_of(path("envelope.png")), "mine");
 }
 
-// Tables that have lost rows, or are not there at all, say less than the run's summary.
 TEST_F(CommandLine, EnvelopeAsksForAllRowsOfARun) {
     write("tiny.yaml", tiny_scene);
     write("good.csv", "sigma_3,sigma_1\n0,1e6\n1e6,5e6\n");
@@ -1807,8 +1839,32 @@ TEST_F(CommandLine, StudyKeepsTheRunsOfAnotherScenesStudy) {
     EXPECT_EQ(kluft({"study", "c.yaml", "-o", "s", "--quiet"}).code, 0);
     fs::create_directory(path("own"));
     write("own/study.csv", "mine\n");
-    expect_refused({"study", "a.yaml", "-o", "own"}, HasSubstr("own/study.csv: expected a table of a study or none"));
+    expect_refused({"study", "a.yaml", "-o", "own"},
+                   HasSubstr("own/study.csv: expected a study.csv that a study wrote or none"));
     EXPECT_EQ(content_of(path("own/study.csv")), "mine\n");
+}
+
+TEST_F(CommandLine, StudyTakesThePlaceOfNoFileThatNoStudyWrote) {
+    write("tiny.yaml", tiny_scene);
+    write("a.yaml", "scene: tiny.yaml\nvary: {stages.1.steps: [1]}\n");
+    fs::create_directories(path("own/cases/steps=1"));
+    const Words words{"study", "a.yaml", "-o", "own", "--quiet"};
+    for (const std::string name : {"study.md", "study.html", "cases.txt", "study-curves.svg", "cases/steps=1/notes"}) {
+        write("own/" + name, "mine");
+        expect_refused(words, AllOf(HasSubstr("which would be lost"), HasSubstr("--force")));
+        EXPECT_EQ(content_of(path("own/" + name)), "mine");
+        fs::remove(path("own/" + name));
+    }
+    write("own/cases/steps=1/case.json.part", "{"); // of a study that was killed
+    write("own/Makefile", "mine");
+    expect_refused(with(words, {"--emit", "make"}), HasSubstr("own/Makefile: expected a Makefile that a study wrote"));
+    EXPECT_EQ(kluft(words).code, 0);
+    EXPECT_EQ(content_of(path("own/Makefile")), "mine");
+    EXPECT_EQ(kluft(words).code, 0);
+    fs::create_directory(path("new"));
+    write("new/study.md", "mine");
+    EXPECT_EQ(kluft({"study", "a.yaml", "-o", "new", "--quiet", "--force"}).code, 0);
+    EXPECT_NE(content_of(path("new/study.md")), "mine");
 }
 
 // Of another scene, whose body is the same: no fingerprint tells them apart.

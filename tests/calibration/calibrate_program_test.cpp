@@ -143,6 +143,8 @@ TEST_F(CalibrateProgram, ReplacesItsLikeOnly) {
     };
     refused("history.csv", "step\n", "expected another directory than that of a run");
     refused("calibrated.yaml", "kluft: 1\n", "expected a calibrated.yaml that a calibration wrote or none");
+    for (const char* mine : {"report.html", "calibration.json", "progress.png", "progress.svg"})
+        refused(mine, "mine", std::string("expected a ") + mine + " that a calibration wrote or none");
     refused("calibration.json", R"({"scene": "/other.yaml"})", "found those of one of the scene \"/other.yaml\"");
     EXPECT_EQ(run(moduli + elasticity), 0) << told_;
     EXPECT_EQ(run(moduli + elasticity), 0) << told_;

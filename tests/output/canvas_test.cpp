@@ -1,5 +1,8 @@
 #include "kluft/output/canvas.hpp"
 
+#include <cstdint>
+#include <string>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -15,9 +18,9 @@ namespace {
 using ::testing::HasSubstr;
 
 int big_endian(const std::string& bytes, std::size_t at) {
-    int value = 0;
-    for (std::size_t i = at; i < at + 4; ++i) value = 256 * value + static_cast<unsigned char>(bytes[i]);
-    return value;
+    std::uint32_t value = 0;
+    for (std::size_t i = at; i < at + 4; ++i) value = 256U * value + static_cast<unsigned char>(bytes[i]);
+    return static_cast<int>(value);
 }
 
 // Width and height stand at bytes 16 and 20 of a PNG file.
@@ -28,6 +31,23 @@ TEST(Canvas, HasThePixelsOfThePage) {
     });
     EXPECT_EQ(big_endian(png, 16), 250);
     EXPECT_EQ(big_endian(png, 20), 100);
+}
+
+// The text follows the 33 bytes of the head; bit by bit, the check of a chunk is that of PNG's appendix D.
+TEST(Canvas, APngSaysWhatMadeIt) {
+    const std::string png = draw_picture(PictureFormat::png, 10.0, 10.0, 1.0, [](Canvas&) {});
+    EXPECT_TRUE(is_drawn_png(png));
+    EXPECT_FALSE(is_drawn_png("mine"));
+    const std::size_t n = 14;
+    EXPECT_FALSE(is_drawn_png(std::string(png).erase(33, 12 + n)));
+    EXPECT_EQ(big_endian(png, 33), static_cast<int>(n));
+    EXPECT_EQ(png.substr(37, 4 + n), std::string("tEXtSoftware\0Kluft", 4 + n));
+    std::uint32_t check = 0xffffffffU;
+    for (const char c : png.substr(37, 4 + n)) {
+        check ^= static_cast<unsigned char>(c);
+        for (int bit = 0; bit < 8; ++bit) check = (check >> 1U) ^ ((check & 1U) != 0U ? 0xedb88320U : 0U);
+    }
+    EXPECT_EQ(static_cast<std::uint32_t>(big_endian(png, 41 + n)), ~check);
 }
 
 TEST(Canvas, SaysWhenAPictureIsTooLarge) {

@@ -256,6 +256,20 @@ TEST(RunWriter, WritesTheSceneWholeAndRemovesNoneOfTheUsersOwn) {
     EXPECT_TRUE(fs::exists(directory / "scene.yaml"));
 }
 
+TEST(RunWriter, KnowsEveryFileThatARunWouldTakeThePlaceOf) {
+    for (const char* name : {"run.log", "contacts/000000.csv", "supports/000012.csv", "fields/blocks_000000.vtu",
+                             "fields/interfaces_000000.vtu", "report.html"}) {
+        const TemporaryDirectory directory;
+        make_directory((directory / name).parent_path());
+        write_file(directory / name, "mine");
+        EXPECT_EQ(first_result_in(directory.path()), name);
+    }
+    const TemporaryDirectory directory;
+    make_directory(directory / "fields");
+    write_file(directory / "fields/blocks_mine.vtu", "mine");
+    EXPECT_EQ(first_result_in(directory.path()), "");
+}
+
 TEST(RunWriter, RefusedResumptionLeavesTheScene) {
     const TemporaryDirectory directory;
     RunWriterOptions options;

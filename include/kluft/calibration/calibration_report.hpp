@@ -20,8 +20,8 @@ namespace kluft {
 /// The result in a few lines for the terminal.
 [[nodiscard]] std::string calibration_text(const Calibration& calibration, const CalibrationResult& result);
 
-/// Throws InputError where the directory is that of a run or of a calibration of another scene, or has a calibrated.yaml that no
-/// calibration wrote: what write_calibration would take the place of.
+/// Throws InputError where the directory is that of a run or of a calibration of another scene, or has a file that no calibration
+/// wrote and that write_calibration would take the place of.
 void require_no_other_calibration(const Calibration& calibration, const std::filesystem::path& directory);
 
 /// Writes calibrated.yaml, calibration.json, report.html and its pictures into the directory. Throws ResourceError.

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "kluft/maps/map_layer.hpp"
@@ -29,5 +30,11 @@ enum class MapFormat { geopackage, geojson };
 /// after the other, with the name of the layer as attribute `layer`. All layers have one coordinate system, which is
 /// written. Throws InputError without GDAL, ResourceError where there is not enough memory.
 [[nodiscard]] std::string map_file_content(MapFormat format, const std::vector<MapLayer>& layers);
+
+/// What the description of each layer of such a GeoPackage says.
+inline constexpr std::string_view geopackage_mark = "Made by Kluft from a state of a run";
+
+/// Whether map_file_content has made the GeoPackage, whatever others have done to it since.
+[[nodiscard]] bool is_own_geopackage(std::string_view content);
 
 } // namespace kluft

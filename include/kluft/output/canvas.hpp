@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -107,5 +108,8 @@ enum class PictureFormat { png, svg, pdf };
 /// Throws ResourceError when there is not enough memory.
 [[nodiscard]] std::string draw_picture(PictureFormat format, double width, double height, double pixels_per_point,
                                        const std::function<void(Canvas&)>& draw);
+
+/// Whether draw_picture has made the PNG: it says so in a chunk of text.
+[[nodiscard]] bool is_drawn_png(std::string_view content);
 
 } // namespace kluft

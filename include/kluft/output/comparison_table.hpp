@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace kluft {
@@ -55,5 +56,7 @@ struct ComparisonTable {
 [[nodiscard]] std::string comparison_markdown(const ComparisonTable& table);
 /// The same in SI units; what is not known or not a finite number is null.
 [[nodiscard]] std::string comparison_json(const ComparisonTable& table);
+/// Whether comparison_json has made the text.
+[[nodiscard]] bool is_comparison_json(std::string_view text);
 
 } // namespace kluft

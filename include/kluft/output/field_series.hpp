@@ -64,4 +64,7 @@ private:
 /// The load steps whose states a results directory keeps, ascending.
 [[nodiscard]] std::vector<int> kept_steps(const std::filesystem::path& directory);
 
+/// "contacts/000000.csv": the first of the files of kept states, by name; "" if there is none.
+[[nodiscard]] std::string first_kept_file(const std::filesystem::path& directory);
+
 } // namespace kluft

@@ -119,7 +119,7 @@ private:
 /// The files of a run's directory that remove_results removes there, folders and what is in them excepted.
 [[nodiscard]] std::vector<std::string> result_names();
 
-/// The first file in the directory that remove_results would remove; "" if there is none.
+/// The first file in the directory that a run of another scene would take the place of, scene.yaml excepted; "" if there is none.
 [[nodiscard]] std::string first_result_in(const std::filesystem::path& directory);
 
 /// Removes every file that a run writes, except run.log and scene.yaml. Throws ResourceError.

@@ -66,7 +66,10 @@ struct Comparison {
 [[nodiscard]] CracksPlot cracks_plot(const FinishedRun& a, const FinishedRun& b,
                                      const std::vector<CrackMatch>& matches);
 
-/// Writes compare.md, compare.json, curves.png, curves.svg, and where the body of a run is known cracks.png and
+/// Throws InputError where the directory has a file that no comparison wrote and that write_comparison would take the place of.
+void require_no_other_comparison(const std::filesystem::path& directory);
+
+/// Writes compare.json, compare.md, curves.png, curves.svg, and where the body of a run is known cracks.png and
 /// cracks.svg (no SVG of very many blocks); removes older ones. Enters the pictures into the table.
 /// Throws ResourceError.
 void write_comparison(const std::filesystem::path& directory, const FinishedRun& a, const FinishedRun& b,

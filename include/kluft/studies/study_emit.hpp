@@ -10,6 +10,9 @@
 
 namespace kluft {
 
+/// Names of the files that emit_study writes for a format ("slurm", "make").
+[[nodiscard]] std::vector<std::string> emitted_files(const std::string& format);
+
 /// A job array over the lines of cases.txt, at most `jobs` at once.
 [[nodiscard]] std::string slurm_script(const ReadStudy& read, const std::filesystem::path& directory, int jobs);
 

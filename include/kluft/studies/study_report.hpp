@@ -21,4 +21,7 @@ struct StudyReportOptions {
 void write_study_report(const StudyTable& table, const std::filesystem::path& directory,
                         const StudyReportOptions& options = {});
 
+/// Names of the pictures of a report in the directory, ascending: those that write_study_report removes first.
+[[nodiscard]] std::vector<std::string> study_pictures_in(const std::filesystem::path& directory);
+
 } // namespace kluft
