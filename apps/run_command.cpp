@@ -85,9 +85,12 @@ ExitCode exit_code(RunStatus status) {
 
 /// A report that cannot be written for want of disk or memory is an end like that of pictures.
 void write_report(const SceneModel& built, const Scene& scene, const RunWriter& writer, const RunSummary& summary,
-                  RunLog& log, const fs::path& directory) {
+                  RunLog& log, const fs::path& directory, bool quiet) {
     try {
-        write_run_page(directory, scene, built.model, built.cut);
+        for (const auto& warning : write_run_page(directory, scene, built.model, built.cut)) {
+            log.warning(warning);
+            if (!quiet) tell("warning: {}\n", warning);
+        }
     } catch (const ResourceError& error) {
         log.error(error.what());
         writer.give_up(summary, error.what());
@@ -129,7 +132,7 @@ ExitCode simulate(const SceneModel& built, const Scene& scene, State& state, Run
     log.info(closing);
     const bool has_begun = report.status != RunStatus::out_of_resources || state.at.step > 0;
     if (scene.output.report && has_begun && !memory_ran_out())
-        write_report(built, scene, writer, summary, log, directory);
+        write_report(built, scene, writer, summary, log, directory, quiet);
     if (!quiet) say("{}\n", closing);
     if (const std::string lost = lost_output(); !lost.empty()) {
         log.error(lost);

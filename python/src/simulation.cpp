@@ -344,7 +344,9 @@ private:
         closing_ = closing_line(report_, summary, output_->directory);
         output_->log->info(closing_);
         const bool has_begun = report_.status != RunStatus::out_of_resources || state_.at.step > 0;
-        if (scene_.output.report && has_begun) write_run_page(output_->directory, scene_, model(), built_.cut);
+        if (scene_.output.report && has_begun)
+            for (const std::string& warning : write_run_page(output_->directory, scene_, model(), built_.cut))
+                output_->log->warning(warning);
         output_->writer.reset();
         output_->lock.reset();
     }

@@ -186,16 +186,24 @@ std::string text_of(const fs::path& path) { return fs::exists(path) ? read_file(
 struct PackedStates {
     std::vector<int> steps;
     std::string elements;
+    std::vector<std::string> warnings; ///< of damaged ones
 };
 
 PackedStates pack_states(const fs::path& directory, const BlockSystem& system, std::optional<int> peak,
-                         std::size_t most_bytes) {
+                         const RunPageOptions& options) {
     const std::vector<int> kept = kept_steps(directory);
+    const std::size_t most = options.most_bytes_of_states / std::max<std::size_t>(1, bytes_of_state(system));
     PackedStates packed;
-    packed.steps = chosen_states(kept, peak, most_bytes / std::max<std::size_t>(1, bytes_of_state(system)));
-    for (std::size_t i = 0; i < packed.steps.size(); ++i)
-        packed.elements += data_element("state-" + std::to_string(i),
-                                        state_arrays(system, read_fields(directory, packed.steps[i], system)).json());
+    for (const int step : chosen_states(kept, peak, most)) {
+        try {
+            packed.elements += data_element("state-" + std::to_string(packed.steps.size()),
+                                            state_arrays(system, read_fields(directory, step, system)).json());
+            packed.steps.push_back(step);
+        } catch (const InputError& error) {
+            if (!options.leaves_out_damaged_states) throw;
+            packed.warnings.push_back(fmt::format("the report is without load step {}: {}", step, error.what()));
+        }
+    }
     if (!packed.steps.empty()) packed.elements += data_element("shape", shape_arrays(system).json());
     return packed;
 }
@@ -252,8 +260,8 @@ RunFacts facts_of(const fs::path& directory, const Rows& history, const Rows& eq
 
 } // namespace
 
-std::string run_page(const fs::path& directory, const Scene& scene, const Model& model, const CutReport& cut,
-                     const RunPageOptions& options) {
+RunPage run_page(const fs::path& directory, const Scene& scene, const Model& model, const CutReport& cut,
+                 const RunPageOptions& options) {
     const BlockSystem& system = model.system;
     const Rows history = read_history(directory / "history.csv");
     if (history.empty()) throw InputError((directory / "history.csv").string() + ": no load step in it yet");
@@ -264,7 +272,7 @@ std::string run_page(const fs::path& directory, const Scene& scene, const Model&
     const RunAnswer answer = run_answer(facts);
     const NumberTable rows = read_number_table(directory / "history.csv");
     const auto peak = step_of_peak(history, facts.platen_stage);
-    const PackedStates states = pack_states(directory, system, peak, options.most_bytes_of_states);
+    const PackedStates states = pack_states(directory, system, peak, options);
     const auto peak_state = nearest_place(states.steps, peak);
     const std::string title = scene.title.empty() ? scene.name : scene.title;
     const std::string run = fmt::format(
@@ -279,6 +287,8 @@ std::string run_page(const fs::path& directory, const Scene& scene, const Model&
     std::string program(version());
     if (!commit().empty()) program += " (" + std::string(commit()) + ")";
     const std::string where = directory.lexically_normal().string();
+    std::vector<std::string> warnings = answer.warnings;
+    warnings.insert(warnings.end(), states.warnings.begin(), states.warnings.end());
     ReportPage page;
     page.title = title;
     page.plots = true;
@@ -292,23 +302,28 @@ std::string run_page(const fs::path& directory, const Scene& scene, const Model&
                         {"name", html_text(answer.name)},
                         {"value", html_text(answer.value)},
                         {"sentence", html_text(answer.sentence)},
-                        {"warnings", warnings_html(answer.warnings)},
+                        {"warnings", warnings_html(warnings)},
                         {"numbers", numbers_html(numbers_of(facts, system))},
                         {"command", html_text(shell_line({"kluft", "run", (fs::path(where) / "scene.yaml").string(),
                                                           "-o", where + "-again"}))},
                         {"scene", html_text(scene_text)},
                         {"log", html_text(text_of(directory / "run.log"))},
                         {"data", data_element("run", escaped_json(run)) + states.elements}});
-    return html_of(page);
+    return {html_of(page), states.warnings};
 }
 
-void write_run_page(const fs::path& directory, const Scene& scene, const Model& model, const CutReport& cut) {
-    write_file(directory / "report.html", run_page(directory, scene, model, cut));
+std::vector<std::string> write_run_page(const fs::path& directory, const Scene& scene, const Model& model,
+                                        const CutReport& cut) {
+    RunPageOptions options;
+    options.leaves_out_damaged_states = true;
+    const RunPage page = run_page(directory, scene, model, cut, options);
+    write_file(directory / "report.html", page.html);
+    return page.warnings;
 }
 
 void write_run_page(const fs::path& directory, const fs::path& file) {
     const RunOfResults run = run_of_results(directory);
-    write_file(file, run_page(directory, run.scene, run.built.model, run.built.cut));
+    write_file(file, run_page(directory, run.scene, run.built.model, run.built.cut).html);
 }
 
 } // namespace kluft

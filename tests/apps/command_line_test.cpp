@@ -1631,6 +1631,21 @@ TEST_F(CommandLine, ReportRefusesWhatIsNoRunAndDamagedFiles) {
     EXPECT_EQ(kluft({"report", "r"}).code, 0);
 }
 
+// What it has computed is whole without it.
+TEST_F(CommandLine, AResumedRunEndsBesideADamagedFieldFile) {
+    write("tiny.yaml", tiny_scene);
+    const Words run{"run", "tiny.yaml", "-o", "r"};
+    ASSERT_EQ(kluft(with(run, {"--quiet"})).code, 0);
+    write("r/fields/blocks_000000.vtu", content_of(path("r/fields/blocks_000000.vtu")).substr(0, 2000));
+    const Result resumed = kluft(with(run, {"--resume"}));
+    EXPECT_EQ(resumed.code, 0) << resumed.err;
+    const std::string warning = "the report is without load step 0: r/fields/blocks_000000.vtu: expected ";
+    EXPECT_THAT(resumed.err, HasSubstr("warning: " + warning));
+    EXPECT_THAT(content_of(path("r/report.html")), AllOf(HasSubstr("<li>" + warning), HasSubstr("id=\"state-0\"")));
+    EXPECT_THAT(content_of(path("r/run.log")), HasSubstr(warning));
+    expect_refused({"report", "r"}, HasSubstr("r/fields/blocks_000000.vtu: expected "));
+}
+
 TEST_F(CommandLine, DrawRefusesWhatItCannotDraw) {
     write("tiny.yaml", tiny_scene);
     fs::create_directory(path("empty"));
