@@ -18,7 +18,10 @@
 #include "kluft/output/directory_lock.hpp"
 #include "kluft/output/history_table.hpp"
 #include "kluft/output/progress_line.hpp"
+#include "kluft/output/run_writer.hpp"
 #include "kluft/output/summary.hpp"
+#include "kluft/scene/scene_as_run.hpp"
+#include "kluft/scene/scene_reader.hpp"
 #include "kluft/studies/comparison.hpp"
 #include "kluft/studies/earlier_results.hpp"
 #include "kluft/studies/study_report.hpp"
@@ -312,7 +315,8 @@ constexpr const char* ways_out = "--force replaces it, -o names another director
 
 struct NotedCase {
     fs::path directory;
-    std::string scene; ///< by its way from the directory of the study
+    std::string scene;  ///< by its way from the directory of the study
+    std::string digest; ///< of the scene with all settings
 };
 
 /// What the cases in the directory say of themselves.
@@ -321,17 +325,25 @@ std::vector<NotedCase> noted_cases(const fs::path& directory) {
     std::error_code error;
     for (fs::directory_iterator entry(directory / "cases", error), end; !error && entry != end;
          entry.increment(error)) {
-        std::string scene = value_or(json_of(entry->path() / "case.json"), "scene", std::string{});
-        if (!scene.empty()) cases.push_back({entry->path(), std::move(scene)});
+        const Json json = json_of(entry->path() / "case.json");
+        std::string scene = value_or(json, "scene", std::string{});
+        if (!scene.empty()) cases.push_back({entry->path(), std::move(scene), value_or(json, "digest", std::string{})});
     }
     return cases;
 }
 
-/// Cases of another scene than this study's.
+/// Cases of another scene than this study's. In a directory that was moved or copied its own scene may have another way: it is
+/// known by what it says.
 std::vector<NotedCase> cases_of_other_scenes(const ReadStudy& read, const fs::path& directory) {
-    const std::string scene = noted_scene(read.study.scene, directory);
+    std::map<fs::path, std::string> digests;
+    for (const PlannedCase& one : read.cases) digests[case_directory(directory, one)] = one.digest;
     std::vector<NotedCase> cases = noted_cases(directory);
-    std::erase_if(cases, [&](const NotedCase& each) { return each.scene == scene; });
+    std::set<std::string> ways{noted_scene(read.study.scene, directory)};
+    for (const NotedCase& each : cases)
+        if (const auto planned = digests.find(each.directory);
+            planned != digests.end() && planned->second == each.digest)
+            ways.insert(each.scene);
+    std::erase_if(cases, [&](const NotedCase& each) { return ways.contains(each.scene); });
     return cases;
 }
 
@@ -363,7 +375,36 @@ void require_no_foreign_case(const ReadStudy& read, const fs::path& directory) {
     }
 }
 
+/// The first key in which the results of a case differ from what it says now; "" where that is not known.
+std::string difference_of_case(const ReadStudy& read, const PlannedCase& one, const fs::path& place) {
+    try {
+        const auto earlier = scene_as_run_in(place);
+        return earlier ? scene_difference(*earlier, read_scene(read.study.scene, run_settings(read, one))) : "";
+    } catch (const InputError&) {
+        return {};
+    }
+}
+
+/// Results of a case whose scene or settings were others.
+void require_no_changed_case(const ReadStudy& read, const fs::path& directory) {
+    for (const PlannedCase& one : read.cases) {
+        const fs::path place = case_directory(directory, one);
+        if (is_described(place, one) || first_result_in(place).empty()) continue;
+        const std::string difference = difference_of_case(read, one, place);
+        throw InputError(fmt::format("{}: expected results of the scene and the settings as they are now or none, "
+                                     "found in {} those before a change{}{}; --force runs such cases anew, -o names "
+                                     "another directory",
+                                     directory.string(), place.string(), difference.empty() ? "" : ": ", difference));
+    }
+}
+
 } // namespace
+
+std::vector<std::string> run_settings(const ReadStudy& read, const PlannedCase& one) {
+    std::vector<std::string> settings{fmt::format("output.pictures={}", read.study.pictures), "output.report=false"};
+    for (const auto& setting : one.set) settings.push_back(setting.assignment());
+    return settings;
+}
 
 void remove_other_study(const ReadStudy& read, const fs::path& directory) {
     std::error_code ignored; // prepare_case tells what cannot be written
@@ -384,6 +425,7 @@ void require_no_other_study(const ReadStudy& read, const fs::path& directory, co
         require_no_foreign_file(directory, names, "a study", ways_out);
     }
     require_no_foreign_case(read, directory);
+    require_no_changed_case(read, directory);
 }
 
 void prepare_case(const fs::path& directory, const PlannedCase& one, const std::string& scene) {

@@ -107,7 +107,8 @@ private:
         if (has_changed(read_.cases[i])) {
             results_[i] = {};
             results_[i].status = CaseStatus::failed;
-            results_[i].reason = "the scene has changed since the study began; the same command runs what it says now";
+            results_[i].reason =
+                "the scene has changed since the study began; kluft study --force runs what it says now";
             changed_ = true;
             return;
         }
@@ -176,9 +177,7 @@ std::string study_progress_text(const StudyProgress& progress) {
 std::vector<std::string> case_command(const ReadStudy& read, const PlannedCase& one, const fs::path& program,
                                       const fs::path& directory) {
     std::vector<std::string> words{program, "run", read.study.scene, "-o", case_directory(directory, one)};
-    words.insert(words.end(), {"--set", fmt::format("output.pictures={}", read.study.pictures)});
-    words.insert(words.end(), {"--set", "output.report=false"});
-    for (const auto& setting : one.set) words.insert(words.end(), {"--set", setting.assignment()});
+    for (const auto& setting : run_settings(read, one)) words.insert(words.end(), {"--set", setting});
     words.insert(words.end(), {"--threads", "1", "--quiet"});
     return words;
 }

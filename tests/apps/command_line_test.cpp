@@ -1882,6 +1882,39 @@ TEST_F(CommandLine, StudyTakesThePlaceOfNoFileThatNoStudyWrote) {
     EXPECT_NE(content_of(path("new/study.md")), "mine");
 }
 
+// A table of cases that wait would take the place of numbers, and other runs that of those which the table is of.
+TEST_F(CommandLine, StudyKeepsTheRunsFromBeforeAChangeOfItsScene) {
+    write("tiny.yaml", tiny_scene);
+    write("a.yaml", "scene: tiny.yaml\nvary: {stages.1.steps: [1, 2]}\n");
+    const Words words{"study", "a.yaml", "-o", "s", "--quiet"}, collect{"study", "a.yaml", "-o", "s", "--collect"};
+    ASSERT_EQ(kluft(words).code, 0);
+    write("tiny.yaml", std::regex_replace(tiny_scene, std::regex("value: 1 %"), "value: 0.5 %"));
+    const auto before = files_in("s");
+    for (const Words& each : {words, collect})
+        expect_refused(each,
+                       AllOf(HasSubstr("cases/steps=1 those before a change: stages.1.strain.value is '1 %' there "
+                                       "and '0.5 %' here"),
+                             HasSubstr("--force")));
+    EXPECT_TRUE(files_in("s") == before);
+    EXPECT_EQ(kluft(with(words, {"--force"})).code, 0);
+    EXPECT_EQ(kluft(collect).code, 0);
+    EXPECT_EQ(kluft(words).code, 0);
+}
+
+// The way from the directory to the scene is another one then; the scene is not.
+TEST_F(CommandLine, StudyThatWasMovedIsTheSame) {
+    write("tiny.yaml", tiny_scene);
+    write("a.yaml", "scene: tiny.yaml\nvary: {stages.1.steps: [1, 2]}\n");
+    ASSERT_EQ(kluft({"study", "a.yaml", "-o", "s", "--quiet"}).code, 0);
+    const std::string table = content_of(path("s/study.csv"));
+    fs::create_directory(path("deeper"));
+    fs::rename(path("s"), path("deeper/s"));
+    EXPECT_EQ(kluft({"study", "a.yaml", "-o", "deeper/s", "--collect"}).code, 0);
+    EXPECT_EQ(content_of(path("deeper/s/study.csv")), table);
+    write("b.yaml", "scene: tiny.yaml\nvary: {stages.1.steps: [2, 3]}\n");
+    EXPECT_EQ(kluft({"study", "b.yaml", "-o", "deeper/s", "--quiet"}).code, 0); // a case of a is not planned any more
+}
+
 // Of another scene, whose body is the same: no fingerprint tells them apart.
 TEST_F(CommandLine, AStateOfAnotherRunIsTold) {
     write("tiny.yaml", tiny_scene);

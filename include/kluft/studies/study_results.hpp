@@ -43,10 +43,14 @@ struct CaseResult {
 /// The scene of a study as case.json names it: by its way from the directory of the study.
 [[nodiscard]] std::string noted_scene(const std::filesystem::path& scene, const std::filesystem::path& directory);
 
-/// Throws InputError, which names --force, where the directory has cases of a study of another scene, or what no study has made where this one would write: its table, report and cases, and the
+/// Throws InputError, which names --force, where the directory has cases of a study of another scene, results of a case from before its
+/// scene or settings were changed, or what no study has made where this one would write: its table, report and cases, and the
 /// files with `further` names.
 void require_no_other_study(const ReadStudy& read, const std::filesystem::path& directory,
                             const std::vector<std::string>& further = {});
+
+/// What `--set` says in the run of a case ("key.path=value").
+[[nodiscard]] std::vector<std::string> run_settings(const ReadStudy& read, const PlannedCase& one);
 
 /// Removes the cases of a study of another scene from the directory.
 void remove_other_study(const ReadStudy& read, const std::filesystem::path& directory);
