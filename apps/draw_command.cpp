@@ -67,6 +67,10 @@ PlottedReference reference_of(const std::string& mark, const std::vector<std::st
         reference.label.erase(0, labels[i].size() + 1);
         break;
     }
+    const auto colon = reference.label.find(':');
+    if (!reference.curve && colon != std::string::npos && colon + 1 < reference.label.size() &&
+        reference.label[colon + 1] != ' ')
+        refuse_mark(mark, fmt::format("'{}' where the runs are {}", reference.label.substr(0, colon), listed(labels)));
     const std::string values = mark.substr(equals + 1);
     const auto at = values.find(" at ");
     reference.y = quantity_of(mark, values.substr(0, at), Measure::stress) / mega;
@@ -92,6 +96,12 @@ fs::path default_picture(const fs::path& picture) {
                         "lost; choose a name with -o",
                         picture.string()));
     return picture;
+}
+
+/// What only curves have.
+void refuse_without_curve(const DrawArguments& arguments) {
+    if (!arguments.limit.empty() || !arguments.marks.empty())
+        throw InputError("--limit and --mark: expected a picture of a curve of stress over strain, found another one");
 }
 
 void announce(const fs::path& picture) { say("{}\n", picture.string()); }
@@ -160,6 +170,8 @@ void draw_blocks_of_run(const DrawArguments& arguments, const std::vector<fs::pa
 double scale_of(const std::string& text) {
     const auto number = read_number(text);
     if (!number || !(*number >= 0.0)) throw InputError("--scale: expected a number >= 0, found '" + text + "'");
+    if (constexpr double largest = 1e9; *number > largest)
+        throw InputError(fmt::format("--scale: expected at most {:.0e}, found '{}'", largest, text));
     return *number;
 }
 
@@ -195,7 +207,7 @@ std::string heading_of_state(const fs::path& directory, int step, double scale) 
 /// One kept state by its field files.
 void draw_state_of_run(const DrawArguments& arguments) {
     const fs::path directory = arguments.sources.front();
-    if (arguments.curve || arguments.histories || !arguments.marks.empty())
+    if (arguments.curve || arguments.histories || !arguments.marks.empty() || !arguments.limit.empty())
         throw InputError("--step, --field, --scale and --window: expected a picture of blocks, found one of a curve");
     const int step = step_asked_for(arguments.step, directory);
     const RunOfResults run = run_of_results(directory);
@@ -224,12 +236,15 @@ std::vector<fs::path> pictures_of(const DrawArguments& arguments, const char* st
 
 void draw_run(const DrawArguments& arguments) {
     const bool one_file = !arguments.picture.empty();
-    if (arguments.histories) return draw_histories(arguments, pictures_of(arguments, "histories"));
+    if (arguments.histories) {
+        refuse_without_curve(arguments);
+        return draw_histories(arguments, pictures_of(arguments, "histories"));
+    }
     const bool all = !one_file && !arguments.curve && !arguments.blocks && arguments.marks.empty();
     if (all && fs::exists(fs::path(arguments.sources.front()) / "histories.csv"))
         draw_histories(arguments, pictures_of(arguments, "histories"));
     if (moves_no_platen(arguments.sources.front())) {
-        if (arguments.curve || !arguments.marks.empty())
+        if (arguments.curve || !arguments.marks.empty() || !arguments.limit.empty())
             throw InputError(arguments.sources.front() +
                              ": expected a run that moves a platen, without which there is no "
                              "curve of stress over strain, found one that does not");
@@ -237,6 +252,7 @@ void draw_run(const DrawArguments& arguments) {
     }
     const bool curve = arguments.curve || (!arguments.blocks && (!one_file || !arguments.marks.empty()));
     const bool blocks = arguments.blocks || (!arguments.curve && !curve) || (!arguments.curve && !one_file);
+    if (!curve) refuse_without_curve(arguments);
     if (curve) draw_curve(arguments, pictures_of(arguments, "curve"));
     if (blocks) draw_blocks_of_run(arguments, pictures_of(arguments, "blocks"));
 }
@@ -250,7 +266,7 @@ void draw_several_runs(const DrawArguments& arguments) {
 
 void draw_scene(const DrawArguments& arguments) {
     const fs::path source = arguments.sources.front();
-    if (arguments.curve || arguments.histories || !arguments.marks.empty()) {
+    if (arguments.curve || arguments.histories || !arguments.marks.empty() || !arguments.limit.empty()) {
         throw InputError(source.string() + ": expected a directory of results to draw a curve, found a file");
     }
     const Scene scene = read_scene(source, arguments.overrides);

@@ -97,6 +97,8 @@ void add_peaks(const fs::path& source, std::vector<PeakPoint>& peaks) {
                          ": expected a directory of results or a table of tests (.csv), found another file");
     if (!is_table) {
         peaks.push_back(read_peak(source, run_name(source)));
+        if (!fs::exists(source / "summary.json"))
+            tell("{} has no summary.json: its peak is that of its tables\n", source.string());
         return;
     }
     if (!fs::exists(source)) throw InputError(source.string() + ": expected a table of tests, found no such file");

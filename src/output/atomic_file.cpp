@@ -11,6 +11,7 @@
 #include <sys/stat.h>
 
 #include "file_descriptor.hpp"
+#include "kluft/core/diagnostics.hpp"
 #include "kluft/core/input_file.hpp"
 
 namespace kluft {
@@ -103,6 +104,8 @@ std::string read_file(const fs::path& path) {
 void make_directory(const fs::path& path) {
     std::error_code error;
     fs::create_directories(path, error);
+    if (error == std::errc::no_such_file_or_directory || error == std::errc::operation_not_permitted) // /proc, /sys
+        throw InputError(path.string() + ": expected a place where a directory can be made, found none");
     if (error) throw_system_error(path, "cannot make the directory", error.value());
     if (!fs::is_directory(path, error)) throw_system_error(path, "cannot make the directory", ENOTDIR);
 }

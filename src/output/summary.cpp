@@ -531,8 +531,12 @@ RunSummary read_summary(const std::filesystem::path& path) {
     const std::string text = read_file(path);
     try {
         return summary_in(Json::parse(text));
-    } catch (const Json::exception& error) {
-        throw InputError(path.string() + ": expected the summary of a run: " + error.what());
+    } catch (const Json::parse_error& error) {
+        throw InputError(
+            fmt::format("{}: expected the summary of a run, found no JSON from byte {} on", path.string(), error.byte));
+    } catch (const Json::exception&) {
+        throw InputError(path.string() +
+                         ": expected the summary of a run, found JSON without all its keys or with other values");
     } catch (const InputError& error) {
         throw InputError(path.string() + ": " + error.what());
     }

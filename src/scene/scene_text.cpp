@@ -140,8 +140,11 @@ public:
             errors_.add(at_, path_, "expected a key that can be overridden; a scene extends another one in its file");
             return;
         }
-        value_ = parse_scene_tree(text, at_.source, at_, errors_);
-        value_->at = at_;
+        const std::size_t n_errors = errors_.size();
+        SceneNode value = parse_scene_tree(text, at_.source, at_, errors_);
+        if (errors_.size() > n_errors) return; // what the value would be said to be follows from that
+        value.at = at_;
+        value_ = std::move(value);
     }
 
     void apply(SceneNode& root) {

@@ -158,7 +158,7 @@ private:
         SceneNode& parent = open_.back();
         if (parent.is_mapping() && parent.keys.size() == parent.items.size()) {
             if (!node.is_scalar()) errors_.add(node.at, {}, "expected a word as the key, found something else");
-            parent.keys.push_back({node.text, node.at});
+            parent.keys.push_back({node.text, node.at, node.is_scalar()});
         } else {
             parent.items.push_back(std::move(node));
         }
@@ -171,12 +171,13 @@ private:
     std::vector<SceneNode> open_;
 };
 
-/// yaml-cpp keeps both entries of a duplicate key; the first one stays.
-void remove_duplicates(SceneNode& node, const std::string& path, SceneErrors& errors) {
+/// Entries whose key is no word go. yaml-cpp keeps both entries of a duplicate key; the first one stays.
+void remove_refused(SceneNode& node, const std::string& path, SceneErrors& errors) {
     std::set<std::string, std::less<>> seen;
     std::vector<SceneKey> keys;
     std::vector<SceneNode> items;
     for (std::size_t i = 0; i < node.items.size(); ++i) {
+        if (node.is_mapping() && !node.keys[i].is_word) continue;
         const std::string name = node.is_mapping() ? node.keys[i].text : std::to_string(i);
         const std::string item_path = joined_path(path, name);
         if (node.is_mapping() && !seen.insert(name).second) {
@@ -188,7 +189,7 @@ void remove_duplicates(SceneNode& node, const std::string& path, SceneErrors& er
             errors.add(node.keys[i].at, path, fmt::format("expected at most {} keys", most_keys));
             break;
         }
-        remove_duplicates(node.items[i], item_path, errors);
+        remove_refused(node.items[i], item_path, errors);
         if (node.is_mapping()) keys.push_back(std::move(node.keys[i]));
         items.push_back(std::move(node.items[i]));
     }
@@ -322,7 +323,7 @@ SceneNode parse_scene_tree(std::string_view text, int source, const TextPosition
     } catch (const TooDeep&) {
         return {};
     }
-    remove_duplicates(builder.root, {}, errors);
+    remove_refused(builder.root, {}, errors);
     return std::move(builder.root);
 }
 

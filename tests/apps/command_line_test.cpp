@@ -1656,6 +1656,30 @@ TEST_F(CommandLine, DrawRefusesWhatItCannotDraw) {
     EXPECT_FALSE(fs::exists(path("tiny.gif")));
 }
 
+TEST_F(CommandLine, DrawNamesTheOptionThatDoesNotFitThePicture) {
+    write("tiny.yaml", tiny_scene);
+    ASSERT_EQ(kluft({"run", "tiny.yaml", "-o", "r", "--quiet", "--set", "output.pictures=false"}).code, 0);
+    expect_refused({"draw", "r", "--scale", "1e300", "--step", "last", "-o", "z.png"},
+                   StartsWith("--scale: expected at most 1e+09, found '1e300'"));
+    const auto no_curve = HasSubstr("--limit and --mark: expected a picture of a curve");
+    expect_refused({"draw", "r", "--limit", "-5 MPa", "-o", "z.png"}, no_curve);
+    expect_refused({"draw", "r", "--limit", "5 MPa", "--blocks"}, no_curve);
+    expect_refused({"draw", "r", "--mark", "published=1 MPa", "--blocks"}, no_curve);
+    expect_refused({"draw", "r", "--limit", "5 MPa", "--step", "last"}, HasSubstr("found one of a curve"));
+    expect_refused({"draw", "tiny.yaml", "--limit", "5 MPa"}, HasSubstr("expected a directory of results"));
+    expect_refused({"draw", "r", "--limit", "0", "--curve"}, HasSubstr("--limit: expected a stress above 0"));
+    expect_refused({"draw", "r", "--mark", "nope:x=1 MPa", "--curve"},
+                   AllOf(StartsWith("--mark 'nope:x=1 MPa': "), HasSubstr("found 'nope' where the runs are r")));
+    for (const char* mark : {"r:x=1 MPa", "test 3: peak=1 MPa"})
+        EXPECT_EQ(kluft({"draw", "r", "--mark", mark, "--curve", "--limit", "2 MPa"}).code, 0) << mark;
+}
+
+TEST_F(CommandLine, DirectoryThatTheSystemDoesNotMakeIsBadInput) {
+    write("tiny.yaml", tiny_scene);
+    for (const char* directory : {"/proc/x", "/sys/x", "/dev/null/x"})
+        expect_refused({"run", "tiny.yaml", "-o", directory}, HasSubstr(directory));
+}
+
 TEST_F(CommandLine, CompareSetsTwoRunsSideBySide) {
     write("tiny.yaml", tiny_scene);
     const Words run{"run", "tiny.yaml", "--quiet", "--set", "output.pictures=false", "-o"};
@@ -1812,6 +1836,18 @@ TEST_F(CommandLine, EnvelopeTakesNoResultsPlace) {
     write("envelope.png", "mine");
     expect_refused({"envelope", "good.csv"}, HasSubstr("envelope.png is no file of an envelope"));
     EXPECT_EQ(content_of(path("envelope.png")), "mine");
+}
+
+// Tables that have lost rows, or are not there at all, say less than the run's summary.
+TEST_F(CommandLine, EnvelopeTellsOfARunWithoutASummary) {
+    write("tiny.yaml", tiny_scene);
+    write("good.csv", "sigma_3,sigma_1\n0,1e6\n1e6,5e6\n");
+    ASSERT_EQ(kluft({"run", "tiny.yaml", "-o", "r", "--quiet"}).code, 0);
+    EXPECT_THAT(kluft({"envelope", "r", "good.csv"}).err, Not(HasSubstr("summary")));
+    fs::remove(path("r/summary.json"));
+    const Result result = kluft({"envelope", "r", "good.csv"});
+    EXPECT_EQ(result.code, 0);
+    EXPECT_THAT(result.err, HasSubstr("r has no summary.json: its peak is that of its tables"));
 }
 
 TEST_F(CommandLine, EnvelopeAsksForAllRowsOfARun) {

@@ -496,8 +496,18 @@ TEST(Summary, IsReadBack) {
     write_file(directory / "summary.json", damaged);
     EXPECT_THAT([&] { (void)read_summary(directory / "summary.json"); },
                 ThrowsMessage<InputError>(HasSubstr("peak_stress: expected a number or null, found \"high\"")));
-    write_file(directory / "summary.json", "{");
-    EXPECT_THROW((void)read_summary(directory / "summary.json"), InputError);
+    const auto message_of = [&](const std::string& text) {
+        write_file(directory / "summary.json", text);
+        try {
+            (void)read_summary(directory / "summary.json");
+        } catch (const InputError& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    const std::string expected = (directory / "summary.json").string() + ": expected the summary of a run, found ";
+    EXPECT_EQ(message_of("{"), expected + "no JSON from byte 2 on");
+    EXPECT_EQ(message_of("[1]"), expected + "JSON without all its keys or with other values");
 }
 
 TEST(Summary, CountsAtLeastTheMemoryThatIsHeld) {

@@ -265,6 +265,18 @@ TEST(SceneYaml, DeepNestingIsRefused) {
                 ElementsAre(HasSubstr("expected at most 32 levels of nesting")));
 }
 
+// What follows from a mistake is none of its own.
+TEST(SceneYaml, OneMistakeHasOneMessage) {
+    EXPECT_THAT(errors_in(test::short_scene + "? [a, b]\n: 3\n"), ElementsAre(HasSubstr("expected a word as the key")));
+    EXPECT_THAT(errors_in(test::short_scene + "~: {c: 3}\n"), ElementsAre(HasSubstr("expected a word as the key")));
+    try {
+        (void)read_scene_text(test::short_scene, {"stages.0.steps=[1"}, "test.yaml");
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_THAT(error.messages(), ElementsAre(HasSubstr("--set stages.0.steps=[1: expected valid YAML")));
+    }
+}
+
 TEST(SceneYaml, MessagesStayReadable) {
     const auto long_line = errors_in(test::short_scene + "title: [" + std::string(5000, 'x') + "]\n");
     ASSERT_EQ(long_line.size(), 1U);

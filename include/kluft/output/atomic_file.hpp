@@ -23,7 +23,7 @@ void write_file(const std::filesystem::path& path, const std::function<void(cons
 /// The bytes of a regular file of at most 8 GB. Throws InputError when it cannot be read.
 [[nodiscard]] std::string read_file(const std::filesystem::path& path);
 
-/// Makes the directory and its parents. Throws ResourceError.
+/// Makes the directory and its parents. Throws ResourceError; InputError where the system has no directories but its own.
 void make_directory(const std::filesystem::path& path);
 
 /// Removes the file and what an interrupted write_file left of it. Throws ResourceError; no error if there is none.

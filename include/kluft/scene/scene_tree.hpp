@@ -22,6 +22,7 @@ struct TextPosition {
 struct SceneKey {
     std::string text;
     TextPosition at;
+    bool is_word = true; ///< false: a list, a mapping or nothing, which parse_scene_tree refuses and leaves out
 };
 
 struct SceneNode {
@@ -78,6 +79,7 @@ public:
     /// "place: path: what" with the offending line below; `path` may be empty.
     void add(const TextPosition& at, const std::string& path, const std::string& what);
     [[nodiscard]] bool empty() const { return errors_.empty(); }
+    [[nodiscard]] std::size_t size() const { return errors_.size(); }
     [[nodiscard]] const SceneSources& sources() const { return sources_; }
     /// Throws one InputError with all messages in the order of the text; does nothing if there are none.
     void throw_if_any() const;
