@@ -328,6 +328,31 @@ double modulus_for_scale(const LatticeModuli& body) {
     return std::max(body.youngs_modulus, 2.0 * bulk * shear / (bulk + shear));
 }
 
+/// Whether a boundary opposite to the platen, a fixed block or a support takes what it presses with.
+bool is_platen_resisted(const BlockSystem& system, const LoadProgram& loads, int moved) {
+    constexpr double along = 1e-3; // of a smooth side's normal on the platen's: less is round-off of a side beside it
+    if (opposite_boundary(system, moved) >= 0 || std::ranges::any_of(system.blocks, &Block::fixed)) return true;
+    const Vec2 normal = boundary_frame(system, moved).normal;
+    for (int i = 0; i < static_cast<int>(system.boundaries.size()); ++i) {
+        const Support support = loads.supports[i];
+        if (i == moved || support == Support::none) continue;
+        if (support != Support::smooth || std::abs(normal.dot(boundary_frame(system, i).normal)) > along) return true;
+    }
+    return false;
+}
+
+/// A platen that nothing stands against carries the body along.
+void require_resistance(const BlockSystem& system, const LoadProgram& loads) {
+    for (const Stage& stage : loads.stages) {
+        if (!stage.motion || is_platen_resisted(system, loads, stage.motion->boundary)) continue;
+        throw InputError(fmt::format(
+            "{}: expected a boundary opposite to '{}', a support or a fixed block, against which its platen presses; "
+            "found none: the body would be carried along",
+            stage.motion->place.empty() ? stage.name : stage.motion->place,
+            system.boundaries[stage.motion->boundary].name));
+    }
+}
+
 /// Platens are laid on what they press as it lies, which a gap to some of it may not mean.
 void warn_of_uneven_platen(int moved, Model& model) {
     const double length = distance_across(model.system, moved);
@@ -441,6 +466,7 @@ Model build_model(BlockSystem system, const ModelInput& input) {
     model.histories = place_histories(system, input.histories);
     refuse_moved_fixed_blocks(system, input.loads);
     require_directions(system, model.loads);
+    require_resistance(system, model.loads);
     const double boundary_stress = largest_boundary_stress(system, input, model.force_points);
     model.net = net_of_body(system, input);
     const LawBench bench{.system = system,
