@@ -56,6 +56,10 @@ double compressive_strength(const Strength& strength, double sigma_3) {
 
 double uniaxial_compressive_strength(const Strength& strength) { return compressive_strength(strength, 0.0); }
 
+double uniaxial_tension_in_shear(const Strength& strength) {
+    return 2.0 * strength.cohesion * std::cos(strength.friction_angle) / (1.0 + std::sin(strength.friction_angle));
+}
+
 const Strength& weaker(const Strength& a, const Strength& b) {
     const double of_a = uniaxial_compressive_strength(a);
     const double of_b = uniaxial_compressive_strength(b);

@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "kluft/constitutive/strength_envelope.hpp"
 #include "kluft/core/units.hpp"
 
 namespace kluft {
@@ -85,6 +86,38 @@ void warn_of_joint(const SceneSection& section, const InterfaceType& type, Readi
                      fmt::format("{:.3g} Pa/m is stiffer than a millimetre of steel, {:.2g} Pa/m; stiffer joints take "
                                  "more iterations and change no strength",
                                  *type.normal_stiffness, steel));
+}
+
+/// A tensile strength that decides nothing, or all at once. `bonds_fail_by_stress`: by principal stresses.
+void warn_of_tensile_strength(const SceneSection& section, const Strength& strength, bool in_net,
+                              bool bonds_fail_by_stress, ReadingContext& context) {
+    constexpr double little = 1e-3; // of the cohesion
+    const double tensile = strength.tensile_strength;
+    if (in_net && tensile <= little * strength.cohesion)
+        context.warn(
+            section, "tensile_strength",
+            fmt::format("{:.3g} Pa lets the net's bonds fail as soon as the body is loaded, since the stresses in "
+                        "it are not uniform and pull a little somewhere; a hundredth of the cohesion leaves "
+                        "that to loads that matter",
+                        tensile));
+    const double in_shear = uniaxial_tension_in_shear(strength);
+    if (bonds_fail_by_stress && tensile > in_shear)
+        context.warn(section, "tensile_strength",
+                     fmt::format("{:.4g} MPa is never reached where a body is pulled one way: by principal stresses it "
+                                 "fails in shear at 2 c cos(phi)/(1 + sin(phi)), {:.4g} MPa, before",
+                                 1e-6 * tensile, 1e-6 * in_shear));
+}
+
+void warn_of_tensile_strengths(const SceneSection& root, const Scene& scene, ReadingContext& context) {
+    const auto has_bonds = [](const InterfaceType& type) { return type.kind == InterfaceKind::potential_crack; };
+    if (std::ranges::none_of(scene.interface_types, has_bonds)) return;
+    const bool in_net =
+        scene.geometry.tessellation && has_bonds(scene.interface_types[scene.geometry.tessellation->interface_type]);
+    const bool by_stress = scene.cracks.criterion == CrackCriterion::principal_stress;
+    const auto materials = root.sections("materials");
+    for (std::size_t m = 0; m < std::min(materials.size(), scene.materials.size()); ++m)
+        if (scene.materials[m].strength && materials[m].has("tensile_strength"))
+            warn_of_tensile_strength(materials[m], *scene.materials[m].strength, in_net, by_stress, context);
 }
 
 /// A smooth platen takes the place of a support that holds the boundary along itself.
@@ -207,6 +240,7 @@ void warn_of_implausible_values(const SceneSection& root, const Scene& scene, Re
     const auto interfaces = root.sections("interfaces");
     for (std::size_t i = 0; i < std::min(interfaces.size(), scene.interface_types.size()); ++i)
         warn_of_joint(interfaces[i], scene.interface_types[i], context);
+    warn_of_tensile_strengths(root, scene, context);
     warn_of_loads(root, scene, context);
     warn_of_one_sided_pressure(root, scene, context);
     warn_of_symmetric_reduction(root, scene, context);

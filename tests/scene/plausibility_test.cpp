@@ -109,6 +109,25 @@ TEST(ImplausibleValues, SymmetricTangentIsToldOfWhereStrengthsAreReduced) {
 }
 
 // A platen that goes out at once holds nothing, unless something presses its boundary until then: triaxial extension.
+// 2 c cos(phi)/(1 + sin(phi)) = 2 MPa cos 40/(1 + sin 40) = 0.9326 MPa.
+TEST(ImplausibleValues, TensileStrengthsThatDecideNothingOrAllAreTold) {
+    const auto warnings = [](const std::string& tensile_strength, const std::string& criterion) {
+        return warnings_of_block_with({"materials.rock.cohesion=1 MPa", "materials.rock.friction_angle=40",
+                                       "materials.rock.tensile_strength=" + tensile_strength,
+                                       "interfaces.bond.kind=potential_crack", "interfaces.bond.fails_to=joint",
+                                       "geometry.tessellation={triangles: {spacing: 0.2}, interface: bond}",
+                                       "cracks.criterion=" + criterion});
+    };
+    EXPECT_THAT(warnings("0.9 MPa", "principal_stress"), IsEmpty());
+    EXPECT_THAT(
+        warnings("1.1 MPa", "principal_stress"),
+        ElementsAre(HasSubstr("1.1 MPa is never reached where a body is pulled one way: by principal stresses it "
+                              "fails in shear at 2 c cos(phi)/(1 + sin(phi)), 0.9326 MPa")));
+    EXPECT_THAT(warnings("1.1 MPa", "interface_traction"), IsEmpty());
+    EXPECT_THAT(warnings("0", "principal_stress"),
+                ElementsAre(HasSubstr("0 Pa lets the net's bonds fail as soon as the body is loaded")));
+}
+
 TEST(PlatenThatGoesOut, IsWarnedOfWhereNothingPressesItsBoundary) {
     EXPECT_THAT(warnings_of_block_with({"stages.1.strain.value=-0.1 %"}),
                 ElementsAre(HasSubstr("the platen leaves the body")));

@@ -49,6 +49,9 @@ struct CappedStrength {
 /// (2 c cos(phi) + sigma_3 (1 + sin(phi)))/(1 - sin(phi)) (Pa), Mohr-Coulomb's largest stress beside the confining one; docs/theory.md, (36).
 [[nodiscard]] double compressive_strength(const Strength& strength, double sigma_3);
 
+/// 2 c cos(phi)/(1 + sin(phi)) (Pa): the tension one way at which Mohr-Coulomb's shear criterion is met, whatever the tensile strength.
+[[nodiscard]] double uniaxial_tension_in_shear(const Strength& strength);
+
 /// The strength with the smaller uniaxial compressive strength, on a tie that with the smaller tensile strength.
 [[nodiscard]] const Strength& weaker(const Strength& a, const Strength& b);
 
