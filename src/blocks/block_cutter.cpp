@@ -149,6 +149,17 @@ std::vector<SourceSegment> outline_segments(const GeometrySpec& spec, const Loca
     return segments;
 }
 
+/// The polygons of the outline, each with the body to its left.
+std::vector<Polygon> outlines(const GeometrySpec& spec, const LocalFrame& frame) {
+    std::vector<Polygon> polygons{frame.to_local(spec.domain)};
+    for (const Polygon& hole : spec.holes) polygons.push_back(frame.to_local(hole));
+    for (Polygon& polygon : polygons) {
+        const bool is_hole = &polygon != &polygons.front();
+        if ((signed_area(polygon) > 0.0) == is_hole) std::ranges::reverse(polygon);
+    }
+    return polygons;
+}
+
 /// Which polygon a side of the domain belongs to, and the place that it has there.
 struct SideOfPolygon {
     int polygon = -1; ///< -1: the outline; the index of a hole
@@ -348,6 +359,12 @@ Cuts cuts_of(const GeometrySpec& spec, const LocalFrame& frame, const SourceNumb
     const std::vector<SourceTrace> traces = local_traces(spec, frame, numbers);
     add_traces(cuts.segments, traces);
     const std::vector<SourceSegment> bridges = bridge_ends(traces, cuts.segments, resolution(spec, frame));
+    if (!spec.tessellation) { // the cells of a net part by themselves
+        std::vector<SourceSegment> of_traces;
+        add_traces(of_traces, traces);
+        const auto to_notches = bridge_notches(outlines(spec, frame), of_traces, resolution(spec, frame));
+        cuts.segments.insert(cuts.segments.end(), to_notches.begin(), to_notches.end());
+    }
     cuts.segments.insert(cuts.segments.end(), bridges.begin(), bridges.end());
     cuts.joined_ends = static_cast<int>(bridges.size());
     if (has_triangles(spec)) {

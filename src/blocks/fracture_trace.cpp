@@ -193,6 +193,31 @@ std::vector<SourceSegment> bridge_ends(const std::vector<SourceTrace>& traces,
     return found;
 }
 
+std::vector<SourceSegment> bridge_notches(const std::vector<Polygon>& outlines,
+                                          const std::vector<SourceSegment>& segments, double reach) {
+    std::vector<SourceSegment> found;
+    if (segments.empty()) return found;
+    const SegmentGrid grid = grid_of(segments);
+    const Vec2 margin(reach, reach);
+    for (const Polygon& outline : outlines) {
+        for (std::size_t i = 0; i < outline.size(); ++i) {
+            const Vec2& corner = outline[i];
+            const Vec2 arriving = corner - outline[(i + outline.size() - 1) % outline.size()];
+            const Vec2 leaving = outline[(i + 1) % outline.size()] - corner;
+            if (cross(arriving, leaving) >= 0.0) continue;
+            for (const int s : grid.near({corner - margin, corner + margin})) {
+                const auto& [a, b, source] = segments[s];
+                const bool is_beside = (corner - a).dot(b - a) > 0.0 && (corner - b).dot(a - b) > 0.0;
+                if (!is_beside || orientation(a, b, corner) == 0 || distance_to_segment(corner, a, b) > reach) continue;
+                const Vec2 towards = static_cast<double>(orientation(a, b, corner)) * right_normal(b - a);
+                if (cross(arriving, towards) <= 0.0 && cross(leaving, towards) <= 0.0) continue; // before the body
+                if (const auto segment = segment_to(corner, segments[s], source)) found.push_back(*segment);
+            }
+        }
+    }
+    return found;
+}
+
 std::vector<Vec2> simplified(const std::vector<Vec2>& points, double tolerance) {
     using Point = boost::geometry::model::d2::point_xy<double>;
     boost::geometry::model::linestring<Point> line;

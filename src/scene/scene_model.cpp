@@ -249,7 +249,9 @@ std::vector<std::string> necks(const GeometrySpec& geometry, const BlockSystem& 
     return {fmt::format(
         "geometry: block {} is {:.2g} m wide at {}, beside a part of it of {:.3g} m2{}: a block does not break, and "
         "what "
-        "hangs on so narrow a neck is held by it; a trace that is meant to part it has to meet the corner there",
+        "hangs on so narrow a neck is held by it; a trace parts it that meets the corner there, or passes it within 2 "
+        "% of "
+        "geometry.reference_spacing",
         block_label(system, neck.block), neck.width, place_text(system.origin + neck.at), neck.smaller_part,
         found.size() > 1 ? fmt::format(", one of {} such blocks", found.size()) : "")};
 }

@@ -2,20 +2,23 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "blocks/cut_scenes.hpp"
+#include "kluft/blocks/block_check.hpp"
 #include "kluft/blocks/block_cutter.hpp"
 
 namespace kluft {
 namespace {
 
 /// A slope of 10 m with flat ground before its toe, which lies at the origin, and a joint of 40 degrees that passes below the toe.
-BlockSystem slope_with_joint_below_toe(double depth) {
+BlockSystem slope_with_joint_below_toe(double depth, double reference_spacing = 0.0) {
     const double slope = std::tan(40.0 * std::numbers::pi / 180.0);
     GeometrySpec spec;
+    spec.reference_spacing = reference_spacing;
     spec.domain = {{-10, -5}, {30, -5}, {30, 10}, {3, 10}, {0, 0}, {-10, 0}};
     cut_scenes::add_trace(spec, {{-12, -12 * slope - depth}, {20, 20 * slope - depth}});
     return cut_blocks(spec).system;
@@ -23,7 +26,7 @@ BlockSystem slope_with_joint_below_toe(double depth) {
 
 // The wedge before the joint, 44.6 m2, and the ground, which the joint cuts off below at 5 m, hang together by d cos 40.
 TEST(NarrowNeck, IsFoundWhereAJointPassesBelowACorner) {
-    for (const double depth : {1e-9, 1e-6, 1e-3, 0.03}) {
+    for (const double depth : {1e-6, 1e-3, 0.03}) {
         const auto necks = narrow_necks(slope_with_joint_below_toe(depth));
         ASSERT_EQ(necks.size(), 1U) << depth;
         EXPECT_NEAR(necks[0].width, depth * std::cos(40.0 * std::numbers::pi / 180.0), 1e-6 * depth + 1e-14);
@@ -36,6 +39,17 @@ TEST(NarrowNeck, IsFoundWhereAJointPassesBelowACorner) {
 TEST(NarrowNeck, IsNoneWhereBlocksAreParted) {
     for (const double depth : {-1e-3, 0.0, 0.5})
         EXPECT_THAT(narrow_necks(slope_with_joint_below_toe(depth)), testing::IsEmpty()) << depth;
+}
+
+// What is not resolved, round-off or 2 % of a spacing of 2 m, holds nothing together: rock below, wedge and ground are three blocks.
+TEST(NarrowNeck, IsPartedWhereItIsNotResolved) {
+    for (const auto& [depth, spacing] : {std::pair(1e-9, 0.0), std::pair(1e-9, 2.0), std::pair(1e-6, 2.0),
+                                         std::pair(1e-3, 2.0), std::pair(0.03, 2.0)}) {
+        const BlockSystem parted = slope_with_joint_below_toe(depth, spacing);
+        EXPECT_EQ(parted.n_blocks(), 3) << depth;
+        EXPECT_THAT(narrow_necks(parted), testing::IsEmpty()) << depth;
+        EXPECT_THAT(check_block_system(parted), testing::IsEmpty()) << depth;
+    }
 }
 
 } // namespace

@@ -23,8 +23,8 @@ using ::testing::StartsWith;
 
 const std::string net_of_cracks = R"(kluft: 1
 materials:
-  rock: {youngs_modulus: 10 GPa, poissons_ratio: 0.2, cohesion: 1 MPa, friction_angle: 40, tensile_strength: 1 MPa}
-  soil: {youngs_modulus: 1 GPa, poissons_ratio: 0.2, cohesion: 1 MPa, friction_angle: 40, tensile_strength: 1 MPa}
+  rock: {youngs_modulus: 10 GPa, poissons_ratio: 0.2, cohesion: 1 MPa, friction_angle: 40, tensile_strength: 0.9 MPa}
+  soil: {youngs_modulus: 1 GPa, poissons_ratio: 0.2, cohesion: 1 MPa, friction_angle: 40, tensile_strength: 0.9 MPa}
 interfaces:
   joint: {kind: fracture, friction_angle: 25}
   bond: {kind: potential_crack, fails_to: joint}

@@ -303,7 +303,7 @@ TEST(SceneReader, WarnsOfWhatHasNoEffect) {
 TEST(SceneReader, OnlyMaterialsOfTheBodyNeedStrengthsForPotentialCracks) {
     const std::string scene = R"(kluft: 1
 materials:
-  rock: {youngs_modulus: 10 GPa, poissons_ratio: 0.25, cohesion: 1 MPa, friction_angle: 40, tensile_strength: 1 MPa}
+  rock: {youngs_modulus: 10 GPa, poissons_ratio: 0.25, cohesion: 1 MPa, friction_angle: 40, tensile_strength: 0.9 MPa}
   steel: {youngs_modulus: 200 GPa, poissons_ratio: 0.3}
 interfaces:
   bond: {kind: potential_crack}

@@ -22,7 +22,7 @@ materials:
     friction_angle: 40 deg
     tensile_strength: 2 MPa
   clay: {density: 2000, youngs_modulus: 10 MPa, poissons_ratio: 0.4, cohesion: 0.1 MPa, friction_angle: 20,
-         tensile_strength: 0}
+         tensile_strength: 1 kPa}
 interfaces:
   joint:
     kind: fracture

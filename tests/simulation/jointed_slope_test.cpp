@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -94,7 +95,7 @@ stages:
 struct SlopeWithGround {
     double dip = 40.0;   ///< of the joint, degrees
     double face = 73.3;  ///< degrees
-    double height = 0.0; ///< m
+    double height = 0.0; ///< m; below the toe it goes on into the ground
     double cohesion = 20e3;
     double friction_angle = 30.0;
     double ground = 0.0; ///< degrees
@@ -103,6 +104,8 @@ struct SlopeWithGround {
 
 SceneRun run_slope(const SlopeWithGround& slope) {
     const double back = 1.0 / std::tan(slope.face / degrees);
+    const double x = slope.height < 0.0 ? -12.0 : slope.height * back; // where the trace begins
+    const double y = slope.height < 0.0 ? slope.height - 12.0 * std::tan(slope.dip / degrees) : slope.height;
     return run_scene(fmt::format(R"(kluft: 1
 analysis: {{gravity: 9.81}}
 materials: {{rock: {{density: 2500, youngs_modulus: 10 GPa, poissons_ratio: 0.25}}}}
@@ -115,8 +118,7 @@ boundaries: {{base: {{sides: [0], support: fixed}}, right: {{sides: [1], support
 stages: [{{steps: 5}}, {{strength_reduction: {{to: 5}}, steps: 20}}]
 )",
                                  slope.friction_angle, slope.cohesion, slope.has_spacing ? "reference_spacing: 2" : "",
-                                 10.0 * back, 10.0 * std::tan(slope.ground / degrees), slope.height * back,
-                                 slope.height,
+                                 10.0 * back, 10.0 * std::tan(slope.ground / degrees), x, y,
                                  slope.height * back + (11.0 - slope.height) / std::tan(slope.dip / degrees)));
 }
 
@@ -160,6 +162,18 @@ TEST(JointedSlope, PlaneThatComesOutJustAboveTheToeIsNotHeldByTheGround) {
             ASSERT_TRUE(run.report.results.factor_of_safety.has_value());
             EXPECT_NEAR(*run.report.results.factor_of_safety, expected, 3e-3 * expected) << height << has_spacing;
         }
+    }
+}
+
+// A little below the toe, within what a spacing of 2 m resolves (4 cm) or rounding: the wedge slides as if the joint met the toe, while the ground
+// beside it stands by itself. They hung together on what was between, with a factor above 5.
+TEST(JointedSlope, PlaneThatPassesJustBelowTheToeIsNotHeldByTheGround) {
+    for (const auto& [height, has_spacing] : {std::pair(-1e-9, false), std::pair(-1e-9, true), std::pair(-1e-6, true),
+                                              std::pair(-1e-3, true), std::pair(-0.03, true)}) {
+        const double expected = factor_of_plane_failure({});
+        const SceneRun run = run_slope({.height = height, .has_spacing = has_spacing});
+        ASSERT_TRUE(run.report.results.factor_of_safety.has_value()) << height;
+        EXPECT_NEAR(*run.report.results.factor_of_safety, expected, 3e-3 * expected) << height << has_spacing;
     }
 }
 

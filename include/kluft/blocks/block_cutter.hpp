@@ -76,7 +76,8 @@ struct CutBody {
 /// the outline is left out. Where sources coincide, the outline comes first, then the fracture with the lowest index.
 ///
 /// What is smaller than 0.02 d, d no more than the smaller side of the domain's box, is not resolved: ends of traces
-/// within that of another trace or of the outline are carried on to it, and edges shorter than that are collapsed to a point wherever the blocks around stay simple (a
+/// within that of another trace or of the outline are carried on to it, without a net a trace that passes by a notch of the outline within
+/// that parts the body there, and edges shorter than that are collapsed to a point wherever the blocks around stay simple (a
 /// corner of the domain never moves, and its outline keeps its shape). Where no spacing is given, 1e-9 of the domain's
 /// diagonal takes the place of 0.02 d, and 1e-12 of the domain's area that of the minimum area. Blocks below the
 /// minimum area (with triangles, whose resolution is 0.05 of their smallest side, also pieces narrower than that) are

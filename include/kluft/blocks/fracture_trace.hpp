@@ -25,6 +25,11 @@ struct SourceTrace {
 [[nodiscard]] std::vector<SourceSegment> bridge_ends(const std::vector<SourceTrace>& traces,
                                                      const std::vector<SourceSegment>& segments, double reach);
 
+/// Where one of the segments passes by a notch of the body within `reach` (m), this returns a segment from the notch to it, of its source,
+/// which parts what hangs together on so little. `outlines`: polygons with the body to their left. Ends of segments are left to bridge_ends.
+[[nodiscard]] std::vector<SourceSegment> bridge_notches(const std::vector<Polygon>& outlines,
+                                                        const std::vector<SourceSegment>& segments, double reach);
+
 /// A polyline without the points that it passes within `tolerance` (m) anyway (Douglas and Peucker 1973).
 [[nodiscard]] std::vector<Vec2> simplified(const std::vector<Vec2>& points, double tolerance);
 
