@@ -30,9 +30,8 @@ constexpr double least_penetration = 1e-9;
 constexpr double straight = 1e-4;
 /// Faces of two blocks that meet in a vertex go on in one another if they turn by less (rad), as motions of blocks turn them.
 constexpr double flush = 0.02;
-/// A tip whose plane comes out within this part of the smaller block beside the foot of what rises before it stands at that foot: a map
-/// has no more digits.
-constexpr double at_the_foot = 2e-3;
+/// A tip whose plane comes out within this part of the smaller block beside the foot of what rises before it stands at that foot.
+constexpr double at_the_foot = 0.02;
 /// A corner is round over this part of the shorter edge: where two corners meet, the direction in which they touch is between the faces'.
 constexpr double corner_rounding = 1e-3;
 /// Two points of a fracture that were nearer than this part of its edge were one point; what is between is round-off.
@@ -201,6 +200,8 @@ public:
         std::ranges::inplace_merge(points_, points_.begin() + middle, {}, &ContactPoint::key);
         return std::move(points_);
     }
+
+    std::vector<UnheldTip> take_unheld_tips() { return std::move(unheld_tips_); }
 
 private:
     [[nodiscard]] const Edge& reference(int block, int edge) const { return system_.blocks[block].edges[edge]; }
@@ -476,44 +477,43 @@ private:
         if (go_on_straight(at_end ? arriving : leaving.direction, edge.direction) ||
             go_on_straight(at_end ? leaving.direction : arriving, other_side))
             return false;
-        if (leans_away(leaving, edge, at_end)) return false;
+        if (is_ground_before(owner, leaving, target, edge)) return false;
         return is_notch(of_target) || std::ranges::any_of(system_.blocks[target].edges, [&](const Edge& other) {
                    return other.interface >= 0 && (at_end ? other.start : other.end) == vertex;
                });
     }
 
-    /// Whether a tip at an end of a face leans away from it, as a sharp wedge does whose plane comes out where the ground before a slope
-    /// begins: what presses on it from there would bend it off, or have it ride over. A tip whose bisector leans over the face, as
-    /// the toe of a dam does over a riser, is pressed into its block.
-    [[nodiscard]] static bool leans_away(const CurrentEdge& leaving, const CurrentEdge& face, bool at_end) {
-        const Vec2 bisector = leaving.direction - (leaving.start - leaving.before).normalized();
-        const Vec2 from_tip = at_end ? -face.direction : face.direction;
-        return bisector.dot(from_tip) < -straight * bisector.norm();
-    }
-
-    /// Whether a tip as cut stood so near beside an end of the target's edge, a void between the two, that it is held there no
-    /// better than at that end: its other face lies on a block, the edge rises before that face, and it leans away from the edge.
+    /// Whether the target's edge is ground before a tip of which no count is taken: the tip stood at the foot of the edge as cut, with a void between
+    /// the two and its other face on a block; the edge rises before that face; and the tip leans away from it, by its bisector, as a sharp
+    /// wedge does whose plane comes out where the ground before a slope begins. What presses on it from there would bend it off, or have it
+    /// ride over; a tip that leans over the edge, as the toe of a dam does over a riser, is pressed into its block.
     [[nodiscard]] bool is_ground_before(int owner, const CurrentEdge& leaving, int target,
                                         const CurrentEdge& edge) const {
+        if (surfaces_.ground_holds_tips) return false;
         const Edge& side = reference(target, edge.edge);
-        const Vec2 tip = edge_start(system_, reference(owner, leaving.edge));
+        const Edge& arriving = reference(owner, leaving.arriving);
+        const Edge& going_on = reference(owner, leaving.edge);
+        const Vec2 tip = edge_start(system_, going_on);
         const double from_start = (tip - edge_start(system_, side)).norm();
         const double from_end = (tip - edge_end(system_, side)).norm();
-        const bool at_end = from_end < from_start;
         const double smaller = std::min(system_.blocks[owner].size, system_.blocks[target].size);
         if (std::min(from_start, from_end) > at_the_foot * smaller) return false;
-        const Edge& before_void = reference(owner, at_end ? leaving.edge : leaving.arriving);
-        const Edge& on_face = reference(owner, at_end ? leaving.arriving : leaving.edge);
-        if (!are_outlines(side, before_void) || on_face.interface < 0) return false;
-        const Vec2 along_face = at_end ? leaving.start - leaving.before : leaving.direction;
-        const Vec2 from_tip = at_end ? -edge.direction : edge.direction;
-        return right_normal(along_face.normalized()).dot(from_tip) < -flush && leans_away(leaving, edge, at_end);
+        const bool at_end = from_end < from_start;
+        if (!are_outlines(side, at_end ? going_on : arriving)) return false;
+        if ((at_end ? arriving : going_on).interface < 0) return false;
+        const Vec2 before = (edge_start(system_, arriving) - tip).normalized();
+        const Vec2 after = (edge_end(system_, going_on) - tip).normalized();
+        const Vec2 along_side = (edge_end(system_, side) - edge_start(system_, side)).normalized();
+        const Vec2 from_tip = at_end ? -along_side : along_side;
+        const bool rises = right_normal(at_end ? -before : after).dot(from_tip) < -flush;
+        return rises && (before + after).normalized().dot(from_tip) < -straight;
     }
 
     /// Whether a face of an interface has such a tip at one of its ends, and the target's edge is the ground before it.
     [[nodiscard]] bool slides_onto_ground(int owner, const CurrentEdge& face, std::span<const CurrentEdge> faces,
                                           int target, const CurrentEdge& edge) const {
-        if (reference(target, edge.edge).interface >= 0 || reference(owner, face.edge).interface < 0) return false;
+        if (surfaces_.ground_holds_tips || reference(target, edge.edge).interface >= 0) return false;
+        if (reference(owner, face.edge).interface < 0) return false;
         return std::ranges::any_of(faces, [&](const CurrentEdge& leaving) {
             return (leaving.edge == face.edge || leaving.arriving == face.edge) &&
                    is_ground_before(owner, leaving, target, edge);
@@ -542,6 +542,9 @@ private:
         if (gap > reach_ || gap < deepest_) return;
         const double s = edge.direction.dot(from_edge) / edge.length;
         const bool is_common = have_common_vertex(owner, leaving, target, edge);
+        const bool is_ground = is_ground_before(owner, leaving, target, edge);
+        if (is_ground && gap < shallow_) unheld_tips_.push_back({owner, target, -gap, leaving.start});
+        if (is_ground && !is_common) return;
         const bool beside_void = is_common && are_beside_a_void(owner, leaving, target, edge);
         const double beyond = std::max(-s, s - 1.0) * edge.length;
         const bool at_end = reference(owner, leaving.edge).start == reference(target, edge.edge).end;
@@ -550,7 +553,6 @@ private:
             return;
         if (!points_at(leaving, outward)) return;
         if (is_common && !beside_void && !faces_are_apart(owner, target, swapped)) return;
-        if (!is_common && is_ground_before(owner, leaving, target, edge)) return;
         if (overlap_covers(leaving.edge, edge.edge, swapped) || overlap_covers(leaving.arriving, edge.edge, swapped))
             return;
         if (is_held_by_another_face(leaving, edge, gap, edges, swapped)) return;
@@ -565,6 +567,7 @@ private:
     const ContactSurfaces& surfaces_;
     const Eigen::VectorXd& q_;
     double reach_;
+    std::vector<UnheldTip> unheld_tips_;
     std::vector<ContactPoint> points_;           ///< with block_a the lower block of the pair
     std::vector<ContactPoint> points_of_higher_; ///< vertices of the higher block
     bool bonded_pair_ = false;
@@ -678,6 +681,7 @@ DetectedContacts detect_contacts(const BlockSystem& system, const ContactSurface
         pair_detection.run(a, all.edges_of(surface_a), b, all.edges_of(surface_b));
     }
     result.points = pair_detection.take_points();
+    result.unheld_tips = pair_detection.take_unheld_tips();
     transfer_histories(system, q, memory, result.points);
     return result;
 }

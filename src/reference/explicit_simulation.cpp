@@ -389,7 +389,7 @@ private:
         const Stopwatch watch(journal_.report().costs.seconds.detection);
         const double before = motion_.springs_energy();
         motion_.placement().bonds = placed_bonds(model_, work().body);
-        motion_.placement().contacts = detected_contacts(model_, work().body).points;
+        motion_.placement().contacts = detected_contacts(model_, work().body, true).points;
         add_near_points(model_.system, motion_.displacement(), contact_reach * model_.system.spacing, motion_.loads());
         motion_.restart();
         detected_at_ = motion_.displacement();

@@ -13,6 +13,7 @@
 #include "kluft/core/place_text.hpp"
 #include "kluft/kinematics/affine.hpp"
 #include "kluft/loading/loaded_body.hpp"
+#include "kluft/simulation/placement.hpp"
 #include "kluft/simulation/state_fields.hpp"
 
 namespace kluft {
@@ -89,6 +90,20 @@ std::vector<CornerContact> corner_contacts(const Model& model, const State& stat
     });
     std::ranges::stable_sort(corners, std::greater(), &CornerContact::force);
     return corners;
+}
+
+std::optional<UnheldTip> deepest_unheld_tip(const Model& model, const State& state) {
+    const std::vector<UnheldTip> tips = detected_contacts(model, state.body, false).unheld_tips;
+    const auto deepest = std::ranges::max_element(tips, {}, &UnheldTip::depth);
+    return deepest == tips.end() ? std::nullopt : std::optional(*deepest);
+}
+
+std::string description(const Model& model, const UnheldTip& tip) {
+    return fmt::format(
+        "the tip of block {} at {} leans away from the ground before it, block {}, which is not taken to "
+        "hold it while strengths are reduced: rock would break there, or ride over",
+        block_label(model.system, tip.block), place_text(model.system.origin + tip.place),
+        block_label(model.system, tip.ground));
 }
 
 std::string description(const Model& model, const CornerContact& corner) {

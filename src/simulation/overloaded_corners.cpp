@@ -61,7 +61,7 @@ using TouchingPairs = std::map<std::pair<int, int>, MappedTouching>;
 TouchingPairs pressed_along_fractures(const Model& model, const BodyState& state) {
     const Eigen::VectorXd& q = state.displacement;
     TouchingPairs pairs;
-    for (const ContactPoint& point : detected_contacts(model, state).points) {
+    for (const ContactPoint& point : detected_contacts(model, state, true).points) {
         if (!is_on_mapped_fracture(model.system, point.key.block_a, point.key.edge_a)) continue;
         const PointTraction traction = contact_traction(model.laws, point, q);
         if (traction.normal >= 0.0) continue;

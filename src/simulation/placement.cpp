@@ -36,8 +36,11 @@ std::vector<Bond> placed_bonds(const Model& model, const BodyState& body) {
 
 bool may_outlines_meet(const Model& model) { return model.system.outline_type >= 0; }
 
-DetectedContacts detected_contacts(const Model& model, const BodyState& body) {
+bool ground_holds_tips(const Model& model, int stage) { return !model.loads.stages[stage].strength_reduction; }
+
+DetectedContacts detected_contacts(const Model& model, const BodyState& body, bool ground_holds_tips) {
     ContactSurfaces surfaces;
+    surfaces.ground_holds_tips = ground_holds_tips;
     surfaces.bonded = bonded_interfaces(body);
     for (const Interface& interface : model.system.interfaces) {
         surfaces.law.push_back(model.fracture_law[law_of(interface)]);

@@ -28,7 +28,8 @@ DetectedContacts detect(StepInProgress& p) {
     RunReport& report = p.bench.journal.report();
     const Stopwatch watch(report.costs.seconds.detection);
     ++report.detections;
-    return detected_contacts(p.bench.model, p.step.end.body);
+    const Model& model = p.bench.model;
+    return detected_contacts(model, p.step.end.body, ground_holds_tips(model, p.from.at.stage));
 }
 
 /// Vertices that have come near a platen become points of it.

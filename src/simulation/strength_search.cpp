@@ -110,12 +110,21 @@ std::optional<CornerContact> caught_corner(const Model& model, const std::vector
     return std::nullopt;
 }
 
-/// Of a step whose body has given way and has come to rest where a corner has caught.
+/// By what a body stands that has moved, where rock would not: a corner that has caught, or whatever a tip has met that has sunk into
+/// the ground before it; "" where there is no such thing.
+std::string resting_place(const Model& model, const State& before, const State& now) {
+    if (const auto corner = caught_corner(model, corner_contacts(model, before), now))
+        return description(model, *corner) + ", which rock would lose";
+    const auto tip = deepest_unheld_tip(model, now);
+    return tip ? description(model, *tip) : "";
+}
+
+/// Of a step whose body has given way and has come to rest by what rock would lose, in words.
 Failure failure_by_corner(const StepBench& bench, const Step& step, const Eigen::VectorXd& before,
-                          const CornerContact& corner) {
+                          const std::string& resting) {
     const Eigen::VectorXd moved = step.end.body.displacement - before;
     Failure failure = failure_by_motion(bench, step, before, 0.5 * relative_motion(bench.model.system, moved));
-    failure.what = "the body has given way, and " + description(bench.model, corner) + ", which rock would lose";
+    failure.what = "the body has given way, and " + resting;
     return failure;
 }
 
@@ -176,8 +185,8 @@ Trial try_factor(const StepBench& bench, const TrialGoal& goal, State& state, st
     if (!keeps_its_place(bench, state, near_by(goal.displaced_by_loads), step))
         return {failure_by_motion(bench, step, step.end.stage_start.near_place, jump_motion), false};
     if (moved > goal.displaced_by_loads)
-        if (const auto corner = caught_corner(bench.model, corner_contacts(bench.model, state), step.end))
-            return {failure_by_corner(bench, step, start, *corner), true};
+        if (const std::string resting = resting_place(bench.model, state, step.end); !resting.empty())
+            return {failure_by_corner(bench, step, start, resting), true};
     step.equilibria.insert(step.equilibria.begin(), before.begin(), before.end());
     before.clear();
     commit(std::move(step), goal.kind, state, bench.journal);
@@ -341,6 +350,9 @@ StageEnd find_strength_limit(const StepBench& bench, State& state) {
     const double found = reduction.factor_at(state.at.load_factor);
     if (const std::string said = doubts.warning(found); !said.empty()) bench.journal.report().warnings.push_back(said);
     if (end.failure && is_without_motion(*end.failure)) warn_of_failed_search(bench, found, *end.failure);
+    if (const auto tip = deepest_unheld_tip(bench.model, state); end.failure && tip)
+        bench.journal.report().warnings.push_back(description(bench.model, *tip) +
+                                                  "; rigid blocks may stand with more");
     if (!end.failure) {
         bench.journal.report().warnings.push_back(
             fmt::format("the factor of safety is above {:g}, the largest strength factor of stage {}", reduction.to,

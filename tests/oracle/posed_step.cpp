@@ -59,7 +59,7 @@ PosedStep::PosedStep(const Scene& scene, int step) : model_(build_scene_model(sc
 void PosedStep::pose(const Scene& scene) {
     const StageLoads loads = enter_stage(model_, before_);
     placement_.bonds = placed_bonds(model_, before_.body);
-    auto contacts = detected_contacts(model_, before_.body);
+    auto contacts = detected_contacts(model_, before_.body, true);
     placement_.contacts = std::move(contacts.points);
     at_ = loads_at(model_, loads, hold_of(model_, loads, after_.body), before_.at.stage, after_.at.load_factor);
     problem_.body = loaded_body(model_, placement_, at_);

@@ -185,6 +185,59 @@ TEST(BesideVoids, ARiserHoldsWhatLeansOverIt) {
     }
 }
 
+// Two rafters whose feet, with no face on anything, begin in the vertices of notches: rigid ones stand at any friction of limit analysis up to 8.
+TEST(BesideVoids, AFootInANotchIsHeld) {
+    const std::string blocks = "    - {name: base, support: fixed, polygon: [[-8, -2], [8, -2], [8, 0.25], [5.433013, "
+                               "0.25], [5, 0], [4.566987, 0.25], "
+                               "[-4.566987, 0.25], [-5, 0], [-5.433013, 0.25], [-8, 0.25]]}\n"
+                               "    - {name: left, polygon: [[-5, 0], [0, 4.5], [0, 5.5]]}\n"
+                               "    - {name: right, polygon: [[5, 0], [0, 5.5], [0, 4.5]]}\n";
+    const SceneRun run =
+        run_scene(blocks_on_a_slope(0, 30, blocks, "{name: weight}, {strength_reduction: {from: 1, to: 5}, steps: 5}"));
+    EXPECT_TRUE(stands(run)) << run.report.diagnosis;
+    EXPECT_FALSE(run.report.results.factor_of_safety) << "above 5";
+}
+
+// A block is pushed up a ramp that begins where it ends: W tan(20 + slope) over its 4 m. Where the ramp did not hold its tip, it went
+// through the rock at the friction of the floor alone, 36 kPa.
+TEST(BesideVoids, ABlockThatIsPushedGoesUpARampAndNotThroughIt) {
+    for (const double slope : {30.0, 44.0, 46.0}) {
+        const SceneRun run = run_scene(fmt::format(R"(kluft: 1
+analysis: {{gravity: 10}}
+materials: {{rock: {{density: 2500, youngs_modulus: 20 GPa, poissons_ratio: 0.25}}}}
+interfaces: {{joint: {{kind: fracture, friction_angle: 20, normal_stiffness: 10 GPa/m, shear_stiffness: 5 GPa/m}}}}
+geometry:
+  domain: {{polygon: [[-3, -3], [9, -3], [9, {:.12g}], [4, 0], [4, 4], [0, 4], [0, 0], [-3, 0]]}}
+  fractures: [{{trace: [[0, 0], [4, 0]], interface: joint}}]
+boundaries: {{bottom: {{sides: [0], support: fixed}}, push: {{sides: [5]}}, right: {{sides: [1], support: fixed}}}}
+stages: [{{steps: 3}}, {{displacement: {{boundary: push, value: 0.5}}, steps: 5}}]
+)",
+                                                   5.0 * std::tan(slope * degree)));
+        ASSERT_TRUE(stands(run)) << run.report.diagnosis;
+        const double expected = 2500.0 * 10.0 * 16.0 * std::tan((20.0 + slope) * degree) / 4.0;
+        EXPECT_NEAR(run.history.back().axial_stress, expected, 5e-3 * expected) << slope;
+    }
+}
+
+// A brick whose corner lies at the foot of a flat slope is held under its weight, and told of; what it has without that corner, tan 30 over
+// tan 20 on the plane of 20 degrees, is its factor of safety.
+TEST(BesideVoids, ABrickAtTheFootOfASlopeStandsAndHasNoStrengthOfIt) {
+    for (const double slope : {25.0, 44.0}) {
+        const std::string blocks =
+            fmt::format("    - {{name: base, support: fixed, polygon: [[-8, -3], [{0:.12g}, -3], [{0:.12g}, {1:.12g}], "
+                        "[4, 0], [-8, "
+                        "0]]}}\n    - {{name: brick, polygon: [[0, 0], [4, 0], [4, 4], [0, 4]]}}\n",
+                        4.0 + 6.0 * std::cos(slope * degree), 6.0 * std::sin(slope * degree));
+        EXPECT_TRUE(stands(run_scene(blocks_on_a_slope(20, 15, blocks, "{steps: 5}")))) << slope;
+        const SceneRun reduced = run_scene(
+            blocks_on_a_slope(20, 30, blocks, "{steps: 5}, {strength_reduction: {from: 1, to: 5}, steps: 20}"));
+        ASSERT_TRUE(reduced.report.results.factor_of_safety) << reduced.report.diagnosis;
+        const double expected = std::tan(30.0 * degree) / std::tan(20.0 * degree);
+        EXPECT_NEAR(*reduced.report.results.factor_of_safety, expected, 2e-3 * expected);
+        EXPECT_THAT(reduced.report.warnings, testing::Contains(testing::HasSubstr("the tip of block 'brick' at")));
+    }
+}
+
 // A block on its tip in the corner of floor and wall, and on a post. Its sides are more than 45 degrees from both.
 TEST(BesideVoids, ATipIsHeldInTheCornerWhereItBegins) {
     const std::string blocks = "    - {name: spike, polygon: [[4, 0], [3, 1.73205], [2.26795, 1]]}\n"

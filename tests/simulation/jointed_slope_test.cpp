@@ -100,12 +100,17 @@ struct SlopeWithGround {
     double friction_angle = 30.0;
     double ground = 0.0; ///< degrees
     bool has_spacing = true;
+    double joint_before_toe = 0.0; ///< a vertical one in the ground, so far before the toe (m); none: 0
 };
 
 SceneRun run_slope(const SlopeWithGround& slope) {
     const double back = 1.0 / std::tan(slope.face / degrees);
     const double x = slope.height < 0.0 ? -12.0 : slope.height * back; // where the trace begins
     const double y = slope.height < 0.0 ? slope.height - 12.0 * std::tan(slope.dip / degrees) : slope.height;
+    const std::string before_toe =
+        slope.joint_before_toe > 0.0
+            ? fmt::format(", {{trace: [[{0:.17g}, 1], [{0:.17g}, -6]], interface: joint}}", -slope.joint_before_toe)
+            : "";
     return run_scene(fmt::format(R"(kluft: 1
 analysis: {{gravity: 9.81}}
 materials: {{rock: {{density: 2500, youngs_modulus: 10 GPa, poissons_ratio: 0.25}}}}
@@ -113,13 +118,14 @@ interfaces: {{joint: {{kind: fracture, friction_angle: {}, cohesion: {}, normal_
 geometry:
   {}
   domain: {{polygon: [[-10, -5], [30, -5], [30, 10], [{:.17g}, 10], [0, 0], [-10, {:.17g}]]}}
-  fractures: [{{trace: [[{:.17g}, {:.17g}], [{:.17g}, 11]], interface: joint}}]
+  fractures: [{{trace: [[{:.17g}, {:.17g}], [{:.17g}, 11]], interface: joint}}{}]
 boundaries: {{base: {{sides: [0], support: fixed}}, right: {{sides: [1], support: fixed}}}}
 stages: [{{steps: 5}}, {{strength_reduction: {{to: 5}}, steps: 20}}]
 )",
                                  slope.friction_angle, slope.cohesion, slope.has_spacing ? "reference_spacing: 2" : "",
                                  10.0 * back, 10.0 * std::tan(slope.ground / degrees), x, y,
-                                 slope.height * back + (11.0 - slope.height) / std::tan(slope.dip / degrees)));
+                                 slope.height * back + (11.0 - slope.height) / std::tan(slope.dip / degrees),
+                                 before_toe));
 }
 
 /// Plane failure (Hoek and Bray): F = (c L + W cos tan phi)/(W sin), of the part above where the joint comes out.
@@ -161,6 +167,21 @@ TEST(JointedSlope, PlaneThatComesOutJustAboveTheToeIsNotHeldByTheGround) {
             const SceneRun run = run_slope(slope);
             ASSERT_TRUE(run.report.results.factor_of_safety.has_value());
             EXPECT_NEAR(*run.report.results.factor_of_safety, expected, 3e-3 * expected) << height << has_spacing;
+        }
+    }
+}
+
+// Where a joint in the ground is so near, the wedge would slide until its tip or its face met the ground behind that, and stand there (1.147 to
+// above 5).
+TEST(JointedSlope, PlaneThroughTheToeIsNotHeldByTheGroundBehindAJoint) {
+    for (const double before_toe : {0.002, 0.005, 0.012, 0.03, 0.08, 0.2}) {
+        for (SlopeWithGround slope : {SlopeWithGround{}, SlopeWithGround{.dip = 35.0, .face = 60.0}}) {
+            slope.joint_before_toe = before_toe;
+            slope.has_spacing = false;
+            const double expected = factor_of_plane_failure(slope);
+            const SceneRun run = run_slope(slope);
+            ASSERT_TRUE(run.report.results.factor_of_safety.has_value()) << before_toe;
+            EXPECT_NEAR(*run.report.results.factor_of_safety, expected, 3e-3 * expected) << before_toe;
         }
     }
 }

@@ -38,7 +38,7 @@ stages: [{{strain: {{boundary: top, value: {}}}, platens: smooth, steps: {}}}]
 TEST(StoredEnergy, IsThePotentialOfTheForces) {
     const SceneRun run = run_scene(pressed_triangles(2, 1e-3));
     const Placement placement{placed_bonds(run.model, run.state.body),
-                              detected_contacts(run.model, run.state.body).points};
+                              detected_contacts(run.model, run.state.body, true).points};
     ASSERT_FALSE(placement.bonds.empty());
     ASSERT_FALSE(placement.contacts.empty());
     LoadsAt without_loads;
@@ -61,7 +61,7 @@ TEST(StoredEnergy, IsThePotentialOfTheForces) {
 TEST(StoredEnergy, IsTheWorkOfThePlatenWhileNothingBreaks) {
     const SceneRun run = run_scene(pressed_triangles(2, 1e-3));
     const Placement placement{placed_bonds(run.model, run.state.body),
-                              detected_contacts(run.model, run.state.body).points};
+                              detected_contacts(run.model, run.state.body, true).points};
     LoadsAt without_loads;
     without_loads.laws = run.model.laws;
     const double stored = stored_energy(loaded_body(run.model, placement, without_loads), run.state.body.displacement);

@@ -31,11 +31,22 @@ struct ContactSurfaces {
     int outline_points = 3;       ///< of an overlap of two surfaces of the outline
     int default_law = 0;          ///< of two surfaces of the domain's outline that meet
     bool outlines_meet = false;   ///< also those of two blocks that have no fracture inside the body
+    /// Whether what rises before a tip holds it where the tip leans away from it: rigid blocks do, rock at the toe of a slope does not.
+    bool ground_holds_tips = true;
+};
+
+/// A tip that has sunk into the ground before it, which does not hold it.
+struct UnheldTip {
+    int block = 0;
+    int ground = 0;            ///< a block
+    double depth = 0.0;        ///< m
+    Vec2 place = Vec2::Zero(); ///< local coordinates, as it lies (m)
 };
 
 struct DetectedContacts {
     std::vector<ContactPoint> points;            ///< sorted by key
     std::vector<std::pair<int, int>> near_pairs; ///< blocks that are near enough to touch soon, sorted
+    std::vector<UnheldTip> unheld_tips;          ///< where the ground holds none
 };
 
 /// Two fixed blocks have no contact. `reach`: largest opening at which a point is kept (m). Points whose key

@@ -1,9 +1,11 @@
 // Corners that hold blocks: short contacts that carry much.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "kluft/contact/detection.hpp"
 #include "kluft/core/vector.hpp"
 #include "kluft/simulation/model.hpp"
 #include "kluft/simulation/state.hpp"
@@ -24,6 +26,12 @@ struct CornerContact {
 
 /// Of a committed state, the largest force first.
 [[nodiscard]] std::vector<CornerContact> corner_contacts(const Model& model, const State& state);
+
+/// Of a committed state of a stage that reduces strengths; nothing where there is none.
+[[nodiscard]] std::optional<UnheldTip> deepest_unheld_tip(const Model& model, const State& state);
+
+/// In words, why it is not held.
+[[nodiscard]] std::string description(const Model& model, const UnheldTip& tip);
 
 /// In words, what holds a block there.
 [[nodiscard]] std::string description(const Model& model, const CornerContact& corner);

@@ -26,8 +26,12 @@ inline constexpr double contact_reach = 0.1;
 /// Whether blocks touch with their outlines alone: given blocks do, with gaps between them too.
 [[nodiscard]] bool may_outlines_meet(const Model& model);
 
+/// Whether a stage lets the ground before a toe hold the tip that comes out there: not where strengths are reduced, since it counts for
+/// nothing in the strength of rock.
+[[nodiscard]] bool ground_holds_tips(const Model& model, int stage);
+
 /// Contacts of the unbonded surfaces, with the histories of the state.
-[[nodiscard]] DetectedContacts detected_contacts(const Model& model, const BodyState& body);
+[[nodiscard]] DetectedContacts detected_contacts(const Model& model, const BodyState& body, bool ground_holds_tips);
 
 /// The same contact points and frames once more, with the histories of the state and slip counted from its
 /// displacements.
