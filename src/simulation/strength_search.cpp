@@ -210,6 +210,13 @@ void warn_of_failed_search(const StepBench& bench, double found, const Failure& 
     bench.journal.report().warnings.push_back(std::move(warning));
 }
 
+/// What would have held the body, if rock were rigid.
+void warn_of_unheld_tip(const StepBench& bench, const State& state) {
+    if (const auto tip = deepest_unheld_tip(bench.model, state))
+        bench.journal.report().warnings.push_back(description(bench.model, *tip) +
+                                                  "; rigid blocks may stand with more");
+}
+
 /// A body that has moved in a jump before strengths are reduced, by less than (32b) takes for a fall.
 void warn_of_earlier_jump(const StepBench& bench, const State& state) {
     const std::vector<Stage>& stages = bench.model.loads.stages;
@@ -309,7 +316,10 @@ StageEnd find_strength_limit(const StepBench& bench, State& state) {
     doubts.look_at(state, bench.journal.last_row(), reduction.factor_at(state.at.load_factor));
     std::vector<StepRecord> before; // equilibria that are not told yet
     if (state.at.load_factor == 0.0) end.failure = find_initial_equilibrium(bench, state, before);
-    if (end.failure) return {.failure = end.failure, .step = state.at.step + 1};
+    if (end.failure) {
+        warn_of_unheld_tip(bench, state);
+        return {.failure = end.failure, .step = state.at.step + 1};
+    }
     if (state.at.load_factor == 0.0) {
         state.stage_start.near_place = state.body.displacement;
         state.stage_start.near_factor = reduction.factor_at(0.0);
@@ -350,9 +360,7 @@ StageEnd find_strength_limit(const StepBench& bench, State& state) {
     const double found = reduction.factor_at(state.at.load_factor);
     if (const std::string said = doubts.warning(found); !said.empty()) bench.journal.report().warnings.push_back(said);
     if (end.failure && is_without_motion(*end.failure)) warn_of_failed_search(bench, found, *end.failure);
-    if (const auto tip = deepest_unheld_tip(bench.model, state); end.failure && tip)
-        bench.journal.report().warnings.push_back(description(bench.model, *tip) +
-                                                  "; rigid blocks may stand with more");
+    if (end.failure) warn_of_unheld_tip(bench, state);
     if (!end.failure) {
         bench.journal.report().warnings.push_back(
             fmt::format("the factor of safety is above {:g}, the largest strength factor of stage {}", reduction.to,
