@@ -193,13 +193,13 @@ std::vector<SourceSegment> bridge_ends(const std::vector<SourceTrace>& traces,
     return found;
 }
 
-std::vector<SourceSegment> bridge_notches(const std::vector<Polygon>& outlines,
+std::vector<SourceSegment> bridge_notches(const std::vector<std::vector<Vec2>>& outlines,
                                           const std::vector<SourceSegment>& segments, double reach) {
     std::vector<SourceSegment> found;
     if (segments.empty()) return found;
     const SegmentGrid grid = grid_of(segments);
     const Vec2 margin(reach, reach);
-    for (const Polygon& outline : outlines) {
+    for (const std::vector<Vec2>& outline : outlines) {
         for (std::size_t i = 0; i < outline.size(); ++i) {
             const Vec2& corner = outline[i];
             const Vec2 arriving = corner - outline[(i + outline.size() - 1) % outline.size()];

@@ -27,7 +27,7 @@ struct SourceTrace {
 
 /// Where one of the segments passes by a notch of the body within `reach` (m), this returns a segment from the notch to it, of its source,
 /// which parts what hangs together on so little. `outlines`: polygons with the body to their left. Ends of segments are left to bridge_ends.
-[[nodiscard]] std::vector<SourceSegment> bridge_notches(const std::vector<Polygon>& outlines,
+[[nodiscard]] std::vector<SourceSegment> bridge_notches(const std::vector<std::vector<Vec2>>& outlines,
                                                         const std::vector<SourceSegment>& segments, double reach);
 
 /// A polyline without the points that it passes within `tolerance` (m) anyway (Douglas and Peucker 1973).
