@@ -110,13 +110,17 @@ std::optional<CornerContact> caught_corner(const Model& model, const std::vector
     return std::nullopt;
 }
 
-/// By what a body stands that has moved, where rock would not: a corner that has caught, or whatever a tip has met that has sunk into
-/// the ground before it; "" where there is no such thing.
-std::string resting_place(const Model& model, const State& before, const State& now) {
+/// By what a body stands that has moved (motion_scale), where rock would not: a corner that has caught, or whatever a tip has met that has
+/// sunk into the ground before it on the way; "" where there is no such thing.
+std::string resting_place(const Model& model, const State& before, const State& now, double moved) {
+    constexpr double on_the_way =
+        0.05; // of the motion, as into ground that rises by 3 degrees; less is the blocks' deformation
     if (const auto corner = caught_corner(model, corner_contacts(model, before), now))
         return description(model, *corner) + ", which rock would lose";
     const auto tip = deepest_unheld_tip(model, now);
-    return tip ? description(model, *tip) : "";
+    const bool has_sunk =
+        tip && tip->depth > on_the_way * moved * motion_scale(model.system, model.system.blocks[tip->block]);
+    return has_sunk ? description(model, *tip) : "";
 }
 
 /// Of a step whose body has given way and has come to rest by what rock would lose, in words.
@@ -185,7 +189,7 @@ Trial try_factor(const StepBench& bench, const TrialGoal& goal, State& state, st
     if (!keeps_its_place(bench, state, near_by(goal.displaced_by_loads), step))
         return {failure_by_motion(bench, step, step.end.stage_start.near_place, jump_motion), false};
     if (moved > goal.displaced_by_loads)
-        if (const std::string resting = resting_place(bench.model, state, step.end); !resting.empty())
+        if (const std::string resting = resting_place(bench.model, state, step.end, moved); !resting.empty())
             return {failure_by_corner(bench, step, start, resting), true};
     step.equilibria.insert(step.equilibria.begin(), before.begin(), before.end());
     before.clear();
