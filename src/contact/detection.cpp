@@ -173,12 +173,7 @@ public:
         shallow_ = -least_penetration * smaller;
         overlapping_.clear();
         for (const auto& edge_a : edges_a) {
-            for (const auto& edge_b : edges_b) {
-                if (slides_onto_ground(a, edge_a, edges_a, b, edge_b) ||
-                    slides_onto_ground(b, edge_b, edges_b, a, edge_a))
-                    continue;
-                append_overlap(a, edge_a, b, edge_b);
-            }
+            for (const auto& edge_b : edges_b) append_overlap(a, edge_a, edges_a, b, edge_b, edges_b);
         }
         if (bonded_pair_) return;
         append_vertices(a, edges_a, b, edges_b, false);
@@ -277,7 +272,8 @@ private:
         point.slip_start = along.dot(relative_position(point, q_));
     }
 
-    void append_overlap(int a, const CurrentEdge& edge_a, int b, const CurrentEdge& edge_b) {
+    void append_overlap(int a, const CurrentEdge& edge_a, std::span<const CurrentEdge> edges_a, int b,
+                        const CurrentEdge& edge_b, std::span<const CurrentEdge> edges_b) {
         if (edge_a.direction.dot(edge_b.direction) > facing_cosine) return;
         if (!may_touch(reference(a, edge_a.edge), reference(b, edge_b.edge))) return;
         const Vec2 along = (edge_a.direction - edge_b.direction).normalized();
@@ -306,6 +302,8 @@ private:
         if (std::min(gap_low, gap_high) < (own ? deepest_own_ : deepest_)) return;
         if (!own && -std::min(gap_low, gap_high) > overlap)
             return; // a corner that has sunk into a face beside this one
+        if (slides_onto_ground(a, edge_a, edges_a, b, edge_b) || slides_onto_ground(b, edge_b, edges_b, a, edge_a))
+            return;
 
         const double at = low + (gap_low < gap_high ? 0.25 : 0.75) * overlap; // nearer to the deeper end
         if (gap_at(at) < (own ? doubtful_ : shallow_)) {

@@ -761,7 +761,10 @@ std::vector<KeyRule> loading_rules() {
                 "by halving, and the run ends (`collapsed`, exit 0) with `factor_of_safety` in summary.json: null, "
                 "with a warning, if the body stands at `to`; a stage after it has the full strengths again. Tensile "
                 "strengths stay; dilation is cut to the friction "
-                "that is left. Not in the first stage, and for `integrator: implicit` only. `solver.balance` is at "
+                "that is left. The ground before the toe of a slope, which holds the tip of a wedge under loads, "
+                "counts for "
+                "nothing here, nor does a corner that has caught. Not in the first stage, and for `integrator: "
+                "implicit` only. `solver.balance` is at "
                 "most a tenth, `solver.tolerance` a hundredth of its tolerance here."},
         {.path = "stages.#.strength_reduction.from",
          .type = KeyType::number,

@@ -92,10 +92,10 @@ std::vector<CornerContact> corner_contacts(const Model& model, const State& stat
     return corners;
 }
 
-std::optional<UnheldTip> deepest_unheld_tip(const Model& model, const State& state) {
-    const std::vector<UnheldTip> tips = detected_contacts(model, state.body, false).unheld_tips;
-    const auto deepest = std::ranges::max_element(tips, {}, &UnheldTip::depth);
-    return deepest == tips.end() ? std::nullopt : std::optional(*deepest);
+std::vector<UnheldTip> unheld_tips(const Model& model, const State& state) {
+    std::vector<UnheldTip> tips = detected_contacts(model, state.body, false).unheld_tips;
+    std::ranges::stable_sort(tips, std::greater(), &UnheldTip::depth);
+    return tips;
 }
 
 std::string description(const Model& model, const UnheldTip& tip) {

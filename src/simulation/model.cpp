@@ -341,10 +341,15 @@ bool is_platen_resisted(const BlockSystem& system, const LoadProgram& loads, int
     return false;
 }
 
-/// A platen that nothing stands against carries the body along.
-void require_resistance(const BlockSystem& system, const LoadProgram& loads) {
+/// A platen that nothing stands against carries the body along, unless weight or forces press this on it.
+void require_resistance(const BlockSystem& system, const Vec2& gravity, const LoadProgram& loads) {
+    const bool is_loaded =
+        !gravity.isZero() || !loads.forces.empty() ||
+        std::ranges::any_of(loads.stages, [](const Stage& stage) { return stage.gravity.has_value(); });
+    if (is_loaded) return;
     for (const Stage& stage : loads.stages) {
-        if (!stage.motion || is_platen_resisted(system, loads, stage.motion->boundary)) continue;
+        if (!stage.motion || stage.motion->value == 0.0 || is_platen_resisted(system, loads, stage.motion->boundary))
+            continue;
         throw InputError(fmt::format(
             "{}: expected a boundary opposite to '{}', a support or a fixed block, against which its platen presses; "
             "found none: the body would be carried along",
@@ -466,7 +471,7 @@ Model build_model(BlockSystem system, const ModelInput& input) {
     model.histories = place_histories(system, input.histories);
     refuse_moved_fixed_blocks(system, input.loads);
     require_directions(system, model.loads);
-    require_resistance(system, model.loads);
+    require_resistance(system, model.gravity, model.loads);
     const double boundary_stress = largest_boundary_stress(system, input, model.force_points);
     model.net = net_of_body(system, input);
     const LawBench bench{.system = system,

@@ -111,16 +111,21 @@ std::optional<CornerContact> caught_corner(const Model& model, const std::vector
 }
 
 /// By what a body stands that has moved (motion_scale), where rock would not: a corner that has caught, or whatever a tip has met that has
-/// sunk into the ground before it on the way; "" where there is no such thing.
+/// sunk into the ground before it with a block that moved about as far; "" where there is no such thing.
 std::string resting_place(const Model& model, const State& before, const State& now, double moved) {
     constexpr double on_the_way =
         0.05; // of the motion, as into ground that rises by 3 degrees; less is the blocks' deformation
+    constexpr double about_as_far = 0.5;
     if (const auto corner = caught_corner(model, corner_contacts(model, before), now))
         return description(model, *corner) + ", which rock would lose";
-    const auto tip = deepest_unheld_tip(model, now);
-    const bool has_sunk =
-        tip && tip->depth > on_the_way * moved * motion_scale(model.system, model.system.blocks[tip->block]);
-    return has_sunk ? description(model, *tip) : "";
+    const Eigen::VectorXd motion = now.body.displacement - before.body.displacement;
+    for (const UnheldTip& tip : unheld_tips(model, now)) {
+        const double of_block = motion.segment<2>(n_block_unknowns * tip.block).norm();
+        const bool is_moving =
+            of_block > about_as_far * moved * motion_scale(model.system, model.system.blocks[tip.block]);
+        if (is_moving && tip.depth > on_the_way * of_block) return description(model, tip);
+    }
+    return {};
 }
 
 /// Of a step whose body has given way and has come to rest by what rock would lose, in words.
@@ -214,11 +219,13 @@ void warn_of_failed_search(const StepBench& bench, double found, const Failure& 
     bench.journal.report().warnings.push_back(std::move(warning));
 }
 
-/// What would have held the body, if rock were rigid.
-void warn_of_unheld_tip(const StepBench& bench, const State& state) {
-    if (const auto tip = deepest_unheld_tip(bench.model, state))
-        bench.journal.report().warnings.push_back(description(bench.model, *tip) +
-                                                  "; rigid blocks may stand with more");
+/// What would have held a block that falls, if rock were rigid.
+void warn_of_unheld_tip(const StepBench& bench, const State& state, const Failure& failure) {
+    for (const UnheldTip& tip : unheld_tips(bench.model, state)) {
+        if (std::ranges::find(failure.moving, tip.block, &MovingBlock::block) == failure.moving.end()) continue;
+        bench.journal.report().warnings.push_back(description(bench.model, tip) + "; rigid blocks may stand with more");
+        return;
+    }
 }
 
 /// A body that has moved in a jump before strengths are reduced, by less than (32b) takes for a fall.
@@ -321,7 +328,7 @@ StageEnd find_strength_limit(const StepBench& bench, State& state) {
     std::vector<StepRecord> before; // equilibria that are not told yet
     if (state.at.load_factor == 0.0) end.failure = find_initial_equilibrium(bench, state, before);
     if (end.failure) {
-        warn_of_unheld_tip(bench, state);
+        warn_of_unheld_tip(bench, state, *end.failure);
         return {.failure = end.failure, .step = state.at.step + 1};
     }
     if (state.at.load_factor == 0.0) {
@@ -364,7 +371,7 @@ StageEnd find_strength_limit(const StepBench& bench, State& state) {
     const double found = reduction.factor_at(state.at.load_factor);
     if (const std::string said = doubts.warning(found); !said.empty()) bench.journal.report().warnings.push_back(said);
     if (end.failure && is_without_motion(*end.failure)) warn_of_failed_search(bench, found, *end.failure);
-    if (end.failure) warn_of_unheld_tip(bench, state);
+    if (end.failure) warn_of_unheld_tip(bench, state, *end.failure);
     if (!end.failure) {
         bench.journal.report().warnings.push_back(
             fmt::format("the factor of safety is above {:g}, the largest strength factor of stage {}", reduction.to,

@@ -52,5 +52,18 @@ TEST(NarrowNeck, IsPartedWhereItIsNotResolved) {
     }
 }
 
+// A digitised trace has a vertex there, bent towards the toe or away from it: its nearest point is an end of two of its segments.
+TEST(NarrowNeck, IsPartedWhereATraceBendsBesideTheToe) {
+    for (const Vec2& below : {Vec2(-5, -10), Vec2(-2, -12), Vec2(-11.9, -10)}) {
+        GeometrySpec spec;
+        spec.reference_spacing = 5.0;
+        spec.domain = {{-10, -10}, {30, -10}, {30, 10}, {5.7735, 10}, {0, 0}, {-10, 0}};
+        cut_scenes::add_trace(spec, {below, {0, -1e-3}, {14, 11.747}});
+        const BlockSystem parted = cut_blocks(spec).system;
+        EXPECT_EQ(parted.n_blocks(), 3) << below.transpose();
+        EXPECT_THAT(narrow_necks(parted), testing::IsEmpty()) << below.transpose();
+    }
+}
+
 } // namespace
 } // namespace kluft

@@ -273,15 +273,16 @@ stages: [{{stress: {{boundary: footing, value: 1 MPa}}}}]
 }
 
 /// A specimen with a platen on its top, whose other sides have these boundaries and supports.
-void build_pressed(const std::string& boundaries) {
+void build_pressed(const std::string& boundaries, const std::string& more = "") {
     (void)build_scene_model(read_scene_text(fmt::format(R"(
 kluft: 1
 materials: {{rock: {{density: 2500, youngs_modulus: 5 GPa, poissons_ratio: 0.25}}}}
 geometry: {{domain: {{polygon: [[0, 0], [1, 0], [1, 2], [0, 2]]}}}}
 boundaries: {{t: {{facing: top}}{}}}
 stages: [{{strain: {{boundary: t, value: 0.1 %}}}}]
+{}
 )",
-                                                        boundaries)));
+                                                        boundaries, more)));
 }
 
 // Without anything against it the platen carries the body along, and a strain is told of a body without a stress.
@@ -296,6 +297,7 @@ TEST(StageLoads, PlatenHasSomethingToPressAgainst) {
     }
     for (const char* with : {", b: {facing: bottom}", ", b: {facing: bottom, support: fixed}"})
         EXPECT_NO_THROW(build_pressed(with)) << with;
+    EXPECT_NO_THROW(build_pressed("", "analysis: {gravity: 9.81}")); // a body on a jack
 }
 
 // ---- pressures -----------------------------------------------------------------------------------------------------

@@ -26,7 +26,7 @@ struct SourceTrace {
                                                      const std::vector<SourceSegment>& segments, double reach);
 
 /// Where one of the segments passes by a notch of the body within `reach` (m), this returns a segment from the notch to it, of its source,
-/// which parts what hangs together on so little. `outlines`: polygons with the body to their left. Ends of segments are left to bridge_ends.
+/// which parts what hangs together on so little. `outlines`: polygons with the body to their left.
 [[nodiscard]] std::vector<SourceSegment> bridge_notches(const std::vector<std::vector<Vec2>>& outlines,
                                                         const std::vector<SourceSegment>& segments, double reach);
 

@@ -1,7 +1,6 @@
 // Corners that hold blocks: short contacts that carry much.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,8 +26,8 @@ struct CornerContact {
 /// Of a committed state, the largest force first.
 [[nodiscard]] std::vector<CornerContact> corner_contacts(const Model& model, const State& state);
 
-/// Of a committed state of a stage that reduces strengths; nothing where there is none.
-[[nodiscard]] std::optional<UnheldTip> deepest_unheld_tip(const Model& model, const State& state);
+/// Of a committed state of a stage that reduces strengths, the deepest one first.
+[[nodiscard]] std::vector<UnheldTip> unheld_tips(const Model& model, const State& state);
 
 /// In words, why it is not held.
 [[nodiscard]] std::string description(const Model& model, const UnheldTip& tip);
