@@ -111,8 +111,8 @@ void warn_of_tensile_strength(const SceneSection& section, const Strength& stren
 void warn_of_tensile_strengths(const SceneSection& root, const Scene& scene, ReadingContext& context) {
     const auto has_bonds = [](const InterfaceType& type) { return type.kind == InterfaceKind::potential_crack; };
     if (std::ranges::none_of(scene.interface_types, has_bonds)) return;
-    const bool in_net =
-        scene.geometry.tessellation && has_bonds(scene.interface_types[scene.geometry.tessellation->interface_type]);
+    const auto& net = scene.geometry.tessellation; // whose interface is -1 where it is none of the scene
+    const bool in_net = net && net->interface_type >= 0 && has_bonds(scene.interface_types[net->interface_type]);
     const bool by_stress = scene.cracks.criterion == CrackCriterion::principal_stress;
     const auto materials = root.sections("materials");
     for (std::size_t m = 0; m < std::min(materials.size(), scene.materials.size()); ++m)
