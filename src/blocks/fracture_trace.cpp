@@ -207,10 +207,10 @@ std::vector<SourceSegment> bridge_notches(const std::vector<std::vector<Vec2>>& 
             if (cross(arriving, leaving) >= 0.0) continue;
             for (const int s : grid.near({corner - margin, corner + margin})) {
                 const auto& [a, b, source] = segments[s];
-                const double share = std::clamp((corner - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
-                const Vec2 towards = a + share * (b - a) - corner;
-                const bool is_met = orientation(a, b, corner) == 0 && share > 0.0 && share < 1.0;
-                if (is_met || towards.isZero(0.0) || distance_to_segment(corner, a, b) > reach) continue;
+                const Vec2 towards = nearest_point(corner, a, b) - corner;
+                const bool is_beside = (corner - a).dot(b - a) > 0.0 && (corner - b).dot(a - b) > 0.0;
+                const bool is_met = (is_beside && orientation(a, b, corner) == 0) || towards.isZero(0.0);
+                if (is_met || towards.norm() > reach) continue;
                 if (cross(arriving, towards) <= 0.0 && cross(leaving, towards) <= 0.0) continue; // before the body
                 if (const auto segment = segment_to(corner, segments[s], source)) found.push_back(*segment);
             }

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "kluft/geometry/polygon.hpp"
+#include "kluft/geometry/predicates.hpp"
 
 namespace kluft {
 
@@ -19,11 +20,6 @@ std::vector<Vec2> outline_of(const BlockSystem& system, const Block& block) {
     outline.reserve(n);
     for (std::size_t i = 0; i < n; ++i) outline.push_back(edge_start(system, block.edges[i]));
     return outline;
-}
-
-Vec2 nearest_on_side(const Vec2& x, const Vec2& start, const Vec2& end) {
-    const Vec2 side = end - start;
-    return start + std::clamp(side.dot(x - start) / side.squaredNorm(), 0.0, 1.0) * side;
 }
 
 /// Of what the line from corner i to a point on side j cuts off.
@@ -45,7 +41,7 @@ std::optional<NarrowNeck> narrowest_neck(const BlockSystem& system, int b) {
         const Vec2 leaving = outline[(i + 1) % n] - corner;
         if (cross(arriving, leaving) >= 0.0) continue; // beside a neck there is a notch
         for (std::size_t j = (i + 1) % n; j != (i + n - 1) % n; j = (j + 1) % n) {
-            const Vec2 across = nearest_on_side(corner, outline[j], outline[(j + 1) % n]) - corner;
+            const Vec2 across = nearest_point(corner, outline[j], outline[(j + 1) % n]) - corner;
             const double width = across.norm();
             const bool is_inside = cross(arriving, across) > 0.0 || cross(leaving, across) > 0.0;
             if (!is_inside || width >= narrow * block.size) continue;

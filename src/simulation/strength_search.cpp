@@ -113,8 +113,7 @@ std::optional<CornerContact> caught_corner(const Model& model, const std::vector
 /// By what a body stands that has moved (motion_scale), where rock would not: a corner that has caught, or whatever a tip has met that has
 /// sunk into the ground before it with a block that moved about as far; "" where there is no such thing.
 std::string resting_place(const Model& model, const State& before, const State& now, double moved) {
-    constexpr double on_the_way =
-        0.05; // of the motion, as into ground that rises by 3 degrees; less is the blocks' deformation
+    constexpr double on_the_way = 0.05; // of the motion: ground that rises by 3 degrees; less is deformation
     constexpr double about_as_far = 0.5;
     if (const auto corner = caught_corner(model, corner_contacts(model, before), now))
         return description(model, *corner) + ", which rock would lose";
@@ -129,8 +128,8 @@ std::string resting_place(const Model& model, const State& before, const State& 
 }
 
 /// Of a step whose body has given way and has come to rest by what rock would lose, in words.
-Failure failure_by_corner(const StepBench& bench, const Step& step, const Eigen::VectorXd& before,
-                          const std::string& resting) {
+Failure failure_by_giving_way(const StepBench& bench, const Step& step, const Eigen::VectorXd& before,
+                              const std::string& resting) {
     const Eigen::VectorXd moved = step.end.body.displacement - before;
     Failure failure = failure_by_motion(bench, step, before, 0.5 * relative_motion(bench.model.system, moved));
     failure.what = "the body has given way, and " + resting;
@@ -180,7 +179,7 @@ bool keeps_its_place(const StepBench& bench, const State& before, double near, S
 }
 
 /// Tries a load step and commits it, after the equilibria found before, if the body stands at its end where it stood (32b), and not
-/// because a corner has caught.
+/// by a resting_place.
 Trial try_factor(const StepBench& bench, const TrialGoal& goal, State& state, std::vector<StepRecord>& before) {
     begin_load_step(bench);
     Step step = take_step(bench, state, goal_with_strengths_of(bench, state, goal.load_factor));
@@ -195,7 +194,7 @@ Trial try_factor(const StepBench& bench, const TrialGoal& goal, State& state, st
         return {failure_by_motion(bench, step, step.end.stage_start.near_place, jump_motion), false};
     if (moved > goal.displaced_by_loads)
         if (const std::string resting = resting_place(bench.model, state, step.end, moved); !resting.empty())
-            return {failure_by_corner(bench, step, start, resting), true};
+            return {failure_by_giving_way(bench, step, start, resting), true};
     step.equilibria.insert(step.equilibria.begin(), before.begin(), before.end());
     before.clear();
     commit(std::move(step), goal.kind, state, bench.journal);
