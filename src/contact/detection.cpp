@@ -247,23 +247,33 @@ private:
         return std::max(on(a), on(b));
     }
 
-    ContactPoint point_between(int a, const CurrentEdge& edge_a, double s_a, int b, const CurrentEdge& edge_b,
-                               double s_b) const {
+    /// A point of two edges, but for where it lies on them.
+    [[nodiscard]] ContactPoint point_between(int a, const CurrentEdge& edge_a, int b, const CurrentEdge& edge_b) const {
         const Edge& side_a = reference(a, edge_a.edge);
         const Edge& side_b = reference(b, edge_b.edge);
-        const Vec2 x_a = edge_start(system_, side_a) + s_a * (edge_end(system_, side_a) - edge_start(system_, side_a));
-        const Vec2 x_b = edge_start(system_, side_b) + s_b * (edge_end(system_, side_b) - edge_start(system_, side_b));
         ContactPoint point;
         point.block_a = a;
         point.block_b = b;
-        point.xi_a = block_coordinates(system_.blocks[a], x_a);
-        point.xi_b = block_coordinates(system_.blocks[b], x_b);
-        point.offset = x_b - x_a;
-        if (point.offset.norm() <= same_point * edge_a.length) point.offset.setZero();
         point.law = law_between(side_a, side_b);
         if (side_a.interface >= 0 && side_a.interface == side_b.interface) point.interface = side_a.interface;
         point.key = {a, edge_a.edge, b, edge_b.edge, -1};
         return point;
+    }
+
+    /// An edge of a block as cut.
+    struct CutEdge {
+        CutEdge(const BlockSystem& system, const Edge& edge)
+            : start(edge_start(system, edge)), to_end(edge_end(system, edge) - start) {}
+        [[nodiscard]] Vec2 at(double s) const { return start + s * to_end; }
+        Vec2 start, to_end;
+    };
+
+    /// At a place of each of the two edges as cut; `length` is that of the first one.
+    void lay(ContactPoint& point, const Vec2& x_a, const Vec2& x_b, double length) const {
+        point.xi_a = block_coordinates(system_.blocks[point.block_a], x_a);
+        point.xi_b = block_coordinates(system_.blocks[point.block_b], x_b);
+        point.offset = x_b - x_a;
+        if (point.offset.norm() <= same_point * length) point.offset.setZero();
     }
 
     void finish(ContactPoint& point, const Vec2& along) const {
@@ -317,9 +327,12 @@ private:
         const OverlapRule rule = overlap_rule(points_between(side_a, reference(b, edge_b.edge)));
         const auto [along_low, along_high] =
             directions_at_ends(a, edge_a, b, edge_b, start_b, extent_a - (start_b + extent_b));
+        const CutEdge cut_a(system_, side_a);
+        const CutEdge cut_b(system_, reference(b, edge_b.edge));
+        ContactPoint point = point_between(a, edge_a, b, edge_b);
         for (std::size_t k = 0; k < rule.positions.size(); ++k) {
             const double tau = low + rule.positions[k] * overlap;
-            ContactPoint point = point_between(a, edge_a, tau / extent_a, b, edge_b, 1.0 - (tau - start_b) / extent_b);
+            lay(point, cut_a.at(tau / extent_a), cut_b.at(1.0 - (tau - start_b) / extent_b), edge_a.length);
             point.weight = rule.weights[k] * overlap;
             point.along = rule.positions[k];
             point.key.point = static_cast<int>(k);
@@ -528,23 +541,32 @@ private:
     void append_vertices(int owner, std::span<const CurrentEdge> leaving_edges, int target,
                          std::span<const CurrentEdge> edges, bool swapped) {
         for (const auto& leaving : leaving_edges) {
-            for (const auto& edge : edges) append_vertex(owner, leaving, target, edge, edges, swapped);
+            for (const auto& edge : edges) {
+                const Vec2 from_edge = leaving.start - edge.start;
+                const double gap = right_normal(edge.direction).dot(from_edge);
+                if (gap > reach_ || gap < deepest_) continue;
+                const double s = edge.direction.dot(from_edge) / edge.length;
+                const bool is_beside = beyond_end(s, edge) > -doubtful_ && gap >= shallow_; // most are
+                if (!is_beside) append_vertex(owner, leaving, target, edge, gap, s, edges, swapped);
+            }
         }
     }
 
-    void append_vertex(int owner, const CurrentEdge& leaving, int target, const CurrentEdge& edge,
+    /// How far a point at s of the edge, 0 to 1 along it, lies beyond the nearer end (m); negative between the ends.
+    [[nodiscard]] static double beyond_end(double s, const CurrentEdge& edge) {
+        return std::max(-s, s - 1.0) * edge.length;
+    }
+
+    /// The vertex lies `gap` before the edge, at s along it.
+    void append_vertex(int owner, const CurrentEdge& leaving, int target, const CurrentEdge& edge, double gap, double s,
                        std::span<const CurrentEdge> edges, bool swapped) {
         const Vec2 outward = right_normal(edge.direction);
-        const Vec2 from_edge = leaving.start - edge.start;
-        const double gap = outward.dot(from_edge);
-        if (gap > reach_ || gap < deepest_) return;
-        const double s = edge.direction.dot(from_edge) / edge.length;
         const bool is_common = have_common_vertex(owner, leaving, target, edge);
         const bool is_ground = is_ground_before(owner, leaving, target, edge);
         if (is_ground && gap < shallow_) unheld_tips_.push_back({owner, target, -gap, leaving.start});
         if (is_ground && !is_common) return;
         const bool beside_void = is_common && are_beside_a_void(owner, leaving, target, edge);
-        const double beyond = std::max(-s, s - 1.0) * edge.length;
+        const double beyond = beyond_end(s, edge);
         const bool at_end = reference(owner, leaving.edge).start == reference(target, edge.edge).end;
         const bool below_end = beside_void && (at_end ? s > 1.0 : s < 0.0) && beyond <= -doubtful_;
         if (beyond > 0.0 && !below_end && (gap >= shallow_ || !is_in_notch(leaving.start, edge, s < 0.0, edges)))
@@ -555,7 +577,9 @@ private:
             return;
         if (is_held_by_another_face(leaving, edge, gap, edges, swapped)) return;
         if (gap < shallow_ && !below_end && !is_inside(target, leaving.start)) return; // what takes longest comes last
-        ContactPoint point = point_between(owner, leaving, 0.0, target, edge, s);
+        ContactPoint point = point_between(owner, leaving, target, edge);
+        lay(point, CutEdge(system_, reference(owner, leaving.edge)).at(0.0),
+            CutEdge(system_, reference(target, edge.edge)).at(s), leaving.length);
         point.weight = vertex_weight * std::min(edge.length, system_.blocks[owner].size);
         finish(point, -edge.direction);
         (swapped ? points_of_higher_ : points_).push_back(point);

@@ -30,6 +30,7 @@ struct Meeting {
     int block_a = 0;
     int block_b = 0;
     Vec2 on_a = Vec2::Zero(); ///< force on a, and its opposite on b (N/m)
+    double force = 0.0;       ///< its magnitude
     double stiffness = 0.0;   ///< Pa
     bool holds = false;       ///< bonded or locked
     bool bonded = false;      ///< of these, holds against tension
@@ -41,8 +42,8 @@ std::vector<Meeting> meetings_of(const LoadedBody& body, const Eigen::VectorXd& 
     std::vector<Meeting> meetings;
     meetings.reserve(n_bond_points * placement.bonds.size() + placement.contacts.size());
     const auto add = [&](const auto& pair, const Vec2& normal, const PointTraction& traction, bool holds, bool bonded) {
-        meetings.push_back({pair.block_a, pair.block_b,
-                            pair.weight * (traction.normal * normal + traction.shear * pair.tangent),
+        const Vec2 on_a = pair.weight * (traction.normal * normal + traction.shear * pair.tangent);
+        meetings.push_back({pair.block_a, pair.block_b, on_a, on_a.norm(),
                             pair.weight * (*body.laws)[pair.law].normal_stiffness, holds, bonded});
     };
     for (int i = 0; i < static_cast<int>(placement.bonds.size()); ++i) {
@@ -158,8 +159,9 @@ std::vector<Neighbours> neighbours_of(const std::vector<Meeting>& meetings) {
         all.back().force += next.force;
     };
     for (const Meeting& at : meetings)
-        append({std::min(at.block_a, at.block_b), std::max(at.block_a, at.block_b), at.on_a.norm()});
-    std::ranges::stable_sort(all, {}, [](const Neighbours& p) { return std::pair(p.block_a, p.block_b); });
+        append({std::min(at.block_a, at.block_b), std::max(at.block_a, at.block_b), at.force});
+    const auto blocks_of = [](const Neighbours& p) { return std::pair(p.block_a, p.block_b); };
+    if (!std::ranges::is_sorted(all, {}, blocks_of)) std::ranges::stable_sort(all, {}, blocks_of);
     const std::vector<Neighbours> sorted = std::exchange(all, {});
     for (const Neighbours& next : sorted) append(next);
     return all;
@@ -209,7 +211,7 @@ std::vector<char> blocks_aside(const LoadedBody& body, const std::vector<char>& 
     for (const Meeting& at : meetings) {
         const double area = std::min(blocks[at.block_a].area, blocks[at.block_b].area);
         const double least = touch_of_a_load * negligible_force(body.carried_stress, area);
-        if (at.bonded || at.on_a.norm() > least) pieces.join(at.block_a, at.block_b);
+        if (at.bonded || at.force > least) pieces.join(at.block_a, at.block_b);
     }
     std::vector<char> carries(blocks.size(), 0); // at the root of a piece
     for (std::size_t b = 0; b < blocks.size(); ++b)
@@ -266,7 +268,7 @@ OwnForces own_forces(const LoadedBody& body, const Eigen::VectorXd& q, const std
     for (const Meeting& at : meetings) {
         const double roundoff = roundoff_of(at.stiffness, std::max(motion(at.block_a), motion(at.block_b)));
         for (const int b : {at.block_a, at.block_b}) {
-            result.of_contacts[b] += at.on_a.norm();
+            result.of_contacts[b] += at.force;
             result.roundoff[b] = std::max(result.roundoff[b], roundoff);
         }
     }
