@@ -43,9 +43,9 @@ bool DampedIteration::find(StoppingTest& stopping, int patience, int& n_solves, 
     int least_at = 0;
     Eigen::VectorXd best = q;
     bool found = false;
+    bool moved = true;
     for (int i = 0; i < max_solves && i - least_at <= patience && damping <= largest_damping * scale; ++i) {
-        evaluate(equations_, q, seconds_, at); // the tangent is that of the last residual
-        found = stopping.finds(equations_, q, at) || elimination_.balances(stopping, largest_part, at, q);
+        found = moved && (stopping.finds(equations_, q, at) || elimination_.balances(stopping, largest_part, at, q));
         if (found) break;
         newton_.forget_factor();
         const double largest_residual = std::min(stopping.largest_residual(), damped_linear_residual * at.norm);
@@ -58,7 +58,8 @@ bool DampedIteration::find(StoppingTest& stopping, int patience, int& n_solves, 
         Iterate there;
         evaluate(equations_, next, seconds_, there);
         elimination_.improve(stopping.negligible_forces(equations_.problem, next, there), largest_part, there, next);
-        if (there.norm >= (1.0 - least_damped_fall) * std::ranges::max(norms)) {
+        moved = there.norm < (1.0 - least_damped_fall) * std::ranges::max(norms);
+        if (!moved) {
             damping *= damping_growth;
             continue;
         }
@@ -70,6 +71,7 @@ bool DampedIteration::find(StoppingTest& stopping, int patience, int& n_solves, 
         if (there.norm < 0.5 * least) least_at = i;
         if (there.norm < least) best = q;
         least = std::min(least, there.norm);
+        at = std::move(there);
     }
     newton_.forget_factor(); // it has the damping in it
     if (!found) q = std::move(best);

@@ -46,25 +46,36 @@ public:
     /// increment; where that does not fall at first, or where root finding `stalls`, one with a smaller norm.
     [[nodiscard]] double step_length(const Eigen::VectorXd& q, const Eigen::VectorXd& increment, const Iterate& from,
                                      bool stalls) {
-        const auto slope_at = [&](double s) { return free_forces(q, increment, s).dot(increment); }; // (29)
-        const auto norm_at = [&](double s) { return free_forces(q, increment, s).norm(); };
+        const auto slope_at = [&](double s) { return evaluate_at(q, increment, s).free_forces.dot(increment); }; // (29)
+        const auto norm_at = [&](double s) { return evaluate_at(q, increment, s).norm; };
         const double slope_at_zero = from.free_forces.dot(increment);
         if (slope_at_zero < 0.0 && !stalls) return step_to_root(slope_at_zero, slope_at);
         return step_by_halving(from.norm, norm_at);
     }
 
+    /// Moves q along the increment, and evaluates it there, unless that was done last.
+    void move(const Eigen::VectorXd& increment, double s, Iterate& at, Eigen::VectorXd& q) {
+        if (s != last_) static_cast<void>(evaluate_at(q, increment, s));
+        q.swap(position_);
+        std::swap(at, trial_);
+        last_ = not_evaluated;
+    }
+
 private:
-    const Eigen::VectorXd& free_forces(const Eigen::VectorXd& q, const Eigen::VectorXd& increment, double s) {
+    static constexpr double not_evaluated = -1.0;
+
+    const Iterate& evaluate_at(const Eigen::VectorXd& q, const Eigen::VectorXd& increment, double s) {
         equations_.evaluator.coordinates().move(q, increment, s, position_);
         evaluate(equations_, position_, seconds_, trial_);
-        keep_free_part(equations_.problem, equations_.border, position_, trial_.forces);
-        return trial_.forces;
+        last_ = s;
+        return trial_;
     }
 
     Equations& equations_;
     double& seconds_;
+    double last_ = not_evaluated; ///< step length
     Eigen::VectorXd position_;
-    Residual trial_;
+    Iterate trial_; ///< there
 };
 
 /// The iterate with the smallest forces so far, of those where the prescribed displacements hold.
@@ -92,8 +103,8 @@ OpenCloseSummary OpenCloseSolver::solve(const EquilibriumProblem& problem, const
     const bool may_be_damped = goal.aim == Aim::equilibrium && !coordinates.are_rigid();
     Iterate at;
     LeastForces least;
+    evaluate(equations, q, seconds_.residual, at);
     for (;;) {
-        evaluate(equations, q, seconds_.residual, at);
         if (!is_finite(at)) return ended_by(flaw_of_forces(problem, q, at.residual.forces), std::move(summary));
         if (elimination.improve(stopping.negligible_forces(problem, q, at), worthwhile_part, at, q))
             stopping.note_elimination();
@@ -129,7 +140,7 @@ OpenCloseSummary OpenCloseSolver::solve(const EquilibriumProblem& problem, const
                 summary.termination = Termination::max_iterations;
             return summary;
         }
-        coordinates.move(q, increment, s, q);
+        search.move(increment, s, at, q);
     }
 }
 

@@ -36,8 +36,10 @@ struct Meeting {
     bool bonded = false;      ///< of these, holds against tension
 };
 
-/// All points where blocks meet at q.
-std::vector<Meeting> meetings_of(const LoadedBody& body, const Eigen::VectorXd& q) {
+/// All points where blocks meet at q; `traction_of_contact(i)`: of contact i there.
+template <class TractionOfContact>
+std::vector<Meeting> meetings_of(const LoadedBody& body, const Eigen::VectorXd& q,
+                                 TractionOfContact traction_of_contact) {
     const Placement& placement = *body.placement;
     std::vector<Meeting> meetings;
     meetings.reserve(n_bond_points * placement.bonds.size() + placement.contacts.size());
@@ -50,11 +52,16 @@ std::vector<Meeting> meetings_of(const LoadedBody& body, const Eigen::VectorXd& 
         const Bond& bond = placement.bonds[i];
         for (int k = 0; k < n_bond_points; ++k) add(bond, bond.normal(), bond_traction(body, i, k, q), true, true);
     }
-    for (const ContactPoint& point : placement.contacts) {
-        const PointTraction traction = contact_traction(*body.laws, point, q);
+    for (int i = 0; i < static_cast<int>(placement.contacts.size()); ++i) {
+        const ContactPoint& point = placement.contacts[i];
+        const PointTraction& traction = traction_of_contact(i);
         add(point, point.normal, traction, traction.state == ContactState::locked, false);
     }
     return meetings;
+}
+
+std::vector<Meeting> meetings_of(const LoadedBody& body, const Eigen::VectorXd& q) {
+    return meetings_of(body, q, [&](int i) { return contact_traction(body, i, q); });
 }
 
 /// The blocks that are held together, two or more each.
@@ -348,12 +355,10 @@ std::vector<FreeTranslation> free_translations(const LoadedBody& body, const Eig
     return free;
 }
 
-} // namespace
-
-BlockBalance block_balance(const LoadedBody& body, const Eigen::VectorXd& q, std::vector<Vec3> left) {
+BlockBalance balance_of(const LoadedBody& body, const Eigen::VectorXd& q, std::vector<Vec3> left,
+                        const std::vector<Meeting>& meetings) {
     const BlockSystem& system = *body.system;
     BlockBalance result;
-    const std::vector<Meeting> meetings = meetings_of(body, q);
     result.forces = own_forces(body, q, meetings);
     result.groups = groups_of(system.n_blocks(), meetings);
     result.left = std::move(left);
@@ -366,14 +371,23 @@ BlockBalance block_balance(const LoadedBody& body, const Eigen::VectorXd& q, std
     return result;
 }
 
+} // namespace
+
+BlockBalance block_balance(const LoadedBody& body, const Eigen::VectorXd& q, std::vector<Vec3> left) {
+    return balance_of(body, q, std::move(left), meetings_of(body, q));
+}
+
 BlockBalance affine_block_balance(const LoadedBody& body, const Eigen::VectorXd& q) {
     BodyForces sum;
-    body_forces(body, q, sum);
+    std::vector<PointTraction> tractions;
+    tractions.reserve(body.placement->contacts.size());
+    body_forces(body, q, sum, tractions);
     keep_free_part(*body.loads, travel_of_platen(*body.loads, q.size()), q, sum.forces);
     std::vector<Vec3> left;
     for (int b = 0; b < body.system->n_blocks(); ++b)
         left.push_back(-affine_rigid_part(*body.system, q, sum.forces, b));
-    return block_balance(body, q, std::move(left));
+    const auto traction_of = [&](int i) -> const PointTraction& { return tractions[i]; };
+    return balance_of(body, q, std::move(left), meetings_of(body, q, traction_of));
 }
 
 BlockVerdict judge_blocks(const BlockBalance& now, const BlockBalance* before, const BlockGoal& goal) {
