@@ -139,8 +139,12 @@ bool run_scene_of(const Calibration& calibration, const RunPlace& place, std::si
 /// The summary of a run whose peak is one; throws InputError for another one.
 RunSummary summary_with_peak(const fs::path& directory) {
     RunSummary summary = read_summary(directory / "summary.json");
-    if (read_peak(directory, directory.filename()).net_locked)
+    const PeakPoint peak = read_peak(directory, directory.filename());
+    if (peak.net_locked)
         throw InputError("loose blocks of the net carried the load, as masonry does, and not the rock");
+    if (peak.unloaded)
+        throw InputError(
+            "the stress fell after the sides were unloaded: with their pressure the body could have borne more");
     if (is_strength(summary.numbers) || summary.status == RunStatus::collapsed) return summary;
     throw InputError(fmt::format("the stress had neither fallen nor levelled off where the run ended ({}{}{})",
                                  status_name(summary.status), summary.message.empty() ? "" : ": ",

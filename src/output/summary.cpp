@@ -291,6 +291,7 @@ void read_numbers(const Json& json, CurveNumbers& numbers) {
     numbers.peak_reached = json.at("peak_reached").get<bool>();
     numbers.net_locked = json.value("net_locked", false); // an earlier version does not say
     numbers.levelled_off = json.value("levelled_off", false);
+    numbers.sides_unloaded = json.value("sides_unloaded", false);
     numbers.residual_stress = optional_number(json, "residual_stress");
     numbers.youngs_modulus = optional_number(json, "youngs_modulus");
     numbers.poissons_ratio = optional_number(json, "poissons_ratio");
@@ -476,6 +477,7 @@ std::string summary_json(const RunSummary& summary) {
     json["peak_strain"] = json_number(numbers.peak_strain);
     json["peak_reached"] = numbers.peak_reached;
     json["levelled_off"] = numbers.levelled_off;
+    json["sides_unloaded"] = numbers.sides_unloaded;
     json["strength_measure"] = strength_measure(summary);
     json["net_locked"] = numbers.net_locked;
     json["residual_stress"] = json_number(numbers.residual_stress);

@@ -110,6 +110,21 @@ TEST_F(CalibrateProgram, MeetsAPeakByRunsAndRunsNothingTwice) {
     EXPECT_EQ(again.at("parameters"), json.at("parameters"));
 }
 
+// What a body bears until its sides are unloaded is less than its strength under their pressure.
+TEST_F(CalibrateProgram, TakesNoPeakThatEndedByUnloading) {
+    std::string scene = small_specimen();
+    const std::string platen = "value: 0.8 %}, steps: 20}\n";
+    scene.replace(
+        scene.find(platen), platen.size(),
+        "value: 0.35 %}, steps: 10}\n  - {name: unloading, pressure: {left: 0, right: 0}, strain: {boundary: top, "
+        "value: 0.005 %}, steps: 5}\n");
+    write_text(path("scene.yaml"), scene);
+    const std::string under_pressure = "targets:\n  peak_stress: {value: 40 MPa, tolerance: 5 %, set: "
+                                       "{stages.0.pressure.left: 5 MPa, stages.0.pressure.right: 5 MPa}}\n";
+    EXPECT_EQ(run("kluft_calibration: 1\nscene: scene.yaml\nparameters:\n" + cohesion + under_pressure), 1);
+    EXPECT_THAT(told_, AllOf(HasSubstr("found nothing"), HasSubstr("the stress fell after the sides were unloaded")));
+}
+
 TEST_F(CalibrateProgram, SaysWhichTargetsOpposeEachOther) {
     const std::string one =
         "kluft_calibration: 1\nscene: scene.yaml\nparameters:\n"

@@ -444,6 +444,7 @@ TEST(Summary, HasTheKeysOfTheContractAndNullForWhatIsUnknown) {
                             "peak_strain",
                             "peak_reached",
                             "net_locked",
+                            "sides_unloaded",
                             "residual_stress",
                             "youngs_modulus",
                             "poissons_ratio",
@@ -481,6 +482,7 @@ TEST(Summary, IsReadBack) {
     summary.numbers.peak_stress = 1.0 / 3.0;
     summary.numbers.cracks_shear = 4;
     summary.numbers.net_locked = true;
+    summary.numbers.sides_unloaded = true;
     summary.blocks = 255;
     summary.platen_stage = 1;
     summary.peak_memory_bytes = 5'000'000'000;

@@ -24,7 +24,7 @@ struct CurveNumbers {
     /// No peak is reached, and the differential stress has changed by 1 % or less over the last third of the platen's way, all of it in
     /// balance, at one lateral stress: what slides without end, as a joint of Coulomb friction does.
     bool levelled_off = false;
-    bool sides_unloaded = false; ///< see is_unloaded_before_fall; of the rows, not kept in summary.json
+    bool sides_unloaded = false; ///< see is_unloaded_before_fall
     /// Mean axial stress over the last 10 % of the strain (Pa); none where the peak lies in the last 20 %. A run that a drop
     /// of the stress ended has none either, which its rows do not tell.
     std::optional<double> residual_stress;
