@@ -79,18 +79,28 @@ BoundaryFrame boundary_frame(const BlockSystem& system, int boundary) {
     return frame;
 }
 
-int opposite_boundary(const BlockSystem& system, int boundary) {
+std::vector<int> opposite_boundaries(const BlockSystem& system, int boundary) {
+    constexpr double least_opposite = -0.5; // cosine between the normals
     const Vec2 normal = boundary_frame(system, boundary).normal;
-    int best = -1;
-    double most_opposite = -0.5;
-    for (int i = 0; i < static_cast<int>(system.boundaries.size()); ++i) {
-        const double cosine = normal.dot(boundary_frame(system, i).normal);
-        if (cosine < most_opposite) {
-            most_opposite = cosine;
-            best = i;
-        }
-    }
-    return best;
+    std::vector<double> cosines;
+    for (int i = 0; i < static_cast<int>(system.boundaries.size()); ++i)
+        cosines.push_back(normal.dot(boundary_frame(system, i).normal));
+    std::vector<int> opposite;
+    if (cosines.empty()) return opposite;
+    const double most = std::ranges::min(cosines);
+    if (most >= least_opposite) return opposite;
+    for (int i = 0; i < static_cast<int>(cosines.size()); ++i)
+        if (cosines[i] <= most + same_direction) opposite.push_back(i);
+    return opposite;
+}
+
+int opposite_boundary(const BlockSystem& system, int boundary) {
+    const std::vector<int> opposite = opposite_boundaries(system, boundary);
+    return opposite.empty() ? -1 : opposite.front();
+}
+
+int resting_boundary(const BlockSystem& system, const PlatenMotion& motion) {
+    return motion.against.value_or(opposite_boundary(system, motion.boundary));
 }
 
 Vec2 mean_position(const BlockSystem& system, int boundary) {

@@ -747,7 +747,9 @@ private:
     void name_facing_sides() {
         for (const auto facing : {Facing::bottom, Facing::right, Facing::top, Facing::left}) {
             auto sides = sides_facing(spec_.domain, facing);
-            if (!sides.empty()) spec_.boundaries.push_back({std::string(facing_name(facing)), std::move(sides)});
+            if (sides.empty()) continue;
+            spec_.boundaries.push_back(
+                {.name = std::string(facing_name(facing)), .sides = std::move(sides), .by_direction = true});
         }
     }
 
@@ -756,6 +758,7 @@ private:
         constexpr auto names_end = ": once one boundary has `sides` or `facing`, each says its own";
         if (section.node()->is_mapping() && gives_one_of(section, {"sides", "facing", "hole"}, context_, names_end))
             boundary.sides = section.has("sides") ? counted_sides(section) : facing_sides(section);
+        boundary.by_direction = section.has("facing");
         spec_.boundaries.push_back(std::move(boundary));
     }
 

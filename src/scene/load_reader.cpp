@@ -121,14 +121,31 @@ private:
             const auto name = platen.given_text("boundary");
             const auto boundary = name ? boundary_index(platen, "boundary", *name) : std::nullopt;
             if (!boundary) continue;
-            stage.motion = PlatenMotion{static_cast<PlatenControl>(i), *boundary, platen.number("value"),
-                                        platen.boolean("glued"), context_.place(platen, "boundary")};
+            stage.motion = PlatenMotion{static_cast<PlatenControl>(i),
+                                        *boundary,
+                                        platen.number("value"),
+                                        platen.boolean("glued"),
+                                        context_.place(platen, "boundary"),
+                                        boundary_against(platen, *boundary)};
             check_platen(platen, *name, stage);
             if (stage.motion->value < 0.0 && !stage.motion->glued && !is_pressed(*boundary))
                 context_.warn(
                     platen, "value",
                     "the platen leaves the body, which it holds in tension only if it is glued (glued: true)");
         }
+    }
+
+    /// What rests on a fixed platen, where the scene says so.
+    std::optional<int> boundary_against(const SceneSection& platen, int moved) {
+        const auto name = platen.given_text("against");
+        if (!name) return std::nullopt;
+        if (*name == "none") return -1;
+        const auto against = boundary_index(platen, "against", *name);
+        if (against == moved)
+            context_.fail(
+                platen, "against",
+                fmt::format("expected another boundary than the one that is moved, or none, found {}", *name));
+        return against;
     }
 
     /// Only where a platen of given travel acts on the boundary that the axial stress is measured on.

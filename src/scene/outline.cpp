@@ -19,7 +19,8 @@ Vec2 side_direction(const Polygon& polygon, int side) {
 }
 
 Facing facing_of(const Vec2& normal) {
-    if (std::abs(normal.x()) > std::abs(normal.y())) return normal.x() > 0.0 ? Facing::right : Facing::left;
+    constexpr double diagonal = 1.0 + 1e-6; // what coordinates far from the origin leave of 45 degrees
+    if (std::abs(normal.x()) > diagonal * std::abs(normal.y())) return normal.x() > 0.0 ? Facing::right : Facing::left;
     return normal.y() > 0.0 ? Facing::top : Facing::bottom;
 }
 

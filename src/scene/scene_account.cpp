@@ -1,6 +1,8 @@
 #include "kluft/scene/scene_account.hpp"
 
 #include <algorithm>
+#include <limits>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -12,6 +14,7 @@
 #include "kluft/core/place_text.hpp"
 #include "kluft/core/units.hpp"
 #include "kluft/kinematics/affine.hpp"
+#include "kluft/loading/boundary_geometry.hpp"
 
 namespace kluft {
 
@@ -89,6 +92,65 @@ void say_stiffness(const Scene& scene, const Model& model, Lines& lines) {
                        "{}: K {:.4g} Pa, G {:.4g} Pa in the plane, as of no isotropic material: k_s is far above k_n",
                        name, lattice.bulk_modulus, lattice.shear_modulus)});
     }
+}
+
+std::string_view support_text(Support support) {
+    switch (support) {
+    case Support::none:
+        return "none";
+    case Support::smooth:
+        return "smooth";
+    case Support::pinned:
+        return "pinned";
+    case Support::fixed:
+        return "fixed";
+    }
+    return "";
+}
+
+/// Where the sides of a boundary lie, in coordinates of the scene (m).
+struct BoundaryExtent {
+    Vec2 lower = Vec2::Constant(std::numeric_limits<double>::infinity());
+    Vec2 upper = -lower;
+};
+
+BoundaryExtent extent_of(const BlockSystem& system, const Boundary& boundary) {
+    BoundaryExtent extent;
+    for (const auto& [block, e] : boundary.edges) {
+        const Edge& edge = system.blocks[block].edges[e];
+        for (const Vec2& at : {edge_start(system, edge), edge_end(system, edge)}) {
+            extent.lower = extent.lower.cwiseMin(system.origin + at);
+            extent.upper = extent.upper.cwiseMax(system.origin + at);
+        }
+    }
+    return extent;
+}
+
+void say_boundaries(const Model& model, Lines& lines) {
+    constexpr int most_listed = 12;
+    const BlockSystem& system = model.system;
+    const auto n = static_cast<int>(system.boundaries.size());
+    for (int i = 0; i < std::min(n, most_listed); ++i) {
+        const BoundaryFrame frame = boundary_frame(system, i);
+        const Vec2 normal = frame.normal + Vec2::Zero(); // no -0
+        const BoundaryExtent extent = extent_of(system, system.boundaries[i]);
+        const std::string facing =
+            frame.normal.isZero() ? "all around" : fmt::format("facing ({:.3g}, {:.3g})", normal.x(), normal.y());
+        lines.push_back(
+            {"boundary", fmt::format("{}: {:.4g} m {}, between {} and {}, support {}", system.boundaries[i].name,
+                                     frame.length, facing, place_text(extent.lower), place_text(extent.upper),
+                                     support_text(model.loads.supports[i]))});
+    }
+    if (n > most_listed) lines.push_back({{}, fmt::format("  and {} more boundaries", n - most_listed)});
+}
+
+std::string stage_text(const Stage& stage, const BlockSystem& system) {
+    std::string text = fmt::format("{}: {} steps", stage.name, stage.steps);
+    if (!stage.motion) return text;
+    const int rest = resting_boundary(system, *stage.motion);
+    return text + fmt::format("; a platen on '{}'{}", system.boundaries[stage.motion->boundary].name,
+                              rest < 0 ? std::string()
+                                       : fmt::format(", '{}' rests on a fixed one", system.boundaries[rest].name));
 }
 
 /// What a run takes beside the program, the factor and the fractures (bytes), fitted to measured runs.
@@ -190,10 +252,10 @@ SceneAccount account_of(const Scene& scene, const SceneModel& built) {
     lines.push_back({"scene", scene.name + (scene.title.empty() ? "" : ": " + scene.title)});
     say_blocks(scene, built, lines);
     say_cut(built.cut, scene.geometry, lines);
+    say_boundaries(built.model, lines);
     say_stiffness(scene, built.model, lines);
     account.memory_bytes = say_memory(scene, built.model, lines);
-    for (const Stage& stage : scene.loads.stages)
-        lines.push_back({"stage", fmt::format("{}: {} steps", stage.name, stage.steps)});
+    for (const Stage& stage : scene.loads.stages) lines.push_back({"stage", stage_text(stage, built.model.system)});
     account.warnings = scene.warnings;
     account.warnings.insert(account.warnings.end(), built.model.warnings.begin(), built.model.warnings.end());
     if (looks_like_a_triaxial_test(scene)) {
@@ -233,6 +295,7 @@ std::string json_of(const SceneAccount& account, const Scene& scene, const Scene
               {"smallest_edge", account.smallest_edge},
               {"smallest_angle", account.smallest_angle * degrees},
               {"merged", Json::array()},
+              {"boundaries", Json::array()},
               {"interface_types", Json::array()},
               {"stages", Json::array()},
               {"memory_bytes", account.memory_bytes},
@@ -240,6 +303,16 @@ std::string json_of(const SceneAccount& account, const Scene& scene, const Scene
     for (const auto& sliver : built.cut.merged)
         json["merged"].push_back({{"area", sliver.area}, {"x", sliver.at.x()}, {"y", sliver.at.y()}});
     const Model& model = built.model;
+    for (std::size_t i = 0; i < model.system.boundaries.size(); ++i) {
+        const BoundaryFrame frame = boundary_frame(model.system, static_cast<int>(i));
+        const BoundaryExtent extent = extent_of(model.system, model.system.boundaries[i]);
+        json["boundaries"].push_back({{"name", model.system.boundaries[i].name},
+                                      {"length", frame.length},
+                                      {"normal", {frame.normal.x() + 0.0, frame.normal.y() + 0.0}}, // no -0
+                                      {"lower", {extent.lower.x(), extent.lower.y()}},
+                                      {"upper", {extent.upper.x(), extent.upper.y()}},
+                                      {"support", support_text(model.loads.supports[i])}});
+    }
     for (std::size_t t = 0; t < scene.interface_types.size(); ++t)
         json["interface_types"].push_back(
             {{"name", scene.interface_types[t].name},

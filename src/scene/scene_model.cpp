@@ -17,6 +17,7 @@
 #include "kluft/core/place_text.hpp"
 #include "kluft/geometry/polygon.hpp"
 #include "kluft/scene/coarse_places.hpp"
+#include "kluft/scene/scattered_sides.hpp"
 
 namespace kluft {
 
@@ -297,7 +298,7 @@ SceneModel build_scene_model(const Scene& scene) {
           pruned_pieces(scene.geometry, built.cut), closed_outcrops(scene.geometry, built.cut),
           small_reference(scene.geometry, built.model.system), slivers(scene.geometry, built.model.system),
           necks(scene.geometry, built.model.system), bare_net(scene.geometry, built.model.system),
-          empty_regions(scene.geometry, built.model.system),
+          empty_regions(scene.geometry, built.model.system), scattered_sides(scene),
           coarse_places(scene.geometry, built.cut, scene.interface_types)})
         built.model.warnings.insert(built.model.warnings.end(), warnings.begin(), warnings.end());
     require_memory();

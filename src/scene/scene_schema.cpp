@@ -608,7 +608,7 @@ std::vector<KeyRule> loading_rules() {
                 "supports. Any other domain has the same four (each side belongs to the direction that its outward "
                 "normal points to, within 45 degrees) unless a boundary here has `sides` or `facing`; then exactly "
                 "the boundaries given here exist, and sides in none of them are free. Walls of holes are boundaries "
-                "where one here has `hole`. Of given blocks the same holds "
+                "where one here has `hole`. `kluft check` lists them. Of given blocks the same holds "
                 "for all sides, of which the parts that no other block shares belong to the boundary."},
         {.path = "boundaries.*", .type = KeyType::mapping, .doc = "One boundary."},
         {.path = "boundaries.*.support",
@@ -694,7 +694,8 @@ std::vector<KeyRule> loading_rules() {
         {.path = "stages.#.displacement",
          .type = KeyType::mapping,
          .doc =
-             "A platen moves a boundary; the opposite one rests on a fixed platen. One of `displacement`, `strain` "
+             "A platen moves a boundary; the opposite one (`against`) rests on a fixed platen. One of `displacement`, "
+             "`strain` "
              "and `stress`. In a later stage with none of them the mean stress on each of both boundaries acts on as a "
              "pressure, and goes on doing so until a stage changes it."},
         {.path = "stages.#.displacement.boundary", .type = KeyType::text, .required = true, .doc = "What is moved."},
@@ -703,6 +704,12 @@ std::vector<KeyRule> loading_rules() {
          .measure = Measure::length,
          .required = true,
          .doc = "Inward displacement in this stage."},
+        {.path = "stages.#.displacement.against",
+         .type = KeyType::text,
+         .fallback_note = "the opposite boundary",
+         .doc = "The boundary that rests on a fixed platen meanwhile, or `none`. The opposite one is that whose normal "
+                "is most "
+                "opposite, within 60 degrees, the first where several are; `kluft check` names it."},
         {.path = "stages.#.displacement.glued",
          .type = KeyType::boolean,
          .fallback = "false",
@@ -715,6 +722,10 @@ std::vector<KeyRule> loading_rules() {
          .required = true,
          .doc = "Displacement in this stage as a fraction of the body's length, from the boundary to the one across "
                 "from it, or, where none is, to the farthest point of the body behind it."},
+        {.path = "stages.#.strain.against",
+         .type = KeyType::text,
+         .fallback_note = "the opposite boundary",
+         .doc = "The boundary that rests on a fixed platen meanwhile, or `none`."},
         {.path = "stages.#.strain.glued",
          .type = KeyType::boolean,
          .fallback = "false",
@@ -728,6 +739,10 @@ std::vector<KeyRule> loading_rules() {
          .doc = "Stress on the platen at the end of the stage: its force over the current mean width of the body, or "
                 "over the sides that it "
                 "is laid on where these are wider."},
+        {.path = "stages.#.stress.against",
+         .type = KeyType::text,
+         .fallback_note = "the opposite boundary",
+         .doc = "The boundary that rests on a fixed platen meanwhile, or `none`."},
         {.path = "stages.#.stress.glued",
          .type = KeyType::boolean,
          .fallback = "false",

@@ -96,15 +96,18 @@ Gauges make_gauges(const Model& model) {
         const auto& motion = model.loads.stages[s].motion;
         if (!motion) continue;
         gauges.moved = motion->boundary;
+        gauges.opposite = resting_boundary(system, *motion);
         gauges.first_platen_stage = static_cast<int>(s);
         break;
     }
-    if (gauges.moved < 0) gauges.moved = uppermost_boundary(system);
+    if (gauges.moved < 0) {
+        gauges.moved = uppermost_boundary(system);
+        if (gauges.moved >= 0) gauges.opposite = opposite_boundary(system, gauges.moved);
+    }
     if (gauges.moved >= 0) gauges.axial_normal = boundary_frame(system, gauges.moved).normal;
     gauges.middle_bonds = bonds_in_the_middle(model, gauges.axial_normal);
     if (gauges.moved < 0) return gauges;
     gauges.lateral_normal = {gauges.axial_normal.y(), -gauges.axial_normal.x()};
-    gauges.opposite = opposite_boundary(system, gauges.moved);
     gauges.length = distance_across(system, gauges.moved);
     gauges.lateral = lateral_sides(system, gauges.moved);
     gauges.width = width_across(system, gauges.moved).width;

@@ -328,10 +328,10 @@ double modulus_for_scale(const LatticeModuli& body) {
     return std::max(body.youngs_modulus, 2.0 * bulk * shear / (bulk + shear));
 }
 
-/// Whether a boundary opposite to the platen, a fixed block or a support takes what it presses with.
+/// Whether a fixed block or a support takes what a platen presses with.
 bool is_platen_resisted(const BlockSystem& system, const LoadProgram& loads, int moved) {
     constexpr double along = 1e-3; // of a smooth side's normal on the platen's: less is round-off of a side beside it
-    if (opposite_boundary(system, moved) >= 0 || std::ranges::any_of(system.blocks, &Block::fixed)) return true;
+    if (std::ranges::any_of(system.blocks, &Block::fixed)) return true;
     const Vec2 normal = boundary_frame(system, moved).normal;
     for (int i = 0; i < static_cast<int>(system.boundaries.size()); ++i) {
         const Support support = loads.supports[i];
@@ -348,7 +348,8 @@ void require_resistance(const BlockSystem& system, const Vec2& gravity, const Lo
         std::ranges::any_of(loads.stages, [](const Stage& stage) { return stage.gravity.has_value(); });
     if (is_loaded) return;
     for (const Stage& stage : loads.stages) {
-        if (!stage.motion || stage.motion->value == 0.0 || is_platen_resisted(system, loads, stage.motion->boundary))
+        if (!stage.motion || stage.motion->value == 0.0 || resting_boundary(system, *stage.motion) >= 0 ||
+            is_platen_resisted(system, loads, stage.motion->boundary))
             continue;
         throw InputError(fmt::format(
             "{}: expected a boundary opposite to '{}', a support or a fixed block, against which its platen presses; "
@@ -359,9 +360,9 @@ void require_resistance(const BlockSystem& system, const Vec2& gravity, const Lo
 }
 
 /// Platens are laid on what they press as it lies, which a gap to some of it may not mean.
-void warn_of_uneven_platen(int moved, Model& model) {
-    const double length = distance_across(model.system, moved);
-    for (const int boundary : {moved, opposite_boundary(model.system, moved)}) {
+void warn_of_uneven_platen(const PlatenMotion& motion, Model& model) {
+    const double length = distance_across(model.system, motion.boundary);
+    for (const int boundary : {motion.boundary, resting_boundary(model.system, motion)}) {
         if (boundary < 0) continue;
         const double apart = unevenness(model.system, boundary);
         if (apart <= uneven * length) continue;
@@ -370,6 +371,32 @@ void warn_of_uneven_platen(int moved, Model& model) {
                         "them from the start as if it had been cast on them",
                         model.system.boundaries[boundary].name, apart));
     }
+}
+
+/// A fixed platen lies on what faces the moved one, whether or not it was meant to be held there.
+void warn_of_fixed_platen(const PlatenMotion& motion, Model& model) {
+    constexpr double much_turned = 10.0 / degrees;
+    const BlockSystem& system = model.system;
+    const int moved = motion.boundary;
+    const std::vector<int> opposite = opposite_boundaries(system, moved);
+    if (motion.against || opposite.empty()) return;
+    const int rest = opposite.front();
+    std::vector<std::string> remarks;
+    if (opposite.size() > 1) {
+        std::vector<std::string> names;
+        for (const int each : opposite) names.push_back("'" + system.boundaries[each].name + "'");
+        remarks.push_back(fmt::format("the first of those that face it most, {}", fmt::join(names, ", ")));
+    }
+    const double cosine = -boundary_frame(system, moved).normal.dot(boundary_frame(system, rest).normal);
+    const double turned = std::acos(std::clamp(cosine, -1.0, 1.0));
+    if (turned > much_turned) remarks.push_back(fmt::format("turned against it by {:.3g} degrees", turned * degrees));
+    if (model.loads.supports[rest] == Support::none && is_platen_resisted(system, model.loads, moved))
+        remarks.emplace_back("beside supports that hold the body there already");
+    if (remarks.empty()) return;
+    model.warnings.push_back(fmt::format("the platen on '{}' presses the body against a fixed platen on '{}', {}: "
+                                         "`against` beside `boundary` names another one, or `none`",
+                                         system.boundaries[moved].name, system.boundaries[rest].name,
+                                         fmt::join(remarks, ", ")));
 }
 
 /// The axial stress counts from side to side of the body, also where a platen presses a part of it.
@@ -393,7 +420,7 @@ void warn_of_platens_that_go(Model& model) {
         const auto& motion = stages[i].motion;
         const bool is_held =
             model.loads.supports[boundary] != Support::none ||
-            (motion && (motion->boundary == boundary || opposite_boundary(model.system, motion->boundary) == boundary));
+            (motion && (motion->boundary == boundary || resting_boundary(model.system, *motion) == boundary));
         const bool is_told =
             std::ranges::any_of(stages[i].pressure, [&](const auto& each) { return each.first == boundary; });
         if (is_held || is_told) continue;
@@ -409,7 +436,8 @@ void warn_of_platens(Model& model) {
     std::set<int> seen;
     for (const Stage& stage : model.loads.stages) {
         if (!stage.motion || !seen.insert(stage.motion->boundary).second) continue;
-        warn_of_uneven_platen(stage.motion->boundary, model);
+        warn_of_fixed_platen(*stage.motion, model);
+        warn_of_uneven_platen(*stage.motion, model);
         warn_of_narrow_platen(stage.motion->boundary, model);
     }
 }
@@ -444,7 +472,7 @@ void warn_of_unmeasured_sides(Model& model) {
     if (motion == model.loads.stages.end()) return;
     const int moved = motion->motion->boundary;
     if (!lateral_sides(model.system, moved)[0].empty()) return;
-    const int opposite = opposite_boundary(model.system, moved);
+    const int opposite = resting_boundary(model.system, *motion->motion);
     for (const Stage& stage : model.loads.stages) {
         for (const auto& [boundary, pressure] : stage.pressure) {
             if (pressure == 0.0 || boundary == moved || boundary == opposite) continue;

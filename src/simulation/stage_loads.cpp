@@ -78,7 +78,7 @@ std::vector<Platen> platens_of(const Model& model, const Stage& stage) {
     if (stage.motion->control == PlatenControl::strain) distance *= distance_across(system, boundary);
     const bool by_stress = stage.motion->control == PlatenControl::stress;
     (by_stress ? moved.rate : moved.velocity) = by_stress ? -1.0 : -distance;
-    const int opposite = opposite_boundary(system, boundary);
+    const int opposite = resting_boundary(system, *stage.motion);
     if (opposite < 0) return {moved};
     const Platen fixed{.boundary = opposite,
                        .normal = boundary_frame(system, opposite).normal,
@@ -252,7 +252,7 @@ void refuse_contradicting_supports(const Model& model) {
         const PrescribedDisplacement* row = loads.contradicting_row();
         if (row == nullptr) continue;
         const int moved = stage.motion->boundary;
-        const int opposite = opposite_boundary(system, moved);
+        const int opposite = resting_boundary(system, *stage.motion);
         if (opposite >= 0 && agree_without(opposite, model, loads.constraints().rows(), rest))
             throw InputError(shared_block_message(model, stage, opposite, row->block));
         std::string holding;

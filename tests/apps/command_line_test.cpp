@@ -424,6 +424,8 @@ TEST_F(CommandLine, CheckSaysWhatTheQuickStartAmountsTo) {
     EXPECT_THAT(result.out, HasSubstr("k_n d/E 30"));
     EXPECT_THAT(result.out, HasSubstr("E 5e+09 Pa, nu 0.25")); // the rock's own
     EXPECT_THAT(result.out, ContainsRegex("memory +about [0-9.]+ MB"));
+    EXPECT_THAT(result.out, ContainsRegex("boundary +left: 0.4 m facing \\(-1, 0\\), between .*, support none"));
+    EXPECT_THAT(result.out, HasSubstr("a platen on 'top', 'bottom' rests on a fixed one"));
     EXPECT_THAT(result.out, ContainsRegex("note         .*plane strain; a cylinder"));
     EXPECT_FALSE(fs::exists(path("results")));
 }
@@ -436,6 +438,9 @@ TEST_F(CommandLine, CheckSaysTheSameToPrograms) {
     EXPECT_EQ(json.at("unknowns"), 24);
     EXPECT_EQ(json.at("plane"), "strain");
     EXPECT_EQ(json.at("stages").size(), 2U);
+    EXPECT_EQ(json.at("boundaries").size(), 4U);
+    EXPECT_EQ(json.at("boundaries").at(0).at("name"), "bottom");
+    EXPECT_EQ(json.at("boundaries").at(0).at("normal"), (std::vector<double>{0.0, -1.0}));
     EXPECT_EQ(json.at("interface_types").at(0).at("kind"), "fracture");
     EXPECT_TRUE(json.at("warnings").empty()); // what a run of it would warn of: plane strain is a note
 }

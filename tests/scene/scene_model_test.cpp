@@ -68,6 +68,47 @@ TEST(SceneModel, WhatTheBodyShowsToBeWrongHasItsPlace) {
     }
 }
 
+/// Of a body with this outline, and boundaries by the directions that its sides face unless they are given.
+std::vector<std::string> warnings_of_outline(const std::string& polygon, const std::string& boundaries,
+                                             const std::string& pressure = "{}") {
+    return build_scene_model(read_scene_text(fmt::format(R"(
+kluft: 1
+analysis: {{gravity: 9.81}}
+materials: {{rock: {{density: 2600, youngs_modulus: 20 GPa, poissons_ratio: 0.25}}}}
+geometry: {{domain: {{polygon: {}}}}}
+boundaries: {}
+stages: [{{name: weight, pressure: {}}}]
+)",
+                                                         polygon, boundaries, pressure)))
+        .model.warnings;
+}
+
+// Rollers on 'left' held the face of a cliff, too, and a plane of 0.875 had a factor of safety above 4.
+TEST(SceneModel, WarnsOfSupportsOnTheFaceOfASlope) {
+    const std::string cliff = "[[0, 0], [20, 0], [20, 10], [8, 10], [8, 3], [0, 3]]";
+    const auto told = Contains(HasSubstr("the support of 'left' also holds sides around (8, 6.5), 8 m behind"));
+    EXPECT_THAT(warnings_of_outline(cliff, "{bottom: {support: fixed}, left: {support: smooth}}"), told);
+    EXPECT_THAT(
+        warnings_of_outline(cliff, "{bottom: {facing: bottom, support: fixed}, left: {facing: left, support: smooth}}"),
+        told);
+    EXPECT_THAT(warnings_of_outline(cliff, "{bottom: {support: fixed}, right: {support: smooth}}"), IsEmpty());
+    EXPECT_THAT(
+        warnings_of_outline(cliff, "{bottom: {sides: [0], support: fixed}, left: {sides: [3, 5], support: smooth}}"),
+        IsEmpty()); // as the user says
+    EXPECT_THAT(warnings_of_outline(cliff, "{bottom: {support: fixed}}", "{left: 1 MPa}"),
+                Contains(HasSubstr("the pressure on 'left' also presses sides around (8, 6.5)")));
+    EXPECT_THAT(
+        warnings_of_outline("[[0, 0], [10, 0], [10, 10], [3, 10], [3, 7], [0, 7], [0, 5], [4, 5], [4, 3], [0, 3]]",
+                            "{bottom: {support: fixed}}"),
+        Contains(HasSubstr("'bottom' also holds sides around (2, 5), 5 m behind")));
+    EXPECT_THAT(warnings_of_outline(cliff, "{bottom: {support: fixed}}", "{left: 1 MPa, right: 1 MPa, top: 1 MPa}"),
+                IsEmpty()); // all around
+    // a side that is not quite straight is one side
+    EXPECT_THAT(warnings_of_outline("[[0, 0], [10, 0], [10, 10], [0, 10], [0.1, 6], [0, 5.95], [0, 3]]",
+                                    "{bottom: {support: fixed}, left: {support: fixed}}"),
+                IsEmpty());
+}
+
 TEST(SceneModel, WarnsOfFracturesThatAreNotLeft) {
     EXPECT_THAT(warnings_of({}), IsEmpty());
     EXPECT_THAT(warnings_of({"geometry.fractures.0.trace=[[0.3, 1], [0.306, 1]]"}),

@@ -104,7 +104,8 @@ struct BlockSetSpec {
 struct BoundarySides {
     std::string name;
     std::vector<int> sides;
-    std::string block{}; ///< the given block whose sides they are; empty: of the whole body
+    std::string block{};       ///< the given block whose sides they are; empty: of the whole body
+    bool by_direction = false; ///< those that face one way, wherever they lie
 };
 
 /// Where the scene gives its parts: file, line and key, as messages begin, or the keys alone.

@@ -9,6 +9,7 @@
 #include "kluft/blocks/block_system.hpp"
 #include "kluft/core/vector.hpp"
 #include "kluft/loading/boundary_loads.hpp"
+#include "kluft/loading/load_program.hpp"
 
 namespace kluft {
 
@@ -20,8 +21,13 @@ struct BoundaryFrame {
 };
 [[nodiscard]] BoundaryFrame boundary_frame(const BlockSystem& system, int boundary);
 
-/// The boundary whose normal is most opposite to that of `boundary`; -1 if none faces the other way.
+/// The boundaries whose normals are most opposite to that of `boundary`, to round-off, in their order; none if no boundary faces the
+/// other way within 60 degrees.
+[[nodiscard]] std::vector<int> opposite_boundaries(const BlockSystem& system, int boundary);
+/// The first of them; -1 if there is none.
 [[nodiscard]] int opposite_boundary(const BlockSystem& system, int boundary);
+/// The boundary that rests on a fixed platen while one moves: the opposite one, or what the scene says; -1 for none.
+[[nodiscard]] int resting_boundary(const BlockSystem& system, const PlatenMotion& motion);
 
 /// Mean position of a boundary before loading, local coordinates (m).
 [[nodiscard]] Vec2 mean_position(const BlockSystem& system, int boundary);

@@ -20,6 +20,7 @@ struct PlatenMotion {
                         ///< of the stage, counted from the stage's start for displacement and strain
     bool glued = false; ///< both platens hold the body in tension too
     std::string place;  ///< where the scene names the boundary, for messages; "" for a program made in code
+    std::optional<int> against; ///< the boundary that rests on a fixed platen, -1 for none; not given: the opposite one
 };
 
 /// A dead load: a force of constant direction on a material point of a block.
