@@ -160,7 +160,8 @@ std::vector<KeyRule> stiffness_rules() {
          .range = positive,
          .fallback_note =
              "10, of a net of triangles 30, where no other stiffness key is given; none on mapped fractures",
-         .doc = "k_n d/E with E of the material. With it `youngs_modulus` and `poissons_ratio` are those of the rock: "
+         .doc = "k_n d/E with E of the material, of several in the body the largest. With it `youngs_modulus` and "
+                "`poissons_ratio` are those of the rock: "
                 "the blocks' own moduli follow so that the tessellated body has them. Of a net of triangles 10 to 60, "
                 "of hexagons or Voronoi cells 5 to 20 is the good range, however the stiffness is given: below, the "
                 "joints carry most of the deformation; above, affine hexagons are too stiff in bending, and a body "

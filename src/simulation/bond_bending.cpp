@@ -15,8 +15,6 @@ namespace kluft {
 
 namespace {
 
-constexpr double clear_excess = 2.0; ///< of the tensile strength
-
 /// Normal tractions of a bond along which it is linear (Pa): its points are Gauss's.
 struct NormalTractions {
     double mean = 0.0;
@@ -56,7 +54,7 @@ void BendingWatch::step(const StepRecord& record, const State& state) {
         const double strength = model_.strengths[i].tensile_strength;
         const auto [mean, tension] = normal_tractions(law, bond, q);
         const bool is_torn = mean > clear_overload * strength; // BondWatch says so
-        const bool bends = tension > std::max(clear_excess * strength, round_off_of_tractions(law, bond, q));
+        const bool bends = tension > std::max(clear_overload * strength, round_off_of_tractions(law, bond, q));
         if (is_torn || !bends) continue;
         const double load = tension / strength;
         if (std::tie(load, tension) > std::tie(worst_.load, worst_.tension)) worst_ = {i, record.step, tension, load};

@@ -180,13 +180,23 @@ Net net_at(const Net& net, double spacing) {
     return {.kind = net.kind, .spacing = spacing, .edge_density = net.edge_density * net.spacing / spacing};
 }
 
+/// The E that ratios of stiffness refer to: the largest of the body's blocks (Pa).
+double reference_modulus(const BlockSystem& system, const ModelInput& input) {
+    double largest = 0.0;
+    for (const Block& block : system.blocks)
+        largest = std::max(largest, input.materials[block.material].youngs_modulus);
+    return largest;
+}
+
 /// E and nu of a material are the rock's where the net's stiffness follows from them, and else the blocks'.
-ElasticModuli moduli_of_blocks(const Material& material, const ModelInput& input, const Net& body_net) {
+ElasticModuli moduli_of_blocks(const Material& material, const BlockSystem& system, const ModelInput& input,
+                               const Net& body_net) {
     if (input.tessellation_type >= 0) {
         const InterfaceType& net = input.interface_types[input.tessellation_type];
         if (stiffness_from_ratio(net)) {
             const double ratio = net.stiffness_ratio.value_or(default_stiffness_ratio(body_net.kind));
-            const double own_ratio = ratio * largest_modulus(input.materials) / material.youngs_modulus;
+            const double reference = std::max(reference_modulus(system, input), material.youngs_modulus);
+            const double own_ratio = ratio * reference / material.youngs_modulus; // one that no block has stands alone
             return in_section("interfaces." + net.name, [&] {
                 return block_moduli(material.youngs_modulus, material.poissons_ratio, input.plane, own_ratio,
                                     net.shear_ratio.value_or(default_shear_ratio), body_net);
@@ -221,7 +231,7 @@ InterfaceStiffness stiffness_in_body(int type, const InterfaceStiffness& given, 
     if (type == input.tessellation_type) return net_of_rigid_blocks(given, system, input, net);
     if (net.kind != NetKind::triangles) return given;
     const Material& rock = rock_of_rigid_net(system, input);
-    const ElasticModuli blocks = moduli_of_blocks(rock, input, net);
+    const ElasticModuli blocks = moduli_of_blocks(rock, system, input, net);
     return in_section("materials." + rock.name,
                       [&] { return with_compliance_of_blocks(given, blocks, input.plane, net); });
 }
@@ -271,7 +281,8 @@ void add_law_of_broken_net(const LawBench& bench, Model& model) {
     const int broken = model.fracture_law[input.tessellation_type];
     if (model.net.kind == NetKind::triangles || broken == input.tessellation_type) return;
     const InterfaceStiffness given = model.given_stiffness[broken];
-    const ElasticModuli blocks = moduli_of_blocks(rock_of_rigid_net(bench.system, input), input, model.net);
+    const ElasticModuli blocks =
+        moduli_of_blocks(rock_of_rigid_net(bench.system, input), bench.system, input, model.net);
     try {
         const auto stiffness = with_compliance_of_blocks(given, blocks, input.plane, model.net);
         model.fracture_law[input.tessellation_type] = add_law(broken, given, stiffness, bench, model);
@@ -505,18 +516,21 @@ Model build_model(BlockSystem system, const ModelInput& input) {
     const LawBench bench{.system = system,
                          .input = input,
                          .boundary_stress = boundary_stress,
-                         .youngs_modulus = largest_modulus(input.materials)};
+                         .youngs_modulus = reference_modulus(system, input)};
     add_laws(bench, model);
     if (has_rigid_net(input)) add_law_of_broken_net(bench, model);
     add_laws_of_graded_net(system, bench, model);
 
+    std::vector<bool> is_used(input.materials.size(), false);
+    for (const Block& block : system.blocks) is_used[block.material] = true;
     for (const Material& material : input.materials) {
         model.densities.push_back(material.density);
         const auto moduli = input.kinematics == Kinematics::affine
-                                ? moduli_of_blocks(material, input, model.net)
+                                ? moduli_of_blocks(material, system, input, model.net)
                                 : plane_moduli(material.youngs_modulus, material.poissons_ratio, input.plane);
-        const auto effective = moduli_of_body(moduli, input, model);
-        model.effective_modulus = std::max(model.effective_modulus, modulus_for_scale(effective));
+        if (is_used[&material - input.materials.data()])
+            model.effective_modulus =
+                std::max(model.effective_modulus, modulus_for_scale(moduli_of_body(moduli, input, model)));
         model.moduli.push_back(moduli);
     }
     // One soft joint across a stiff body makes it as soft as k_n H.

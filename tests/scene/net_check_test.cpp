@@ -15,10 +15,12 @@ namespace {
 
 using test::errors_in;
 using ::testing::AllOf;
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 using ::testing::StartsWith;
 
 const std::string net_of_cracks = R"(kluft: 1
@@ -37,6 +39,30 @@ stages: [{strain: {boundary: top, value: 1 %}}]
 
 std::vector<std::string> warnings_with(const std::vector<std::string>& changes) {
     return read_scene_text(net_of_cracks, changes).warnings;
+}
+
+// ---- several materials, and rock outside a net ----
+
+// The net's stiffness follows from the largest E of the body: beside 20 GPa the cells of 1 GPa have a ratio of 200.
+TEST(NetCheck, WarnsOfMaterialsMuchSofterThanTheStiffest) {
+    const std::string both = "geometry.regions=[{polygon: [[0, 2], [2, 2], [2, 4], [0, 4]], material: soil}]";
+    EXPECT_THAT(warnings_with({both}), Contains(AllOf(HasSubstr("interfaces.bond: k_n d/E is 100 with the E of soil"),
+                                                      HasSubstr("since the stiffness follows from that of rock"))));
+    EXPECT_THAT(warnings_with({both, "materials.soil.youngs_modulus=6 GPa"}),
+                Not(Contains(HasSubstr("since the stiffness follows"))));
+    EXPECT_THAT(warnings_with({}), Not(Contains(HasSubstr("since the stiffness follows")))); // no block is of soil
+}
+
+TEST(NetCheck, WarnsOfRockOutsideANet) {
+    const std::string region = "geometry.tessellation.region=[[0, 0], [2, 0], [2, 2], [0, 2]]";
+    EXPECT_THAT(warnings_with({region}),
+                Contains(AllOf(HasSubstr("geometry.tessellation.region: the rock outside the net is of single blocks"),
+                               HasSubstr("the moduli of the net's cells"))));
+    EXPECT_THAT(warnings_with({region, "interfaces.bond.normal_stiffness=200 GPa/m",
+                               "interfaces.bond.shear_stiffness=100 GPa/m"}),
+                Contains(AllOf(HasSubstr("each with one uniform strain: it"), Not(HasSubstr("the moduli of")))));
+    EXPECT_THAT(warnings_with({region, "analysis.kinematics=rigid"}), Contains(HasSubstr("which are rigid")));
+    EXPECT_THAT(warnings_with({}), Not(Contains(HasSubstr("outside the net"))));
 }
 
 // ---- stiffness of mapped fractures ---------------------------------------------------------------------------------

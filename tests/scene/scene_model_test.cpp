@@ -68,6 +68,32 @@ TEST(SceneModel, WhatTheBodyShowsToBeWrongHasItsPlace) {
     }
 }
 
+// A cantilever of hexagons bent by 0.04 of what it should because of a material that no block has.
+TEST(SceneModel, OfUnusedMaterialsHasNoTrace) {
+    const auto stiffness = [](const std::string& more) {
+        const Model model = build_scene_model(read_scene_text(fmt::format(R"(
+kluft: 1
+materials:
+  rock: {{youngs_modulus: 1 GPa, poissons_ratio: 0.2, cohesion: 1 MPa, friction_angle: 40, tensile_strength: 0.9 MPa}}
+{}
+interfaces:
+  joint: {{kind: fracture, friction_angle: 25}}
+  bond: {{kind: potential_crack, fails_to: joint}}
+geometry:
+  domain: {{rectangle: {{width: 2, height: 4}}}}
+  material: rock
+  tessellation: {{hexagons: {{spacing: 0.5}}, interface: bond}}
+stages: [{{strain: {{boundary: top, value: 1 %}}}}]
+)",
+                                                                          more)))
+                                .model;
+        return std::pair(model.laws[1].normal_stiffness, model.moduli[0].mu);
+    };
+    const auto alone = stiffness("");
+    EXPECT_NEAR(alone.first, 10.0 * 1e9 / 0.5, 1.0); // k_n d/E is 10
+    EXPECT_EQ(stiffness("  steel: {youngs_modulus: 200 GPa, poissons_ratio: 0.3}"), alone);
+}
+
 /// Of a body with this outline, and boundaries by the directions that its sides face unless they are given.
 std::vector<std::string> warnings_of_outline(const std::string& polygon, const std::string& boundaries,
                                              const std::string& pressure = "{}") {
