@@ -33,11 +33,12 @@ constexpr double same_lateral = 1e-6;       // of the lateral stress: it has not
 constexpr double fall_after_peak = 0.01;    // of the peak
 constexpr double fall_out_of_balance = 0.5; // the same, of rows that are not balanced
 constexpr double level_change = 0.01;       // of the differential stress, at most
-constexpr double level_share = 1.0 / 3.0;   // of the platen's way, at its end
-constexpr double least_level_way = 0.5;     // of that part: what the rows in it must cover
-constexpr double residual_share = 0.1;      // of the strain
-constexpr double strain_rounding = 1e-9;    // relative
-constexpr double locking_rise = 0.05;       // of the largest stress until then
+constexpr double level_lateral = 1e-3;    // of the larger stress: so much changes a strength by less than level_change
+constexpr double level_share = 1.0 / 3.0; // of the platen's way, at its end
+constexpr double least_level_way = 0.5;   // of that part: what the rows in it must cover
+constexpr double residual_share = 0.1;    // of the strain
+constexpr double strain_rounding = 1e-9;  // relative
+constexpr double locking_rise = 0.05;     // of the largest stress until then
 
 Rows balanced_rows(const Rows& rows) {
     Rows balanced;
@@ -83,6 +84,12 @@ bool has_lateral_stress_of(const StepRecord& row, const StepRecord& other) {
     return std::abs(row.lateral_stress - other.lateral_stress) <= same_lateral * larger;
 }
 
+/// What slides under a given force carries it on less and less of its side, so that the stress there drifts.
+bool is_pressed_alike(const StepRecord& row, const StepRecord& other) {
+    const double larger = std::max(std::abs(other.lateral_stress), std::abs(other.axial_stress));
+    return std::abs(row.lateral_stress - other.lateral_stress) <= level_lateral * larger;
+}
+
 /// While the platen stays or goes on: a stress that falls because the platen goes back says nothing of a strength; nor does what it loses
 /// because the sides are pressed less, of an elastic body nu' <= 1 of it. Rows out of balance
 /// count too: what a splinter leaves over in these, the stress is not known by, but a body that has lost most of it does not carry the
@@ -116,7 +123,7 @@ bool levels_off(const Rows& rows, double sense) {
     double strain = -least;
     for (auto row = begin; row != rows.end(); ++row) {
         const bool goes_on = sense * row->axial_strain >= strain;
-        if (!row->balanced || !goes_on || !has_lateral_stress_of(*row, rows.back())) return false;
+        if (!row->balanced || !goes_on || !is_pressed_alike(*row, rows.back())) return false;
         strain = sense * row->axial_strain;
         least = std::min(least, sense * row->differential_stress);
         largest = std::max(largest, sense * row->differential_stress);

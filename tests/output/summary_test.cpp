@@ -324,6 +324,23 @@ TEST(Summary, HasNotLevelledOffOutOfBalanceOrWhereLoadsTurn) {
     EXPECT_FALSE(with([](StepRecord& row) { row.lateral_stress = 0.3e6; }));
 }
 
+// The block of a shear box under 1 MPa, which carries 1.155 MPa and slides out from under its load by a hundred-thousandth of its length
+// per load step; and sides that are pressed by 1 % more meanwhile.
+TEST(Summary, AStressIsLevelThoughWhatSlidesIsPressedOnEverLess) {
+    const auto with_drift = [](double per_step) {
+        Rows rows{row(0, 0, 0, 0, 0, 1e6)};
+        for (int i = 1; i <= 20; ++i) {
+            const double lateral = 1e6 * (1.0 + per_step * i);
+            rows.push_back(row(i, 1, 2.5e-5 * i, std::min(0.1e6 * i, 1.155e6) - lateral, 0.0, lateral));
+        }
+        return has_levelled_off(rows);
+    };
+    EXPECT_TRUE(with_drift(0.0));
+    EXPECT_TRUE(with_drift(1e-5));
+    EXPECT_TRUE(with_drift(-1e-5));
+    EXPECT_FALSE(with_drift(1e-2 / 6));
+}
+
 // A joint that slides from the first load step on: what is left over in balance makes the curve rise by 1e-8 of itself.
 TEST(Summary, HasNoModulusWhereTheStressDoesNotRise) {
     Rows rows{row(0, 0, 0, 2e6)};
