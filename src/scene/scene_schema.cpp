@@ -65,7 +65,8 @@ std::vector<KeyRule> analysis_rules() {
              "How a block moves and deforms: `affine` is six unknowns with a uniform strain, `rigid` three (two "
              "displacements and a rotation of any size). In a tessellated body the interfaces of the tessellation take "
              "over the compliance of rigid blocks, so that the body has the same E and nu with both kinds, of "
-             "triangles within 1 to 5 % (docs/theory.md, section 5); of hexagons 1/k_n' = 1/k_n + d/2K, 1/(k_n' + "
+             "triangles within 1 to 5 % (docs/theory.md, section 5); of hexagons 1/k_n' "
+             "= 1/k_n + d/2K, 1/(k_n' + "
              "k_s') = 1/(k_n + k_s) + d/4G. Where k_s' would not be positive (of hexagons with `poissons_ratio` "
              "of 1/4 or more in plane strain, 1/3 in plane stress, or of more than that on soft interfaces) the "
              "scene is refused, as are blocks of different moduli. Of hexagons mapped fractures keep their stiffness, "
@@ -616,11 +617,13 @@ std::vector<KeyRule> loading_rules() {
          .type = KeyType::choice,
          .choices = {"none", "smooth", "pinned", "fixed"},
          .fallback = "none",
-         .doc = "Held in every stage: `smooth` against motion normal to the boundary, `pinned` as "
-                "smooth and with one vertex near the middle held along the boundary too, so that a body between smooth "
-                "platens cannot drift, `fixed` against any motion. All of them hold in tension, too: where rock may "
-                "part from "
-                "what is behind it, a fixed block beside a joint holds it (`geometry.blocks`), or nothing does."},
+         .doc =
+             "Held in every stage: `smooth` against motion normal to the boundary, `pinned` as "
+             "smooth and with one vertex near the middle held along the boundary too, so that a body between smooth "
+             "platens cannot drift, `fixed` against any motion. All of them hold in tension, too: where rock may "
+             "part from "
+             "what is behind it, a fixed block beside a joint holds it (`geometry.blocks`), or nothing does. An affine "
+             "block whose held corners do not lie in one line cannot deform, and has stress 0: `check` warns of it."},
         {.path = "boundaries.*.sides",
          .type = KeyType::integers,
          .range = natural,

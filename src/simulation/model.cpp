@@ -15,6 +15,7 @@
 #include "kluft/kinematics/material_point.hpp"
 #include "kluft/loading/boundary_geometry.hpp"
 #include "kluft/simulation/stage_loads.hpp"
+#include "kluft/simulation/undeformable_blocks.hpp"
 
 namespace kluft {
 
@@ -561,6 +562,8 @@ Model build_model(BlockSystem system, const ModelInput& input) {
     warn_of_bent_supports(model);
     warn_of_unmeasured_sides(model);
     refuse_contradicting_supports(model);
+    if (std::string warning = undeformable_blocks_warning(model); !warning.empty())
+        model.warnings.push_back(std::move(warning));
     return model;
 }
 
