@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "support/scene_run.hpp"
@@ -10,8 +11,21 @@
 namespace kluft {
 namespace {
 
+/// The blocks that the traces close, without a net; the sides that face south are held, the others pressed.
 SceneRun outcrop_with(const std::vector<std::string>& changes) {
-    return run_scene(read_scene(std::string(KLUFT_MODELS_DIR) + "/outcrop-kb7.yaml", changes));
+    return run_scene(fmt::format(R"(
+kluft: 1
+materials: {{granite: {{density: 2650, youngs_modulus: 50 GPa, poissons_ratio: 0.25}}}}
+interfaces: {{joint: {{kind: fracture, normal_stiffness: 20 GPa/m, shear_stiffness: 10 GPa/m, friction_angle: 35}}}}
+geometry:
+  domain: {{file: {0}/area.geojson}}
+  reference_spacing: 1 m
+  fractures: [{{name: trace, file: {0}/traces.geojson, interface: joint}}]
+boundaries: {{bottom: {{support: fixed}}}}
+stages: [{{pressure: {{left: 5 MPa, right: 5 MPa, top: 3 MPa}}, steps: 10}}]
+)",
+                                 std::string(KLUFT_MODELS_DIR) + "/data/outcrop-kb7"),
+                     changes);
 }
 
 /// Over the largest entry of the stresses of all blocks.
