@@ -1,5 +1,7 @@
 // kluft run SCENE
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <new>
 #include <optional>
@@ -83,14 +85,28 @@ ExitCode exit_code(RunStatus status) {
     return ExitCode::done;
 }
 
+/// Each is in the log, and told where the run is not quiet.
+void warn(const std::vector<std::string>& warnings, RunLog& log, bool quiet) {
+    for (const std::string& warning : warnings) {
+        log.warning(warning);
+        if (!quiet) tell("warning: {}\n", warning);
+    }
+}
+
+/// What only the numbers of the run have shown to be worth a warning.
+std::vector<std::string> warnings_of_numbers(const RunSummary& summary, const RunReport& report) {
+    std::vector<std::string> warnings;
+    std::ranges::copy_if(summary.warnings, std::back_inserter(warnings), [&](const std::string& warning) {
+        return std::ranges::find(report.warnings, warning) == report.warnings.end();
+    });
+    return warnings;
+}
+
 /// A report that cannot be written for want of disk or memory is an end like that of pictures.
 void write_report(const SceneModel& built, const Scene& scene, const RunWriter& writer, const RunSummary& summary,
                   RunLog& log, const fs::path& directory, bool quiet) {
     try {
-        for (const auto& warning : write_run_page(directory, scene, built.model, built.cut)) {
-            log.warning(warning);
-            if (!quiet) tell("warning: {}\n", warning);
-        }
+        warn(write_run_page(directory, scene, built.model, built.cut), log, quiet);
     } catch (const ResourceError& error) {
         log.error(error.what());
         writer.give_up(summary, error.what());
@@ -109,10 +125,7 @@ ExitCode simulate(const SceneModel& built, const Scene& scene, State& state, Run
     RunReport report = run_stages(model, scene, state, observer, stop_requested);
     observer.clear();
     warn_of_contacts(model, state, observer.contacts(), report);
-    for (const auto& warning : report.warnings) {
-        log.warning(warning);
-        if (!quiet) tell("warning: {}\n", warning);
-    }
+    warn(report.warnings, log, quiet);
     if (!report.diagnosis.empty()) {
         log.error(report.diagnosis);
         tell("{}\n", report.diagnosis);
@@ -128,6 +141,7 @@ ExitCode simulate(const SceneModel& built, const Scene& scene, State& state, Run
         if (report.diagnosis == error.what()) return ExitCode::out_of_resources; // said already
         throw;
     }
+    warn(warnings_of_numbers(summary, report), log, quiet);
     const std::string closing = closing_line(report, summary, directory);
     log.info(closing);
     const bool has_begun = report.status != RunStatus::out_of_resources || state.at.step > 0;
@@ -185,10 +199,7 @@ ExitCode run(const RunArguments& arguments) {
     for (const auto& override_text : arguments.overrides) log.info("--set " + override_text);
     RunReport before;
     add_earlier_warnings(scene, model, earlier, before);
-    for (const auto& warning : before.warnings) {
-        log.warning(warning);
-        if (!arguments.quiet) tell("warning: {}\n", warning);
-    }
+    warn(before.warnings, log, arguments.quiet);
     return simulate(built, scene, state, writer, log, directory, earlier, arguments.quiet);
 }
 

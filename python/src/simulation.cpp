@@ -1,5 +1,6 @@
 // A run whose load steps are taken one at a time. The run itself stands in a thread of its own, which waits after each load
 // step; it never touches Python, and Python's threads go on while it computes.
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -341,6 +342,11 @@ private:
                                  output_->earlier.cpu_s + processor_seconds(), std::string(version()), blas_core()};
         const RunSummary summary =
             output_->writer->finish(outcome, state_, [&] { return fields_of_state(model(), state_); });
+        for (const std::string& warning : summary.warnings) { // what only the numbers of the run have shown
+            if (std::ranges::find(report_.warnings, warning) != report_.warnings.end()) continue;
+            output_->log->warning(warning);
+            report_.warnings.push_back(warning);
+        }
         closing_ = closing_line(report_, summary, output_->directory);
         output_->log->info(closing_);
         const bool has_begun = report_.status != RunStatus::out_of_resources || state_.at.step > 0;

@@ -1,5 +1,6 @@
 #include "kluft/output/run_writer.hpp"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <exception>
@@ -331,6 +332,10 @@ RunSummary RunWriter::summary_of(const RunOutcome& outcome, const Rows& history,
     summary.message = outcome.report.diagnosis.empty() ? outcome.report.remark : outcome.report.diagnosis;
     summary.results = outcome.report.results;
     summary.warnings = outcome.report.warnings;
+    const std::string& doubt = options_.elastic_constants_warning;
+    const bool is_said =
+        std::ranges::find(summary.warnings, doubt) != summary.warnings.end(); // by an earlier part of the run
+    if (summary.numbers.youngs_modulus && !doubt.empty() && !is_said) summary.warnings.push_back(doubt);
     summary.falling = outcome.report.falling;
     summary.motion = outcome.report.motion;
     return summary;

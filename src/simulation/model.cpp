@@ -14,6 +14,7 @@
 #include "kluft/core/units.hpp"
 #include "kluft/kinematics/material_point.hpp"
 #include "kluft/loading/boundary_geometry.hpp"
+#include "kluft/simulation/rock_constants.hpp"
 #include "kluft/simulation/stage_loads.hpp"
 #include "kluft/simulation/undeformable_blocks.hpp"
 
@@ -413,13 +414,13 @@ void warn_of_fixed_platen(const PlatenMotion& motion, Model& model) {
 
 /// The axial stress counts from side to side of the body, also where a platen presses a part of it.
 void warn_of_narrow_platen(int moved, Model& model) {
-    constexpr double much_narrower = 0.8; // than the body
+    if (!is_pressed_in_part(model.system, moved)) return;
     const double own = boundary_frame(model.system, moved).length;
     const double width = width_across(model.system, moved).width;
-    if (own >= much_narrower * width) return;
     model.warnings.push_back(fmt::format(
         "the axial stress of the platen on '{}' is its force over the width of the body, {:.4g} m, and not over "
-        "its own {:.4g} m, on which it presses {:.3g} times as much",
+        "its own {:.4g} m, on which it presses {:.3g} times as much; youngs_modulus and poissons_ratio of such a test "
+        "are not the rock's, and by how much they differ cannot be known: smooth platens on the whole width give these",
         model.system.boundaries[moved].name, width, own, width / own));
 }
 

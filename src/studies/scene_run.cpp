@@ -20,6 +20,7 @@
 #include "kluft/simulation/fingerprint.hpp"
 #include "kluft/simulation/measurements.hpp"
 #include "kluft/simulation/pulling_support.hpp"
+#include "kluft/simulation/rock_constants.hpp"
 #include "kluft/simulation/rocking_joint.hpp"
 #include "kluft/simulation/simulation.hpp"
 #include "kluft/simulation/stability.hpp"
@@ -72,6 +73,7 @@ RunWriterOptions run_writer_options(const Scene& scene, const Model& model) {
     if (platen_stage >= 0) options.platen_stage = platen_stage;
     options.plane = scene.plane;
     options.modulus = largest_modulus(scene.materials);
+    options.elastic_constants_warning = elastic_constants_warning(model);
     options.strength_factor = reduction_of(model.loads, 0) != nullptr;
     options.motion = scene.integrator == Integrator::explicit_motion;
     options.history_columns = history_columns(model);

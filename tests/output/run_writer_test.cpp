@@ -71,6 +71,7 @@ public:
         record.stage = step <= 4 ? 0 : 1;
         record.axial_strain = step <= 4 ? 0.0 : 0.001 * (step - 4);
         record.differential_stress = 1e6 * std::min(record.axial_strain / 0.005, 2.0 - record.axial_strain / 0.005);
+        record.lateral_strain = -0.2 * record.axial_strain;
         record.lateral_stress = 0.2e6;
         record.axial_stress = record.differential_stress + record.lateral_stress;
         record.histories = {0.5 * step, -1e3};
@@ -170,6 +171,22 @@ TEST(RunWriter, WritesFieldsAndStatesAsOftenAsAsked) {
     run.finish(RunStatus::interrupted);
     EXPECT_THAT(read_file(directory / "fields.pvd"), HasSubstr("blocks_000007.vtu"));
     EXPECT_EQ(read_state(directory / "state.h5", "scene").at.step, 7);
+}
+
+// The elastic constants of `record_of` are there from the platen's second row on; a run that ended before has none to warn of.
+TEST(RunWriter, WarnsOfElasticConstantsWhereItHasSome) {
+    RunWriterOptions options;
+    options.pictures = false;
+    options.platen_stage = 1;
+    options.elastic_constants_warning = "not the rock's";
+    for (const int last : {2, 9}) {
+        const TemporaryDirectory directory;
+        SmallRun run(directory.path(), options);
+        run.go_to(last);
+        const RunSummary summary = run.finish();
+        EXPECT_EQ(summary.numbers.youngs_modulus.has_value(), last == 9);
+        EXPECT_EQ(std::ranges::count(summary.warnings, "not the rock's"), last == 9 ? 1 : 0);
+    }
 }
 
 TEST(RunWriter, WritesNeitherFieldsNorPicturesWhenNotAsked) {

@@ -34,7 +34,8 @@ struct RunWriterOptions {
     std::optional<int> resumed_step; ///< load step of the saved state that the run goes on from; none: a new run
     std::optional<int> platen_stage; ///< the first stage that moves a platen
     Plane plane = Plane::strain;
-    double modulus = 0.0; ///< Young's, of the stiffest material (Pa)
+    double modulus = 0.0;                  ///< Young's, of the stiffest material (Pa)
+    std::string elastic_constants_warning; ///< of the summary, where it has such constants
     std::vector<std::string> material_names;
     std::vector<std::string> interface_type_names;
     std::vector<std::string> fracture_names;  ///< mapped ones
