@@ -11,6 +11,7 @@
 #include "kluft/simulation/fallen_blocks.hpp"
 #include "kluft/simulation/fixed_steps.hpp"
 #include "kluft/simulation/load_step.hpp"
+#include "kluft/simulation/strength_reduction.hpp"
 #include "kluft/simulation/strength_search.hpp"
 
 namespace kluft {
@@ -103,6 +104,15 @@ void report_estimate(double accuracy, const State& state, RunReport& report) {
         100.0 * estimate, 100.0 * accuracy));
 }
 
+/// Of a search for the limit that was stopped: how far it had come. It claims no factor of safety.
+std::string standing_in_words(const Model& model, const State& state) {
+    if (!model.loads.stages[state.at.stage].strength_reduction) return {};
+    return fmt::format(
+        "the body stood with the strengths divided by {:.4g}, and larger factors were not searched to the "
+        "end",
+        strength_factor(model.loads, state.at.stage, state.at.load_factor));
+}
+
 /// The next stage starts from the loads at the end of this one.
 void end_stage(const StepBench& bench, State& state) {
     const LoadsAt at = loads_at(bench, state, 1.0);
@@ -147,6 +157,7 @@ RunReport run_simulation(const Model& model, const CrackOptions& cracks, const S
             end_stage(bench, state);
         }
     });
+    if (report.status == RunStatus::interrupted) report.diagnosis = standing_in_words(model, state);
     if (solver.accuracy > 0.0) report_estimate(solver.accuracy, state, report);
     return report;
 }

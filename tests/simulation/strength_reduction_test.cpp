@@ -160,9 +160,13 @@ TEST(StrengthReduction, RunThatIsResumedInTheStageFindsTheSameFactor) {
         }
     } observer;
     State state = initial_state(model);
-    EXPECT_EQ(run_simulation(model, scene.cracks, scene.solver, state, observer, observer.stop).status,
-              RunStatus::interrupted);
+    const RunReport stopped = run_simulation(model, scene.cracks, scene.solver, state, observer, observer.stop);
+    EXPECT_EQ(stopped.status, RunStatus::interrupted);
     EXPECT_EQ(state.at.step_in_stage, 1);
+    const double stood = model.loads.stages[state.at.stage].strength_reduction->factor_at(state.at.load_factor);
+    EXPECT_EQ(stopped.diagnosis.find(fmt::format("the body stood with the strengths divided by {:.4g}, ", stood)), 0U)
+        << stopped.diagnosis;
+    EXPECT_FALSE(stopped.results.factor_of_safety);
     observer.stop = false;
     const auto resumed = run_simulation(model, scene.cracks, scene.solver, state, observer, observer.stop);
     ASSERT_TRUE(resumed.results.factor_of_safety) << resumed.diagnosis;
