@@ -200,6 +200,8 @@ void add_draw_command(CLI::App& app, Command& command) {
         ->excludes(blocks);
     sub->add_option("--mark", arguments->marks,
                     "A published value in the plot of curves: LABEL=STRESS is a level, LABEL=STRESS at STRAIN a point; "
+                    "the stress is "
+                    "that of the axis, the differential one (axial less lateral stress); "
                     "RUN:LABEL=... takes the colour of a run")
         ->take_all()
         ->allow_extra_args(false);

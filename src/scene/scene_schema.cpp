@@ -65,7 +65,7 @@ std::vector<KeyRule> analysis_rules() {
              "How a block moves and deforms: `affine` is six unknowns with a uniform strain, `rigid` three (two "
              "displacements and a rotation of any size). In a tessellated body the interfaces of the tessellation take "
              "over the compliance of rigid blocks, so that the body has the same E and nu with both kinds, of "
-             "triangles within 1 to 5 % (docs/theory.md, section 5); of hexagons 1/k_n' "
+             "triangles within 1 to 5 % (docs/theory.md, section 5), with mapped joints up to 7 %; of hexagons 1/k_n' "
              "= 1/k_n + d/2K, 1/(k_n' + "
              "k_s') = 1/(k_n + k_s) + d/4G. Where k_s' would not be positive (of hexagons with `poissons_ratio` "
              "of 1/4 or more in plane strain, 1/3 in plane stress, or of more than that on soft interfaces) the "
