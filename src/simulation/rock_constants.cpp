@@ -20,11 +20,12 @@ std::string quoted_name(const Model& model, int boundary) { return "'" + model.s
 
 /// Of the sides besides those of the platens, the supports that change what the body strains by: any that takes forces along itself, one
 /// that is neither along nor across the platen, and smooth ones on both sides, not one alone, as on a plane of symmetry.
-std::vector<std::string> supports_that_hold(const Model& model, int moved) {
+std::vector<std::string> supports_that_hold(const Model& model, const PlatenMotion& motion) {
     const BlockSystem& system = model.system;
+    const int moved = motion.boundary;
     const Vec2 normal = boundary_frame(system, moved).normal;
     const Vec2 across(-normal.y(), normal.x());
-    const int opposite = opposite_boundary(system, moved);
+    const int opposite = resting_boundary(system, motion);
     std::vector<std::string> holding;
     std::array<std::vector<std::string>, 2> smooth_sides;
     for (int i = 0; i < static_cast<int>(system.boundaries.size()); ++i) {
@@ -44,13 +45,13 @@ std::vector<std::string> supports_that_hold(const Model& model, int moved) {
 
 std::vector<std::string> what_holds(const Model& model, const Stage& stage) {
     const int moved = stage.motion->boundary;
-    const int opposite = opposite_boundary(model.system, moved);
+    const int opposite = resting_boundary(model.system, *stage.motion);
     std::vector<std::string> reasons;
     if (stage.platen_friction > 0.0) reasons.push_back(fmt::format("the platen on {} rubs", quoted_name(model, moved)));
     if (opposite >= 0 && model.loads.supports[opposite] == Support::fixed)
         reasons.push_back(fmt::format("the platen on {}, whose support is fixed, lets nothing slide along it",
                                       quoted_name(model, opposite)));
-    if (const auto holding = supports_that_hold(model, moved); !holding.empty())
+    if (const auto holding = supports_that_hold(model, *stage.motion); !holding.empty())
         reasons.push_back(fmt::format("the support of {} holds the body as well", fmt::join(holding, ", ")));
     if (std::ranges::any_of(model.system.blocks, &Block::fixed))
         reasons.emplace_back("fixed blocks hold the body as well");
