@@ -12,7 +12,6 @@
 #include <execinfo.h>
 #include <fmt/format.h>
 #include <gmp.h>
-#include <malloc.h>
 
 #include "blas_kernels.hpp"
 #include "commands.hpp"
@@ -53,13 +52,6 @@ void* gmp_reallocate(void* old, std::size_t, std::size_t size) {
     return memory;
 }
 void* gmp_allocate(std::size_t size) { return gmp_reallocate(nullptr, 0, size); }
-
-/// Contacts, tangents and factors are made anew in each load step, of the same size. Blocks of memory up to the first size and free memory up
-/// to the second (bytes) stay with the program; the C library would give them back, to be cleared page by page for the next load step.
-void keep_freed_memory() {
-    mallopt(M_MMAP_THRESHOLD, 32 << 20);
-    mallopt(M_TRIM_THRESHOLD, 64 << 20);
-}
 
 int bad_input(const std::string& message) {
     std::fprintf(stderr, "%s\n", message.c_str());
@@ -491,7 +483,6 @@ int main(int argc, char** argv) {
         kluft::leave_writing_to_its_result();
         waits_at_exit = !kluft::end_blas_threads();
         kluft::choose_blas_kernels(argv);
-        keep_freed_memory();
         mp_set_memory_functions(gmp_allocate, gmp_reallocate, nullptr);
         load_unwinder();
         return program(argc, argv);

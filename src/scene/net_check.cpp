@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -57,30 +58,6 @@ void warn_of_ratio(const SceneSection& interface, std::string_view key, double r
                                  of, cells_of(kind), range.least, range.most, problem));
 }
 
-/// A ratio refers to the largest E of the body: beside a stiff part the cells of a soft one do not bend.
-void warn_of_softer_materials(const SceneSection& interface, const InterfaceType& type, const Scene& scene,
-                              ReadingContext& context) {
-    const NetKind kind = net_kind(*scene.geometry.tessellation);
-    const RatioRange range = good_stiffness_ratio(kind);
-    const double ratio = type.stiffness_ratio.value_or(default_stiffness_ratio(kind));
-    const Material* stiffest = nullptr;
-    for (const int m : materials_of_body(scene))
-        if (stiffest == nullptr || material(scene, m).youngs_modulus > stiffest->youngs_modulus)
-            stiffest = &material(scene, m);
-    for (const int m : materials_of_body(scene)) {
-        const Material& rock = material(scene, m);
-        if (!(rock.youngs_modulus > 0.0) || rock.youngs_modulus == stiffest->youngs_modulus) continue;
-        const double own = ratio * stiffest->youngs_modulus / rock.youngs_modulus;
-        if (own <= range.most) continue;
-        context.warn(
-            interface, {},
-            fmt::format("k_n d/E is {:.3g} with the E of {}, since the stiffness follows from that of {}, outside the "
-                        "good range of a net of {}, {:g} to {:g}: {}",
-                        own, rock.name, stiffest->name, cells_of(kind), range.least, range.most,
-                        ratio_problem(own, range, scene.kinematics)));
-    }
-}
-
 void warn_of_stiffness(const SceneSection& interface, const InterfaceType& type, const Scene& scene,
                        ReadingContext& context) {
     if (stiffness_from_ratio(type)) {
@@ -88,7 +65,6 @@ void warn_of_stiffness(const SceneSection& interface, const InterfaceType& type,
             scene.kinematics == Kinematics::affine; // rigid blocks give the rock's moduli with any ratio
         if (counts && type.stiffness_ratio)
             warn_of_ratio(interface, "stiffness_ratio", *type.stiffness_ratio, "", scene, context);
-        if (counts) warn_of_softer_materials(interface, type, scene, context);
         return;
     }
     const auto* key = type.normal_stiffness ? "normal_stiffness" : "normal_stiffness_times_spacing";
@@ -121,6 +97,58 @@ void warn_of_rigid_triangles(const SceneSection& root, const Scene& scene, Readi
         "kinematics: affine for strength");
 }
 
+/// A ratio refers to the largest E of the body: beside a stiff part the cells of a soft one do not bend.
+std::vector<std::string> softer_materials(const Scene& scene, const BlockSystem& system, const InterfaceType& type) {
+    const NetKind kind = net_kind(*scene.geometry.tessellation);
+    const RatioRange range = good_stiffness_ratio(kind);
+    if (!stiffness_from_ratio(type) || scene.kinematics == Kinematics::rigid) return {};
+    const double ratio = type.stiffness_ratio.value_or(default_stiffness_ratio(kind));
+    int stiffest = system.blocks.front().material;
+    std::set<int> of_cells;
+    for (const Block& block : system.blocks) {
+        if (material(scene, block.material).youngs_modulus > material(scene, stiffest).youngs_modulus)
+            stiffest = block.material;
+        if (is_cell_of_net(system, block)) of_cells.insert(block.material);
+    }
+    std::vector<std::string> warnings;
+    for (const int m : of_cells) {
+        const Material& rock = material(scene, m);
+        const double own = ratio * material(scene, stiffest).youngs_modulus / rock.youngs_modulus;
+        if (rock.youngs_modulus == material(scene, stiffest).youngs_modulus || own <= range.most) continue;
+        warnings.push_back(fmt::format("interfaces.{}: k_n d/E is {:.3g} with the E of {}, since the stiffness follows "
+                                       "from that of {}, outside the "
+                                       "good range of a net of {}, {:g} to {:g}: {}",
+                                       type.name, own, rock.name, material(scene, stiffest).name, cells_of(kind),
+                                       range.least, range.most, ratio_problem(own, range, scene.kinematics)));
+    }
+    return warnings;
+}
+
+/// What lies outside the region of a net is of few blocks, each with one strain or none.
+std::vector<std::string> rock_outside_net(const Scene& scene, const BlockSystem& system, const InterfaceType& type) {
+    constexpr double much_area = 0.05; // of the body
+    if (!scene.geometry.tessellation->region) return {};
+    const auto is_cell = [&](const Block& block) { return is_cell_of_net(system, block); };
+    if (std::ranges::none_of(system.blocks, is_cell)) return {}; // there is another warning of that
+    double outside = 0.0;
+    for (const Block& block : system.blocks) outside += is_cell(block) ? 0.0 : block.area;
+    if (outside <= much_area * area_of(system)) return {};
+    std::string blocks = "which are rigid";
+    if (scene.kinematics == Kinematics::affine)
+        blocks = stiffness_from_ratio(type)
+                     ? "each with one uniform strain and the moduli of the net's cells, some per cent above the rock's"
+                     : "each with one uniform strain";
+    return {fmt::format(
+        "{}: {:.3g} % of the body lie outside the net, in single blocks, {}: they hardly give way to what happens "
+        "inside, as to an opening (closures of a tunnel came out too small by 13 % with a net to 5 radii "
+        "around it, by 24 % to 3 and by 38 % to 2); {}",
+        scene.geometry.places.region, 100.0 * outside / area_of(system), blocks,
+        net_kind(*scene.geometry.tessellation) == NetKind::triangles
+            ? "geometry.tessellation.triangles.grading makes the net coarser away from what matters in "
+              "place of ending it"
+            : "a net of triangles may be graded in place of ending")};
+}
+
 } // namespace
 
 std::set<int> materials_of_body(const Scene& scene) {
@@ -150,21 +178,14 @@ std::set<int> require_stiffness_of_joints(const SceneSection& root, const Scene&
     return refused;
 }
 
-/// What lies outside the region of a net is of few blocks, each with one strain or none.
-void warn_of_region(const SceneSection& root, const InterfaceType& type, const Scene& scene, ReadingContext& context) {
-    if (!scene.geometry.tessellation->region) return;
-    std::string blocks = "which are rigid";
-    if (scene.kinematics == Kinematics::affine)
-        blocks = stiffness_from_ratio(type)
-                     ? "each with one uniform strain and the moduli of the net's cells, some per cent above the rock's"
-                     : "each with one uniform strain";
-    context.warn(root.section("geometry").section("tessellation"), "region",
-                 fmt::format("the rock outside the net is of single blocks, {}: it hardly gives way to what happens "
-                             "inside, as to an opening (closures of a tunnel came out too small by 13 % with a net to "
-                             "5 radii around it, by 24 % to 3 and by 38 % to 2); "
-                             "geometry.tessellation.triangles.grading makes a net coarser away from what matters in "
-                             "place of ending it",
-                             blocks));
+std::vector<std::string> warnings_of_cut_net(const Scene& scene, const BlockSystem& system) {
+    if (!scene.geometry.tessellation) return {};
+    const InterfaceType& type =
+        scene.interface_types[static_cast<std::size_t>(scene.geometry.tessellation->interface_type)];
+    std::vector<std::string> warnings = softer_materials(scene, system, type);
+    const std::vector<std::string> outside = rock_outside_net(scene, system, type);
+    warnings.insert(warnings.end(), outside.begin(), outside.end());
+    return warnings;
 }
 
 void warn_of_net(const SceneSection& root, const Scene& scene, ReadingContext& context) {
@@ -173,7 +194,6 @@ void warn_of_net(const SceneSection& root, const Scene& scene, ReadingContext& c
     const auto interfaces = root.sections("interfaces");
     const auto index = static_cast<std::size_t>(net.interface_type);
     const InterfaceType& type = scene.interface_types[index];
-    warn_of_region(root, type, scene, context);
     warn_of_stiffness(interfaces[index], type, scene, context);
     if (type.kind != InterfaceKind::potential_crack || type.fails_to < 0) return;
     warn_of_rigid_triangles(root, scene, context);

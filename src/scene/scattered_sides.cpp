@@ -89,13 +89,15 @@ std::vector<std::string> scattered_sides(const Scene& scene) {
     const auto holds = [&](int i) {
         return i < static_cast<int>(scene.loads.supports.size()) && scene.loads.supports[i] != Support::none;
     };
-    bool is_free = false; // a part of the outline
-    for (int i = 0; i < n; ++i) is_free = is_free || (!holds(i) && !presses(scene.loads, i));
+    std::size_t n_loaded = 0; // sides of the outline
+    for (int i = 0; i < n; ++i)
+        if (holds(i) || presses(scene.loads, i))
+            n_loaded += geometry.boundaries[static_cast<std::size_t>(i)].sides.size();
+    if (n_loaded >= geometry.domain.size()) return {}; // all around it is meant so
     std::vector<std::string> found;
     for (int i = 0; i < n; ++i) {
         const BoundarySides& boundary = geometry.boundaries[static_cast<std::size_t>(i)];
-        const bool is_pressed = is_free && presses(scene.loads, i); // all around it is meant so
-        if (!boundary.by_direction || (!holds(i) && !is_pressed)) continue;
+        if (!boundary.by_direction || (!holds(i) && !presses(scene.loads, i))) continue;
         const auto behind = chain_behind(geometry.domain, boundary.sides);
         if (!behind) continue;
         found.push_back(fmt::format("the {} '{}' also {} sides around {}, {:.3g} m behind the outermost ones",

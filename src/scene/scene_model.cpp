@@ -17,6 +17,7 @@
 #include "kluft/core/place_text.hpp"
 #include "kluft/geometry/polygon.hpp"
 #include "kluft/scene/coarse_places.hpp"
+#include "kluft/scene/net_check.hpp"
 #include "kluft/scene/scattered_sides.hpp"
 
 namespace kluft {
@@ -299,6 +300,7 @@ SceneModel build_scene_model(const Scene& scene) {
           small_reference(scene.geometry, built.model.system), slivers(scene.geometry, built.model.system),
           necks(scene.geometry, built.model.system), bare_net(scene.geometry, built.model.system),
           empty_regions(scene.geometry, built.model.system), scattered_sides(scene),
+          warnings_of_cut_net(scene, built.model.system),
           coarse_places(scene.geometry, built.cut, scene.interface_types)})
         built.model.warnings.insert(built.model.warnings.end(), warnings.begin(), warnings.end());
     require_memory();

@@ -59,6 +59,7 @@ void add_stage(const Stage& stage, Digest& digest) {
     if (stage.motion)
         digest.add(static_cast<int>(stage.motion->control), stage.motion->boundary, stage.motion->value,
                    static_cast<int>(stage.motion->glued));
+    if (stage.motion && stage.motion->against) digest.add(*stage.motion->against);
     if (!stage.strength_reduction) return;
     const StrengthReduction& reduction = *stage.strength_reduction;
     digest.add(reduction.from, reduction.to, reduction.tolerance);

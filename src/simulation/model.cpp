@@ -148,11 +148,14 @@ void require_directions(const BlockSystem& system, const LoadProgram& loads) {
                 system.boundaries[i].name, loads.supports[i] == Support::smooth ? "smooth" : "pinned"));
     }
     for (const Stage& stage : loads.stages) {
-        if (!stage.motion || !faces_all_ways(stage.motion->boundary)) continue;
-        throw InputError(
-            fmt::format("{}: expected a boundary for the platen that faces one way, found '{}', whose sides "
-                        "together face all ways",
-                        stage.motion->place, system.boundaries[stage.motion->boundary].name));
+        if (!stage.motion) continue;
+        for (const int boundary : {stage.motion->boundary, resting_boundary(system, *stage.motion)}) {
+            if (boundary < 0 || !faces_all_ways(boundary)) continue;
+            throw InputError(
+                fmt::format("{}: expected a boundary for the platen that faces one way, found '{}', whose sides "
+                            "together face all ways",
+                            stage.motion->place, system.boundaries[boundary].name));
+        }
     }
 }
 
@@ -386,6 +389,17 @@ void warn_of_uneven_platen(const PlatenMotion& motion, Model& model) {
     }
 }
 
+/// Whether a support on another boundary than the platens' takes what the moved one presses with: one that is fixed, or faces it.
+bool is_held_beside(const BlockSystem& system, const LoadProgram& loads, int moved, int rest) {
+    constexpr double facing = -0.5; // cosine between the normals
+    const Vec2 normal = boundary_frame(system, moved).normal;
+    for (int i = 0; i < static_cast<int>(system.boundaries.size()); ++i) {
+        if (i == moved || i == rest || loads.supports[i] == Support::none) continue;
+        if (loads.supports[i] == Support::fixed || boundary_frame(system, i).normal.dot(normal) < facing) return true;
+    }
+    return false;
+}
+
 /// A fixed platen lies on what faces the moved one, whether or not it was meant to be held there.
 void warn_of_fixed_platen(const PlatenMotion& motion, Model& model) {
     constexpr double much_turned = 10.0 / degrees;
@@ -403,7 +417,7 @@ void warn_of_fixed_platen(const PlatenMotion& motion, Model& model) {
     const double cosine = -boundary_frame(system, moved).normal.dot(boundary_frame(system, rest).normal);
     const double turned = std::acos(std::clamp(cosine, -1.0, 1.0));
     if (turned > much_turned) remarks.push_back(fmt::format("turned against it by {:.3g} degrees", turned * degrees));
-    if (model.loads.supports[rest] == Support::none && is_platen_resisted(system, model.loads, moved))
+    if (model.loads.supports[rest] == Support::none && is_held_beside(system, model.loads, moved, rest))
         remarks.emplace_back("beside supports that hold the body there already");
     if (remarks.empty()) return;
     model.warnings.push_back(fmt::format("the platen on '{}' presses the body against a fixed platen on '{}', {}: "
@@ -446,12 +460,22 @@ void warn_of_platens_that_go(Model& model) {
 
 void warn_of_platens(Model& model) {
     warn_of_platens_that_go(model);
-    std::set<int> seen;
+    std::set<std::pair<int, int>> seen; // what moves, what rests
+    std::set<int> moved;
     for (const Stage& stage : model.loads.stages) {
-        if (!stage.motion || !seen.insert(stage.motion->boundary).second) continue;
+        if (!stage.motion) continue;
+        const int rest = resting_boundary(model.system, *stage.motion);
+        if (!seen.emplace(stage.motion->boundary, rest).second) continue;
         warn_of_fixed_platen(*stage.motion, model);
         warn_of_uneven_platen(*stage.motion, model);
-        warn_of_narrow_platen(stage.motion->boundary, model);
+        if (moved.insert(stage.motion->boundary).second) {
+            warn_of_narrow_platen(stage.motion->boundary, model);
+            continue;
+        }
+        model.warnings.push_back(fmt::format("what rests while the platen on '{}' moves changes from stage to stage: "
+                                             "the axial strain is measured against what "
+                                             "rests in the first of them",
+                                             model.system.boundaries[stage.motion->boundary].name));
     }
 }
 

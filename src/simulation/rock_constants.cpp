@@ -33,9 +33,10 @@ std::vector<std::string> supports_that_hold(const Model& model, const PlatenMoti
         if (i == moved || i == opposite || support == Support::none) continue;
         const Vec2 own = boundary_frame(system, i).normal;
         const bool is_square = std::abs(own.dot(normal)) < square_to;
+        const bool leaves_along = support == Support::smooth || support == Support::pinned;
         if (support == Support::smooth && is_square)
             smooth_sides[own.dot(across) > 0.0 ? 0 : 1].push_back(quoted_name(model, i));
-        else if (support != Support::smooth || std::abs(own.dot(across)) >= square_to)
+        else if (!leaves_along || std::abs(own.dot(across)) >= square_to)
             holding.push_back(quoted_name(model, i));
     }
     if (!smooth_sides[0].empty() && !smooth_sides[1].empty())

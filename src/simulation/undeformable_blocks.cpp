@@ -34,8 +34,12 @@ std::vector<int> undeformable_blocks(const Model& model) {
     std::set<int> found;
     for (const Stage& stage : model.loads.stages) {
         const StageLoads loads(model, rest, stage);
+        const auto is_moved = [&](int row) { // a platen that moves strains it
+            return stage.motion && loads.constraints().rows()[row].boundary == stage.motion->boundary;
+        };
         for (const ConstrainedBlock& each : loads.constraints().blocks())
-            if (!system.blocks[each.block].fixed && prevents_strain(each)) found.insert(each.block);
+            if (!system.blocks[each.block].fixed && prevents_strain(each) && std::ranges::none_of(each.rows, is_moved))
+                found.insert(each.block);
     }
     return {found.begin(), found.end()};
 }

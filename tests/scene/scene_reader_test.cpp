@@ -15,7 +15,6 @@ namespace kluft {
 namespace {
 
 using testing::AllOf;
-using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -286,23 +285,17 @@ TEST(SceneReader, TensileStrengthIsCappedAtTheApexWithAWarning) {
                          "1e+06 Pa is above cohesion cot(friction_angle), taken as 100000 Pa"));
 }
 
-/// Of the full scene, whose clay is soft beside its rock and whose net ends at a region, without either.
-std::vector<std::string> warnings_of_full_scene(std::vector<std::string> overrides = {}) {
-    overrides.insert(overrides.end(), {"materials.clay.youngs_modulus=30 GPa", "geometry.tessellation.region=null"});
-    return read_scene_text(test::full_scene, overrides).warnings;
-}
-
 TEST(SceneReader, WarnsOfWhatHasNoEffect) {
-    EXPECT_THAT(warnings_of_full_scene(), IsEmpty());
-    EXPECT_THAT(warnings_of_full_scene({"interfaces.bond.contact_rounding=1 kPa"}),
+    EXPECT_THAT(read_scene_text(test::full_scene).warnings, IsEmpty());
+    EXPECT_THAT(read_scene_text(test::full_scene, {"interfaces.bond.contact_rounding=1 kPa"}).warnings,
                 ElementsAre(HasSubstr("no effect on a potential crack")));
-    EXPECT_THAT(warnings_of_full_scene({"stages.0.pressure.left=1 kPa"}),
+    EXPECT_THAT(read_scene_text(test::full_scene, {"stages.0.pressure.left=1 kPa"}).warnings,
                 ElementsAre(HasSubstr("no effect where the boundary is supported")));
-    EXPECT_THAT(warnings_of_full_scene({"geometry.fractures.0.trace=[[30, 0], [40, 1]]"}),
+    EXPECT_THAT(read_scene_text(test::full_scene, {"geometry.fractures.0.trace=[[30, 0], [40, 1]]"}).warnings,
                 ElementsAre(HasSubstr("main lies outside the domain")));
-    EXPECT_THAT(warnings_of_full_scene({"geometry.blocks_interface=joint"}),
+    EXPECT_THAT(read_scene_text(test::full_scene, {"geometry.blocks_interface=joint"}).warnings,
                 ElementsAre(AllOf(HasSubstr("geometry.blocks_interface"), HasSubstr("has no effect"))));
-    EXPECT_THAT(warnings_of_full_scene({"cracks.strength_noise=0", "cracks.strength_seed=3"}),
+    EXPECT_THAT(read_scene_text(test::full_scene, {"cracks.strength_noise=0", "cracks.strength_seed=3"}).warnings,
                 ElementsAre(AllOf(HasSubstr("cracks.strength_seed"), HasSubstr("has no effect"))));
 }
 

@@ -13,6 +13,7 @@
 
 #include "kluft/core/units.hpp"
 #include "kluft/kinematics/affine.hpp"
+#include "kluft/simulation/fingerprint.hpp"
 #include "support/scene_run.hpp"
 
 namespace kluft {
@@ -344,6 +345,8 @@ TEST(StageLoads, TheSceneSaysWhatRestsOnAFixedPlaten) {
     EXPECT_EQ(resting(", against: low"), 2);
     for (const char* wrong : {"pushed", "lwo"})
         EXPECT_THROW((void)shear_box(sides, fmt::format(", against: {}", wrong), 0.0), InputError) << wrong;
+    const auto print_of = [&](const std::string& motion) { return fingerprint(shear_box(sides, motion, 0.0)); };
+    EXPECT_NE(print_of(", against: low"), print_of(", against: none")); // a run goes on with its own only
 }
 
 // What a platen braces that was only named carried 276 MN/m of a dam's thrust in place of 0.907.

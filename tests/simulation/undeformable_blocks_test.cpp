@@ -53,6 +53,23 @@ TEST(UndeformableBlocks, AreThoseWhoseHeldCornersDoNotLieInOneLine) {
     EXPECT_THAT(of(0.0, all_sides("fixed", "smooth")), IsEmpty()); // it still shortens between its walls
 }
 
+// One block between smooth walls on a smooth floor has the strain that its platen prescribes, and 24 MPa.
+TEST(UndeformableBlocks, AreNotThoseThatAPlatenStrains) {
+    const auto warnings = [](const std::string& platens) {
+        return build_scene_model(read_scene_text(fmt::format(R"(
+kluft: 1
+materials: {{rock: {{density: 2650, youngs_modulus: 20 GPa, poissons_ratio: 0.25}}}}
+geometry: {{domain: {{rectangle: {{width: 1, height: 1}}}}}}
+boundaries: {{bottom: {{support: smooth}}, left: {{support: smooth}}, right: {{support: smooth}}}}
+stages: [{{strain: {{boundary: top, value: 0.1 %}}, platens: {}}}]
+)",
+                                                             platens)))
+            .model.warnings;
+    };
+    EXPECT_THAT(warnings("smooth"), Not(Contains(HasSubstr("cannot deform"))));
+    EXPECT_THAT(warnings("rough"), Not(Contains(HasSubstr("cannot deform"))));
+}
+
 // The block below the joint has 62.5 of 102.5 m2 and its middle at x = 5; its stress stays 0 under 5 MPa.
 TEST(UndeformableBlocks, AreToldOfWithTheirShareOfTheArea) {
     const SceneRun run = run_scene(body_on_a_bent_floor(-0.5, all_sides("fixed", "none")));

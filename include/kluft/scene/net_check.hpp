@@ -2,7 +2,10 @@
 #pragma once
 
 #include <set>
+#include <string>
+#include <vector>
 
+#include "kluft/blocks/block_system.hpp"
 #include "kluft/scene/reading_context.hpp"
 #include "kluft/scene/scene.hpp"
 
@@ -19,5 +22,9 @@ std::set<int> require_stiffness_of_joints(const SceneSection& root, const Scene&
 /// material of the body as it is given; and potential cracks of a net of interlocking cells that fail to a joint whose
 /// friction lets the cells lock.
 void warn_of_net(const SceneSection& root, const Scene& scene, ReadingContext& context);
+
+/// Warnings of a body that is cut: cells of materials so soft beside the stiffest that their k_n d/E is above the good range; and rock that
+/// lies outside the region of the net.
+[[nodiscard]] std::vector<std::string> warnings_of_cut_net(const Scene& scene, const BlockSystem& system);
 
 } // namespace kluft
