@@ -57,7 +57,8 @@ TEST(Outline, SidesAtExactly45DegreesFaceTopOrBottom) {
     EXPECT_TRUE(sides_facing(diamond, Facing::left).empty());
     // wherever the body lies: 2096 of 10 000 places in steps of 0.1 m made this slope one that faces left
     for (int i = 0; i < 2000; ++i) {
-        const Vec2 moved(0.1 * i, 0.1 * (i / 7));
+        const int row = i / 7;
+        const Vec2 moved(0.1 * i, 0.1 * row);
         Polygon slope{{0.0, 0.0}, {20.0, 0.0}, {20.0, 10.3}, {15.2, 10.3}, {8.4, 3.5}, {0.0, 3.5}};
         for (Vec2& corner : slope) corner += moved;
         EXPECT_EQ(sides_facing(slope, Facing::left), std::vector<int>{5}) << moved.transpose();

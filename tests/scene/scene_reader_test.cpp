@@ -281,8 +281,8 @@ TEST(SceneReader, TensileStrengthIsCappedAtTheApexWithAWarning) {
                                         {"materials.clay.friction_angle=45", "materials.clay.tensile_strength=1 MPa"});
     EXPECT_NEAR(scene.materials[1].strength->tensile_strength, 0.1e6, 1e-6);
     EXPECT_THAT(scene.warnings,
-                Contains("--set materials.clay.tensile_strength=1 MPa: materials.clay.tensile_strength: "
-                         "1e+06 Pa is above cohesion cot(friction_angle), taken as 100000 Pa"));
+                ElementsAre("--set materials.clay.tensile_strength=1 MPa: materials.clay.tensile_strength: "
+                            "1e+06 Pa is above cohesion cot(friction_angle), taken as 100000 Pa"));
 }
 
 TEST(SceneReader, WarnsOfWhatHasNoEffect) {

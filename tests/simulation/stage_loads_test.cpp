@@ -323,7 +323,8 @@ TEST(StageLoads, AFixedPlatenLiesOnTheFirstOfSeveralThatFaceTheMovedOne) {
     const std::string high = "high: {sides: [2]}";
     for (const double turned : {0.0, 10.0, 20.0, 30.0, 53.0, 60.0, 135.0, 180.0, 200.0}) {
         for (const bool low_first : {true, false}) {
-            const Model model = shear_box(low_first ? low + ", " + high : high + ", " + low, "", turned);
+            const std::string sides = low_first ? fmt::format("{}, {}", low, high) : fmt::format("{}, {}", high, low);
+            const Model model = shear_box(sides, "", turned);
             const PlatenMotion& motion = *model.loads.stages[0].motion;
             EXPECT_EQ(model.system.boundaries[resting_boundary(model.system, motion)].name, low_first ? "low" : "high")
                 << turned;
