@@ -100,7 +100,7 @@ int opposite_boundary(const BlockSystem& system, int boundary) {
 }
 
 int resting_boundary(const BlockSystem& system, const PlatenMotion& motion) {
-    return motion.against.value_or(opposite_boundary(system, motion.boundary));
+    return motion.against ? *motion.against : opposite_boundary(system, motion.boundary);
 }
 
 Vec2 mean_position(const BlockSystem& system, int boundary) {

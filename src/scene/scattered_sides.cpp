@@ -37,9 +37,9 @@ std::vector<ChainOfSides> chains_of(const Polygon& outline, const std::vector<in
     const auto n = static_cast<int>(outline.size());
     const auto is_taken = [&](int side) { return std::ranges::binary_search(sides, (side + n) % n); };
     for (const int first : sides) {
-        if (is_taken(first - 1) && static_cast<int>(sides.size()) < n) continue;
+        if (is_taken(first - 1)) continue;
         ChainOfSides& chain = chains.emplace_back();
-        for (int side = first; is_taken(side) && side < first + n; ++side) {
+        for (int side = first; is_taken(side); ++side) {
             const Vec2 start = start_of(outline, side % n);
             const Vec2 end = end_of(outline, side % n);
             const double length = (end - start).norm();
@@ -89,11 +89,13 @@ std::vector<std::string> scattered_sides(const Scene& scene) {
     const auto holds = [&](int i) {
         return i < static_cast<int>(scene.loads.supports.size()) && scene.loads.supports[i] != Support::none;
     };
-    std::size_t n_loaded = 0; // sides of the outline
+    const auto n_sides = static_cast<int>(geometry.domain.size()); // those of holes come after them
+    std::ptrdiff_t n_loaded = 0;
     for (int i = 0; i < n; ++i)
         if (holds(i) || presses(scene.loads, i))
-            n_loaded += geometry.boundaries[static_cast<std::size_t>(i)].sides.size();
-    if (n_loaded >= geometry.domain.size()) return {}; // all around it is meant so
+            n_loaded += std::ranges::count_if(geometry.boundaries[static_cast<std::size_t>(i)].sides,
+                                              [&](int side) { return side < n_sides; });
+    if (n_loaded >= n_sides) return {}; // all around it is meant so
     std::vector<std::string> found;
     for (int i = 0; i < n; ++i) {
         const BoundarySides& boundary = geometry.boundaries[static_cast<std::size_t>(i)];

@@ -1,7 +1,6 @@
 #include "kluft/scene/scene_account.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <string_view>
 #include <utility>
 
@@ -13,6 +12,7 @@
 #include "kluft/constitutive/lattice_stiffness.hpp"
 #include "kluft/core/place_text.hpp"
 #include "kluft/core/units.hpp"
+#include "kluft/geometry/polygon.hpp"
 #include "kluft/kinematics/affine.hpp"
 #include "kluft/loading/boundary_geometry.hpp"
 
@@ -109,21 +109,13 @@ std::string_view support_text(Support support) {
 }
 
 /// Where the sides of a boundary lie, in coordinates of the scene (m).
-struct BoundaryExtent {
-    Vec2 lower = Vec2::Constant(std::numeric_limits<double>::infinity());
-    Vec2 upper = -lower;
-};
-
-BoundaryExtent extent_of(const BlockSystem& system, const Boundary& boundary) {
-    BoundaryExtent extent;
+Box extent_of(const BlockSystem& system, const Boundary& boundary) {
+    std::vector<Vec2> ends;
     for (const auto& [block, e] : boundary.edges) {
         const Edge& edge = system.blocks[block].edges[e];
-        for (const Vec2& at : {edge_start(system, edge), edge_end(system, edge)}) {
-            extent.lower = extent.lower.cwiseMin(system.origin + at);
-            extent.upper = extent.upper.cwiseMax(system.origin + at);
-        }
+        ends.insert(ends.end(), {system.origin + edge_start(system, edge), system.origin + edge_end(system, edge)});
     }
-    return extent;
+    return ends.empty() ? Box{} : bounding_box(ends);
 }
 
 void say_boundaries(const Model& model, Lines& lines) {
@@ -133,7 +125,7 @@ void say_boundaries(const Model& model, Lines& lines) {
     for (int i = 0; i < std::min(n, most_listed); ++i) {
         const BoundaryFrame frame = boundary_frame(system, i);
         const Vec2 normal = frame.normal + Vec2::Zero(); // no -0
-        const BoundaryExtent extent = extent_of(system, system.boundaries[i]);
+        const Box extent = extent_of(system, system.boundaries[i]);
         const std::string facing =
             frame.normal.isZero() ? "all around" : fmt::format("facing ({:.3g}, {:.3g})", normal.x(), normal.y());
         lines.push_back(
@@ -305,7 +297,7 @@ std::string json_of(const SceneAccount& account, const Scene& scene, const Scene
     const Model& model = built.model;
     for (std::size_t i = 0; i < model.system.boundaries.size(); ++i) {
         const BoundaryFrame frame = boundary_frame(model.system, static_cast<int>(i));
-        const BoundaryExtent extent = extent_of(model.system, model.system.boundaries[i]);
+        const Box extent = extent_of(model.system, model.system.boundaries[i]);
         json["boundaries"].push_back({{"name", model.system.boundaries[i].name},
                                       {"length", frame.length},
                                       {"normal", {frame.normal.x() + 0.0, frame.normal.y() + 0.0}}, // no -0

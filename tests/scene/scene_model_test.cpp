@@ -130,6 +130,13 @@ TEST(SceneModel, WarnsOfSupportsOnTheFaceOfASlope) {
         Contains(HasSubstr("'bottom' also holds sides around (2, 5), 5 m behind")));
     EXPECT_THAT(warnings_of_outline(cliff, "{bottom: {support: fixed}}", "{left: 1 MPa, right: 1 MPa, top: 1 MPa}"),
                 IsEmpty()); // all around
+    const std::string with_hole = "[[0, 0], [20, 0], [20, 10], [8, 10], [8, 3], [0, 3]], holes: [{polygon: [[14, 4], "
+                                  "[16, 4], [16, 6], [14, 6]]}]";
+    EXPECT_THAT(warnings_of_outline(
+                    with_hole,
+                    "{bottom: {sides: [0], support: fixed}, left: {facing: left, support: smooth}, wall: {hole: 0}}",
+                    "{wall: 1 MPa}"),
+                told); // the wall has four sides, and the outline three free ones
     // a side that is not quite straight is one side
     EXPECT_THAT(warnings_of_outline("[[0, 0], [10, 0], [10, 10], [0, 10], [0.1, 6], [0, 5.95], [0, 3]]",
                                     "{bottom: {support: fixed}, left: {support: smooth}}"),

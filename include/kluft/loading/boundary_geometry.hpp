@@ -21,7 +21,7 @@ struct BoundaryFrame {
 };
 [[nodiscard]] BoundaryFrame boundary_frame(const BlockSystem& system, int boundary);
 
-/// The boundaries whose normals are most opposite to that of `boundary`, to round-off, in their order; none if no boundary faces the
+/// The boundaries whose normals are most opposite to that of `boundary`, within 1e-6 of the cosine, in their order; none if no boundary faces the
 /// other way within 60 degrees.
 [[nodiscard]] std::vector<int> opposite_boundaries(const BlockSystem& system, int boundary);
 /// The first of them; -1 if there is none.
