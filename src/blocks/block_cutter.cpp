@@ -906,7 +906,7 @@ CutBody cut(const GeometrySpec& spec, ExactCells exact) {
 }
 
 CutBody body_of(const GeometrySpec& spec, ExactCells exact) {
-    CutBody body = spec.blocks.empty() ? cut(spec, exact) : CutBody{assemble_blocks(spec), {}};
+    CutBody body = spec.blocks.empty() ? cut(spec, exact) : assemble_blocks(spec);
     measure(body.system, body.report);
     return_freed_memory(); // a multiple of what the body needs, which the run would otherwise not get
     return body;

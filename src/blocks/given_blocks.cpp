@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "kluft/blocks/block_search.hpp"
+#include "kluft/blocks/open_joint.hpp"
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/geometry/polygon.hpp"
 #include "kluft/geometry/predicates.hpp"
@@ -58,16 +59,19 @@ struct Side {
     int start = 0;
     int end = 0;
     std::vector<int> splits{};
+    std::vector<std::pair<double, double>> inner{}; ///< parts in open joints, along it (m)
 };
 
 class Assembly {
 public:
     explicit Assembly(const GeometrySpec& spec) : spec_(spec) {}
 
-    BlockSystem build() {
+    CutBody build() {
         check_polygons();
         place_vertices();
         split_sides();
+        leave_out_open_joints();
+        sort_splits();
         add_blocks();
         refuse_overlaps();
         join_interfaces();
@@ -75,7 +79,7 @@ public:
         form_sets(spec_, system_);
         measure_spacing();
         if (system_.n_blocks() > 1) system_.outline_type = spec_.blocks_interface;
-        return std::move(system_);
+        return {.system = std::move(system_), .report = std::move(report_)};
     }
 
 private:
@@ -99,11 +103,11 @@ private:
         const double farthest = box.lower.cwiseAbs().maxCoeff() + system_.upper.maxCoeff();
         tolerance_ =
             std::max(same_place * system_.upper.norm(), 16.0 * std::numeric_limits<double>::epsilon() * farthest);
-        PointIndex index(tolerance_);
+        index_.emplace(tolerance_);
         for (std::size_t b = 0; b < spec_.blocks.size(); ++b) {
             const Polygon& polygon = spec_.blocks[b].polygon;
             std::vector<int> corners;
-            for (const Vec2& p : polygon) corners.push_back(index.add(p - system_.origin, system_.vertices));
+            for (const Vec2& p : polygon) corners.push_back(index_->add(p - system_.origin, system_.vertices));
             for (std::size_t i = 0; i < corners.size(); ++i)
                 sides_.push_back({static_cast<int>(b), corners[i], corners[(i + 1) % corners.size()]});
         }
@@ -129,6 +133,9 @@ private:
             for (const int t : grid.near(box))
                 if (t > s && sides_[t].block != sides_[s].block) split_pair(sides_[s], sides_[t]);
         }
+    }
+
+    void sort_splits() {
         for (Side& side : sides_) {
             const Vec2 direction = along(side);
             std::ranges::sort(side.splits, {},
@@ -160,6 +167,59 @@ private:
                         spec_.places.blocks, name(a), name(b), place.x(), place.y()));
     }
 
+    /// Boundaries of all blocks have only what lies outside: their sides are split at the ends of open joints.
+    void leave_out_open_joints() {
+        boundary_ = boundary_of_sides();
+        std::vector<SegmentGrid::Segment> segments;
+        std::vector<SideOfBlock> sides;
+        for (const Side& side : sides_) {
+            segments.emplace_back(at(side.start), at(side.end));
+            sides.push_back({at(side.start), at(side.end), side.block});
+        }
+        std::vector<double> sizes;
+        for (const GivenBlock& block : spec_.blocks) sizes.push_back(std::sqrt(signed_area(block.polygon)));
+        const SegmentGrid grid(segments);
+        std::vector<char> asked;
+        for (int s = 0; s < static_cast<int>(sides.size()); ++s) {
+            const int boundary = boundary_[s];
+            if (boundary < 0 || !spec_.boundaries[boundary].block.empty()) continue;
+            Box box = bounding_box({sides[s].start, sides[s].end});
+            const double reach = reach_of_open_joints(sizes[sides[s].block]);
+            box.lower.array() -= reach;
+            box.upper.array() += reach;
+            for (const CoveredPart& part : covered_parts(sides, s, grid.near(box, asked), sizes, tolerance_))
+                leave_out(s, part);
+        }
+    }
+
+    /// Where two blocks touch they share an edge, which belongs to no boundary anyway: only strips beside it are left out.
+    void leave_out(int s, const CoveredPart& part) {
+        const bool is_open = part.gap > tolerance_;
+        if (!is_open && part.strips <= shortest_shared * tolerance_) return;
+        Side& side = sides_[s];
+        const Vec2 start = at(side.start);
+        const Vec2 direction = along(side).normalized();
+        const double length = along(side).norm();
+        for (const double end : {part.from, part.to}) {
+            if (end <= tolerance_ || length - end <= tolerance_) continue;
+            side.splits.push_back(index_->add(start + end * direction, system_.vertices));
+        }
+        side.inner.emplace_back(part.from, part.to);
+        report_.inner_sides.push_back({.boundary = boundary_[s],
+                                       .block = side.block,
+                                       .other = part.other,
+                                       .gap = is_open ? part.gap : 0.0,
+                                       .length = is_open ? part.to - part.from : part.strips,
+                                       .at = system_.origin + start + 0.5 * (part.from + part.to) * direction});
+    }
+
+    /// Whether a point on the side lies in an open joint.
+    [[nodiscard]] bool is_inner(const Side& side, const Vec2& p) const {
+        const double distance = (p - at(side.start)).norm();
+        return std::ranges::any_of(side.inner,
+                                   [&](const auto& part) { return part.first <= distance && distance <= part.second; });
+    }
+
     void add_blocks() {
         for (const GivenBlock& given : spec_.blocks) {
             Block block;
@@ -169,13 +229,13 @@ private:
             system_.blocks.push_back(std::move(block));
             system_.block_names.push_back(given.name);
         }
-        const std::vector<int> boundary = boundary_of_sides();
         for (std::size_t s = 0; s < sides_.size(); ++s) {
             const Side& side = sides_[s];
             Block& block = system_.blocks[side.block];
             int from = side.start;
             const auto add_edge = [&](int to) {
-                block.edges.push_back({.start = from, .end = to, .interface = -1, .boundary = boundary[s]});
+                const int boundary = is_inner(side, 0.5 * (at(from) + at(to))) ? -1 : boundary_[s];
+                block.edges.push_back({.start = from, .end = to, .interface = -1, .boundary = boundary});
                 from = to;
             };
             for (const int v : side.splits) add_edge(v);
@@ -335,12 +395,15 @@ private:
 
     const GeometrySpec& spec_;
     double tolerance_ = 0.0;
-    std::vector<Side> sides_; ///< of all polygons, one after the other
+    std::optional<PointIndex> index_; ///< of the vertices
+    std::vector<Side> sides_;         ///< of all polygons, one after the other
+    std::vector<int> boundary_;       ///< of each side; -1 for none
     BlockSystem system_;
+    CutReport report_;
 };
 
 } // namespace
 
-BlockSystem assemble_blocks(const GeometrySpec& spec) { return Assembly(spec).build(); }
+CutBody assemble_blocks(const GeometrySpec& spec) { return Assembly(spec).build(); }
 
 } // namespace kluft

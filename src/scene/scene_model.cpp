@@ -4,6 +4,8 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
+#include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -258,6 +260,31 @@ std::vector<std::string> necks(const GeometrySpec& geometry, const BlockSystem& 
         found.size() > 1 ? fmt::format(", one of {} such blocks", found.size()) : "")};
 }
 
+/// What boundaries of all given blocks leave out inside the body.
+std::vector<std::string> open_joints(const GeometrySpec& geometry, const BlockSystem& system, const CutReport& report) {
+    if (report.inner_sides.empty()) return {};
+    std::map<int, double> left_out; // by boundary (m)
+    std::set<std::pair<int, int>> pairs;
+    for (const InnerSide& side : report.inner_sides) {
+        left_out[side.boundary] += side.length;
+        pairs.insert(std::minmax(side.block, side.other));
+    }
+    std::vector<std::string> lengths;
+    for (const auto& [boundary, length] : left_out)
+        lengths.push_back(fmt::format("'{}' ({:.3g} m)", system.boundaries[boundary].name, length));
+    const InnerSide& widest = *std::ranges::max_element(report.inner_sides, {}, &InnerSide::gap);
+    const std::string others = pairs.size() > 1 ? fmt::format(", one of {} such pairs", pairs.size()) : "";
+    return {fmt::format(
+        "{}: blocks {} and {} {} at {}{}: their sides there lie in an open joint and not on the outside of the body, "
+        "and "
+        "are left out of {}; coordinates that agree close a joint, and a boundary with `block` has the sides of its "
+        "block as they are",
+        geometry.places.blocks, block_label(system, widest.block), block_label(system, widest.other),
+        widest.gap > 0.0 ? fmt::format("are up to {:.2g} m apart", widest.gap)
+                         : "share an edge, and their corners beside it do not meet,",
+        place_text(widest.at), others, fmt::join(lengths, ", "))};
+}
+
 /// The blocks of the scene's body.
 CutBody cut_body(const Scene& scene) {
     try {
@@ -300,7 +327,7 @@ SceneModel build_scene_model(const Scene& scene) {
           small_reference(scene.geometry, built.model.system), slivers(scene.geometry, built.model.system),
           necks(scene.geometry, built.model.system), bare_net(scene.geometry, built.model.system),
           empty_regions(scene.geometry, built.model.system), scattered_sides(scene),
-          warnings_of_cut_net(scene, built.model.system),
+          open_joints(scene.geometry, built.model.system, built.cut), warnings_of_cut_net(scene, built.model.system),
           coarse_places(scene.geometry, built.cut, scene.interface_types)})
         built.model.warnings.insert(built.model.warnings.end(), warnings.begin(), warnings.end());
     require_memory();

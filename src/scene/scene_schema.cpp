@@ -606,12 +606,16 @@ std::vector<KeyRule> loading_rules() {
         {.path = "boundaries",
          .type = KeyType::named,
          .fallback_note = "free outline",
-         .doc = "Named parts of the outline. A rectangle has `bottom`, `right`, `top`, `left`, and here they only get "
-                "supports. Any other domain has the same four (each side belongs to the direction that its outward "
-                "normal points to, within 45 degrees) unless a boundary here has `sides` or `facing`; then exactly "
-                "the boundaries given here exist, and sides in none of them are free. Walls of holes are boundaries "
-                "where one here has `hole`. `kluft check` lists them. Of given blocks the same holds "
-                "for all sides, of which the parts that no other block shares belong to the boundary."},
+         .doc =
+             "Named parts of the outline. A rectangle has `bottom`, `right`, `top`, `left`, and here they only get "
+             "supports. Any other domain has the same four (each side belongs to the direction that its outward "
+             "normal points to, within 45 degrees) unless a boundary here has `sides` or `facing`; then exactly "
+             "the boundaries given here exist, and sides in none of them are free. Walls of holes are boundaries "
+             "where one here has `hole`. `kluft check` lists them. Of given blocks the same holds "
+             "for all sides, of which the parts that no other block shares belong to the boundary; and of a boundary "
+             "without a `block` none that has another block straight before it, within 5 % of the smaller one's size "
+             "(the square root of its area), nor what juts out by 1 % of it beside such a part or a shared edge. A "
+             "warning says what was left out."},
         {.path = "boundaries.*", .type = KeyType::mapping, .doc = "One boundary."},
         {.path = "boundaries.*.support",
          .type = KeyType::choice,

@@ -176,6 +176,74 @@ TEST(GivenBlocks, BoundariesHaveTheFreePartsOfTheirSides) {
     EXPECT_THAT(refusal(spec), AllOf(HasSubstr("boundaries.foot"), HasSubstr("'column'")));
 }
 
+/// Length of a boundary on a block (m).
+double length_on(const BlockSystem& system, int boundary, int block) {
+    double sum = 0.0;
+    for (const auto& [b, e] : system.boundaries[boundary].edges) {
+        const Edge& edge = system.blocks[b].edges[e];
+        if (b == block) sum += (edge_end(system, edge) - edge_start(system, edge)).norm();
+    }
+    return sum;
+}
+
+// A column of 1 m on a base of 4 m whose coordinates miss it by 1 mm.
+TEST(GivenBlocks, BoundariesOfAllOfThemLeaveOutOpenJoints) {
+    GeometrySpec spec = spec_of({{"base", rectangle_at(0, 0, 4, 1)}, {"column", rectangle_at(1, 1.001, 1, 2)}});
+    spec.boundaries = {{"bottom", {0, 4}}, {"top", {2, 6}}};
+    const CutBody body = cut_blocks(spec);
+    EXPECT_DOUBLE_EQ(length_on(body.system, 0, 0), 4.0);
+    EXPECT_EQ(length_on(body.system, 0, 1), 0.0) << "its underside";
+    EXPECT_DOUBLE_EQ(length_on(body.system, 1, 0), 3.0) << "beside the column";
+    EXPECT_DOUBLE_EQ(length_on(body.system, 1, 1), 1.0);
+    EXPECT_THAT(check_block_system(body.system), IsEmpty());
+    ASSERT_EQ(body.report.inner_sides.size(), 2U);
+    const InnerSide& below = body.report.inner_sides[0];
+    EXPECT_EQ(below.boundary, 1);
+    EXPECT_EQ(below.block, 0);
+    EXPECT_EQ(below.other, 1);
+    EXPECT_NEAR(below.gap, 0.001, 1e-12);
+    EXPECT_DOUBLE_EQ(below.length, 1.0);
+    EXPECT_NEAR((below.at - Vec2(1.5, 1.0)).norm(), 0.0, 1e-12);
+}
+
+TEST(GivenBlocks, ABoundaryOfOneOfThemHasItsSidesAsTheyAre) {
+    GeometrySpec spec = spec_of({{"base", rectangle_at(0, 0, 4, 1)}, {"column", rectangle_at(1, 1.001, 1, 2)}});
+    spec.boundaries = {{"foot", {4}, "column"}, {"bed", {2}, "base"}};
+    const CutBody body = cut_blocks(spec);
+    EXPECT_DOUBLE_EQ(length_on(body.system, 0, 1), 1.0);
+    EXPECT_DOUBLE_EQ(length_on(body.system, 1, 0), 4.0);
+    EXPECT_THAT(body.report.inner_sides, IsEmpty());
+}
+
+TEST(GivenBlocks, OverhangsOpeningsAndNeighboursOnOneLineBelongToTheOutside) {
+    // a lintel of 3 m on two posts, an opening of 0.5 m below it; the posts stand 1 m apart
+    GeometrySpec spec = spec_of({{"left", rectangle_at(0, 0, 1, 0.5)},
+                                 {"right", rectangle_at(2, 0, 1, 0.5)},
+                                 {"lintel", rectangle_at(0, 0.5, 3, 1)},
+                                 {"beside", rectangle_at(3, 0.5, 1, 1)}});
+    spec.boundaries = {{"bottom", {0, 4, 8, 12}}, {"top", {2, 6, 10, 14}}};
+    const CutBody body = cut_blocks(spec);
+    EXPECT_DOUBLE_EQ(length_on(body.system, 0, 0), 1.0);
+    EXPECT_DOUBLE_EQ(length_on(body.system, 0, 2), 1.0) << "the roof of the opening";
+    EXPECT_DOUBLE_EQ(length_on(body.system, 0, 3), 1.0) << "an overhang";
+    EXPECT_DOUBLE_EQ(length_on(body.system, 1, 2), 3.0);
+    EXPECT_DOUBLE_EQ(length_on(body.system, 1, 3), 1.0);
+    EXPECT_THAT(body.report.inner_sides, IsEmpty());
+}
+
+// The upper of two blocks that touch is 3 mm wider: its overhang would hold it.
+TEST(GivenBlocks, BoundariesLeaveOutStripsBesideASharedEdge) {
+    GeometrySpec spec = spec_of({{"lower", rectangle_at(0, 0, 1, 1)}, {"upper", rectangle_at(0, 1, 1.003, 1)}});
+    spec.boundaries = {{"bottom", {0, 4}}};
+    const CutBody body = cut_blocks(spec);
+    EXPECT_EQ(body.system.n_interfaces(), 1);
+    EXPECT_EQ(length_on(body.system, 0, 1), 0.0);
+    ASSERT_EQ(body.report.inner_sides.size(), 1U);
+    EXPECT_EQ(body.report.inner_sides[0].gap, 0.0);
+    EXPECT_NEAR(body.report.inner_sides[0].length, 0.003, 1e-12);
+    EXPECT_THAT(check_block_system(body.system), IsEmpty());
+}
+
 TEST(BlockSets, AreFormedByNameAndByPlace) {
     GeometrySpec spec =
         spec_of({{"a", rectangle_at(0, 0, 1, 1)}, {"b", rectangle_at(1, 0, 1, 1)}, {"c", rectangle_at(2, 0, 1, 1)}});

@@ -143,6 +143,38 @@ TEST(SceneModel, WarnsOfSupportsOnTheFaceOfASlope) {
                 Not(Contains(HasSubstr("each side of the outline belongs"))));
 }
 
+// The upper cube of two lies 3 mm above the lower one: a joint between them is meant, and none is there.
+TEST(SceneModel, WarnsOfSidesInOpenJointsThatBoundariesLeaveOut) {
+    const auto warnings = [](const std::string& upper, const std::string& boundaries) {
+        return build_scene_model(read_scene_text(fmt::format(R"(
+kluft: 1
+analysis: {{gravity: 9.81}}
+materials: {{rock: {{density: 2600, youngs_modulus: 20 GPa, poissons_ratio: 0.25}}}}
+interfaces: {{joint: {{kind: fracture, friction_angle: 30, normal_stiffness: 10 GPa/m, shear_stiffness: 10 GPa/m}}}}
+geometry:
+  blocks:
+    - {{name: lower, polygon: [[0, 0], [1, 0], [1, 1], [0, 1]]}}
+    - {{name: upper, polygon: {}}}
+boundaries: {}
+stages: [{{name: weight}}]
+)",
+                                                             upper, boundaries),
+                                                 {}, "scene.yaml"))
+            .model.warnings;
+    };
+    const std::string apart = "[[0, 1.003], [1, 1.003], [1, 2], [0, 2]]";
+    EXPECT_THAT(
+        warnings(apart, "{bottom: {support: fixed}}"),
+        Contains(AllOf(HasSubstr("scene.yaml:8:"), HasSubstr("'lower' and 'upper' are up to 0.003 m apart at (0.5, 1)"),
+                       HasSubstr("left out of 'bottom' (1 m), 'top' (1 m);"))));
+    EXPECT_THAT(warnings(apart, "{foot: {block: lower, facing: bottom, support: fixed}}"),
+                Not(Contains(HasSubstr("apart"))));
+    EXPECT_THAT(warnings("[[0, 1], [1, 1], [1, 2], [0, 2]]", "{bottom: {support: fixed}}"),
+                Not(Contains(HasSubstr("left out"))));
+    EXPECT_THAT(warnings("[[0, 1], [1.004, 1], [1.004, 2], [0, 2]]", "{bottom: {support: fixed}}"),
+                Contains(AllOf(HasSubstr("share an edge"), HasSubstr("left out of 'bottom' (0.004 m)"))));
+}
+
 TEST(SceneModel, WarnsOfFracturesThatAreNotLeft) {
     EXPECT_THAT(warnings_of({}), IsEmpty());
     EXPECT_THAT(warnings_of({"geometry.fractures.0.trace=[[0.3, 1], [0.306, 1]]"}),

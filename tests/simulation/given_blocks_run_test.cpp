@@ -191,6 +191,29 @@ TEST_P(GivenBlocksRun, PointForcesMakeTheStressOfAColumn) {
     EXPECT_NEAR(followed_last(pressed, "top.rotation"), 0.0, 1e-3 * tolerance());
 }
 
+// Half of its own weight and all of that above: (12.5 + 25) kPa, whether the two cubes share an edge or are 10 nm apart.
+TEST_P(GivenBlocksRun, TheUpperOfTwoCubesStandsOnTheLowerOneAcrossAGap) {
+    for (const char* gap : {"0", "1e-8"}) {
+        const auto stacked = run(fmt::format(R"(
+kluft: 1
+analysis: {{gravity: 10}}
+materials: {{rock: {{density: 2500, youngs_modulus: 10 GPa, poissons_ratio: 0.2}}}}
+interfaces: {{joint: {{kind: fracture, normal_stiffness: 100 GPa/m, shear_stiffness: 50 GPa/m, friction_angle: 30,
+                     contact_rounding: 0, friction_rounding: 0}}}}
+geometry:
+  blocks:
+    - {{name: lower, polygon: [[0, 0], [1, 0], [1, 1], [0, 1]]}}
+    - {{name: upper, polygon: [[0, {0:.9g}], [1, {0:.9g}], [1, 2], [0, 2]]}}
+boundaries: {{bottom: {{support: smooth}}}}
+stages: [{{name: weight}}]
+output: {{histories: {{lower: {{block: lower}}, upper: {{block: upper}}}}}}
+)",
+                                             1.0 + std::stod(gap)));
+        EXPECT_NEAR(followed_last(stacked, "lower.stress_yy"), 37.5e3, 37.5e3 * (tolerance() + 1e-7)) << gap;
+        EXPECT_NEAR(followed_last(stacked, "upper.stress_yy"), 12.5e3, 37.5e3 * (tolerance() + 1e-7)) << gap;
+    }
+}
+
 TEST_P(GivenBlocksRun, GravityInSeveralStagesEndsLikeGravityAtOnce) {
     const auto at_once = run(stack);
     const auto in_stages = run(stack, {"analysis.gravity=0", "stages=[{gravity: [0, -5], steps: 2}, {gravity: 9.81}]"});
@@ -221,6 +244,25 @@ output: {histories: {corner: {interface: [base, roof]}}}
 )");
     const double weight = 2000 * gravity;
     EXPECT_NEAR(followed_last(standing, "corner.normal_force"), weight, weight * std::max(1e-4, tolerance()));
+}
+
+// On a plane of 30 degrees with friction of 20 degrees: tan 20/tan 30 = 0.63. The coordinates are rounded to millimetres.
+TEST(GivenBlocks, ABlockWhoseCornersMissThePlaneByLittleSlides) {
+    const SceneRun slope = run_scene(R"(
+kluft: 1
+analysis: {gravity: 9.81}
+materials: {rock: {density: 2500, youngs_modulus: 10 GPa, poissons_ratio: 0.2}}
+interfaces: {joint: {kind: fracture, friction_angle: 20, normal_stiffness: 100 GPa/m, shear_stiffness: 50 GPa/m}}
+geometry:
+  reference_spacing: 1
+  blocks:
+    - {name: base, polygon: [[0, -1], [10, -1], [10, 5.774], [0, 0]]}
+    - {name: a, polygon: [[4, 2.310], [5.732, 3.310], [5.232, 4.175], [3.5, 3.175]]}
+boundaries: {bottom: {support: fixed}}
+stages: [{name: weight}, {name: reduce, strength_reduction: {to: 3}, steps: 10}]
+)");
+    EXPECT_NE(slope.report.status, RunStatus::done);
+    EXPECT_FALSE(slope.report.results.factor_of_safety.has_value());
 }
 
 TEST(Histories, FollowFracturesBondedOrNot) {

@@ -42,6 +42,17 @@ struct LoosePiece {
     double length = 0.0; ///< m
 };
 
+/// A part of a given block's side that a boundary of all blocks leaves out, since another block is straight before it.
+struct InnerSide {
+    int boundary = 0;
+    int block = 0;
+    int other = 0; ///< the block before it
+    double gap =
+        0.0; ///< the largest distance from that block (m); 0: they touch, and what is left out are strips beside it
+    double length = 0.0;    ///< left out (m)
+    Vec2 at = Vec2::Zero(); ///< its middle, scene coordinates (m)
+};
+
 /// What the cut had to mend and what came out.
 struct CutReport {
     struct Merged {
@@ -58,6 +69,7 @@ struct CutReport {
         pruned; ///< pieces of traces that separate nothing (dangling ends, isolated traces), the longest first
     std::vector<LostFracture> lost;
     std::vector<FineDetail> fine_details; ///< of a body with triangles
+    std::vector<InnerSide> inner_sides;   ///< of given blocks
     double resolution = 0.0;              ///< the smallest length that the cut resolves (m)
     double minimum_area = 0.0;            ///< the smallest piece that is a block of its own (m2)
     double minimum_width = 0.0;           ///< smallest width of a block, twice its area over its perimeter (m)
