@@ -851,7 +851,10 @@ std::vector<KeyRule> option_rules() {
          .type = KeyType::integer,
          .range = positive_integer,
          .fallback = "1",
-         .doc = "Load steps between two checks."},
+         .doc = "Load steps from one check to the next, of which each stage's last one has one, too. Between them no "
+                "potential "
+                "crack fails, whatever the stress: with more than 1 strengths come out too large by what the stresses "
+                "grow meanwhile, and a run says where that is more than 10 %."},
         {.path = "cracks.event_tolerance",
          .type = KeyType::number,
          .range = between_zero_and_one,

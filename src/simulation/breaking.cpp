@@ -37,7 +37,10 @@ std::vector<CrackCandidate> breaking(const StepGoal& goal, const std::vector<Cra
 void break_bonds(StepInProgress& p) {
     for (bool first = true; !p.failed(); first = false) {
         const auto& [placement, at] = p.step.in_place;
-        const auto broken = breaking(p.goal, candidates(p, placement, at, p.displacement()), first);
+        const auto all = candidates(p, placement, at, p.displacement());
+        if (p.step.cracks.empty() && p.step.jumps.empty())
+            p.step.checked_index = std::min(largest_useful_index, largest_index(all));
+        const auto broken = breaking(p.goal, all, first);
         if (broken.empty()) return;
         p.step.smooth = false;
         weaken_together(p.bench.model, broken, p.step.row.axial_strain, p.step);

@@ -79,6 +79,7 @@ void Journal::tell(const Step& step) {
 }
 
 void Journal::warn(const Step& step, int number) {
+    if (step.checked_index > largest_checked_.index) largest_checked_ = {step.checked_index, number};
     if (step.lost_contact.empty() || std::exchange(warned_of_lost_contact_, true)) return;
     report_.warnings.push_back(fmt::format("load step {}: a contact was lost, because {}", number, step.lost_contact));
 }

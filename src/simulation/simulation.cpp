@@ -104,6 +104,21 @@ void report_estimate(double accuracy, const State& state, RunReport& report) {
         100.0 * estimate, 100.0 * accuracy));
 }
 
+/// Potential cracks fail at a check only: what they carry beyond their criterion until then is strength that they do not have.
+void warn_of_late_checks(const CrackOptions& cracks, const Journal& journal, RunReport& report) {
+    constexpr double far_beyond = 1.1;
+    const bool by_every_event = cracks.update == CrackUpdate::event && cracks.every <= 1;
+    const auto [index, step] = journal.largest_checked();
+    if (by_every_event || index <= far_beyond) return;
+    report.warnings.push_back(fmt::format(
+        "load step {}: stresses reach {:.2g} times the strength of a potential crack{} before it is checked, since {}: "
+        "strengths of the body come out too large by up to that. {} finds where each crack fails",
+        step, index, index >= largest_useful_index ? " or more" : "",
+        cracks.every > 1 ? fmt::format("only one load step in {} checks them (cracks.every)", cracks.every)
+                         : "a load step checks them at its end (cracks.update)",
+        cracks.every > 1 ? "cracks.every: 1 with cracks.update: event" : "cracks.update: event"));
+}
+
 /// Of a search for the limit that was stopped: how far it had come. It claims no factor of safety.
 std::string standing_in_words(const Model& model, const State& state) {
     if (!model.loads.stages[state.at.stage].strength_reduction) return {};
@@ -158,6 +173,7 @@ RunReport run_simulation(const Model& model, const CrackOptions& cracks, const S
         }
     });
     if (report.status == RunStatus::interrupted) report.diagnosis = standing_in_words(model, state);
+    warn_of_late_checks(cracks, journal, report);
     if (solver.accuracy > 0.0) report_estimate(solver.accuracy, state, report);
     return report;
 }

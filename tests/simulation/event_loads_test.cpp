@@ -7,12 +7,18 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "support/scene_run.hpp"
 
 namespace kluft {
 namespace {
+
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 constexpr double strength = 1e6;         // tensile, Pa
 constexpr double event_tolerance = 2e-2; // default of cracks.event_tolerance
@@ -48,6 +54,28 @@ const std::vector<Loading> loadings{
     {"strain_of_a_platen", "bottom", "stages: [{{strain: {{boundary: top, value: -4e-4, glued: true}}, steps: {}}}]"},
     {"stress_of_a_platen", "bottom", "stages: [{{stress: {{boundary: top, value: -4 MPa, glued: true}}, steps: {}}}]"},
 };
+
+/// Of a specimen that stands without friction and is pulled by 4 MPa, in all of its bonds alike: f grows by 4 per load factor.
+std::vector<std::string> warnings_of_pull(int steps, const std::string& cracks) {
+    return run_scene(specimen("bottom") + fmt::format("stages: [{{pressure: {{top: -4 MPa}}, steps: {}}}]\n", steps),
+                     {"boundaries.bottom.support=pinned", "cracks=" + cracks})
+        .report.warnings;
+}
+
+// In 20 steps f grows by 0.2 in each: the seventh one is checked at 1.4. In three steps the first one is checked at 4/3.
+TEST(LateChecks, AreWarnedOfWithWhatStressesReachedBefore) {
+    EXPECT_THAT(warnings_of_pull(20, "{every: 7}"),
+                Contains(AllOf(HasSubstr("load step 7: stresses reach 1.4 times"), HasSubstr("cracks.every: 1"))));
+    EXPECT_THAT(warnings_of_pull(3, "{update: all}"),
+                Contains(AllOf(HasSubstr("load step 1: stresses reach 1.3 times"), HasSubstr("cracks.update: event"))));
+}
+
+TEST(LateChecks, AreNoneWhereEachEventIsFound) {
+    const auto late = Contains(HasSubstr("stresses reach"));
+    EXPECT_THAT(warnings_of_pull(20, "{every: 1}"), Not(late));
+    EXPECT_THAT(warnings_of_pull(3, "{update: event}"), Not(late));
+    EXPECT_THAT(warnings_of_pull(200, "{update: all}"), Not(late)) << "2 % beyond at most";
+}
 
 class FirstCrack : public ::testing::TestWithParam<std::tuple<Loading, std::string>> {
 protected:

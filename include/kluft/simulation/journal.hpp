@@ -67,8 +67,14 @@ public:
     void go_on_from(StepRecord row) { last_row_ = std::move(row); }
     /// Tells the equilibria, the cracks and the jumps of a step.
     void tell(const Step& step);
-    /// Keeps the warning of a load step with this number, the first of a run.
+    /// Keeps the warning of a load step with this number, the first of a run, and the largest index that one has checked.
     void warn(const Step& step, int number);
+    /// The largest failure index of potential cracks at the first check of a load step, and the number of that step.
+    struct CheckedIndex {
+        double index = 0.0;
+        int step = 0;
+    };
+    [[nodiscard]] const CheckedIndex& largest_checked() const { return largest_checked_; }
     /// Tells the row and the state of a committed load step.
     void tell_state(const StepRecord& row, const State& state, LoadedPlacement in_place, bool last_of_stage);
     /// Tells where a load step stands: at `load_factor` on its way from the state, `row` being the last equilibrium's.
@@ -85,6 +91,7 @@ private:
     Gauges gauges_;
     int n_steps_ = 0;
     bool warned_of_lost_contact_ = false;
+    CheckedIndex largest_checked_;
     StepRecord last_row_;
     RunReport report_;
     std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();

@@ -29,7 +29,9 @@ struct Step {
     bool balanced = true;     ///< all equilibria
     double worst_share = 0.0; ///< of the mass-like term, of all equilibria
     int crack_passes = 0;     ///< checks that made potential cracks fail
-    int worst_block = -1;     ///< of the last solve
+    double checked_index =
+        0.0;              ///< the largest failure index, up to 10, when the step first checked them; 0 after a jump
+    int worst_block = -1; ///< of the last solve
     std::vector<StepRecord> equilibria; ///< in order
     std::vector<CrackRecord> cracks;
     std::vector<JumpRecord> jumps;
