@@ -21,7 +21,10 @@ namespace kluft {
 
 namespace {
 
-constexpr double large_pull = 0.05; ///< of what acts on the piece
+constexpr double large_pull = 0.05;    ///< of what acts on the piece
+constexpr double large_turning = 0.01; ///< of the loads on the part
+constexpr double straight_enough =
+    1e-3; ///< how far the points of a straight support are beside its line, of its length
 
 /// Blocks that bonds hold together, and what acts on them (N/m).
 struct HeldPiece {
@@ -98,12 +101,98 @@ struct Pull {
     int block = -1;
 };
 
+bool has_platen(const Model& model) {
+    return std::ranges::any_of(model.loads.stages, [](const Stage& stage) { return stage.motion.has_value(); });
+}
+
+/// Blocks that bonds and closed contacts hold together, and what holds them from outside.
+struct JoinedPart {
+    double loads = 0.0; ///< magnitudes of weights, pressures and point forces (N/m)
+    int n_blocks = 0;
+    bool has_joint = false; ///< a closed contact
+    bool has_fixed_block = false;
+    std::vector<SupportForce> supports; ///< forces of the boundaries' supports
+};
+
+std::map<int, JoinedPart> joined_parts(const LoadedBody& body, const Eigen::VectorXd& q) {
+    const int n_blocks = body.system->n_blocks();
+    DisjointSets sets(n_blocks);
+    std::vector<char> has_joint(body.system->blocks.size(), 0);
+    for (const Bond& bond : body.placement->bonds) sets.join(bond.block_a, bond.block_b);
+    for (const ContactPoint& point : body.placement->contacts) {
+        if (contact_traction(*body.laws, point, q).state == ContactState::open) continue;
+        sets.join(point.block_a, point.block_b);
+        has_joint[point.block_a] = 1;
+    }
+    std::map<int, JoinedPart> parts;
+    const std::vector<double> loads = load_magnitudes(body, q);
+    for (int b = 0; b < n_blocks; ++b) {
+        JoinedPart& part = parts[sets.root(b)];
+        ++part.n_blocks;
+        part.loads += loads[b];
+        part.has_joint = part.has_joint || has_joint[b] != 0;
+        part.has_fixed_block = part.has_fixed_block || body.system->blocks[b].fixed;
+    }
+    for (const SupportForce& each : support_forces(body, q))
+        if (each.kind == SupportKind::support) parts[sets.root(each.block)].supports.push_back(each);
+    return parts;
+}
+
+/// What a support does on a part that it alone holds. Its points lie in one line, so that only the normal forces have a moment
+/// about a point of it.
+TurningPart turning(const BlockSystem& system, const JoinedPart& part) {
+    TurningPart none;
+    if (!part.has_joint || part.has_fixed_block || part.supports.empty()) return none;
+    const int boundary = part.supports.front().boundary;
+    Vec2 outward = Vec2::Zero();
+    for (const SupportForce& each : part.supports) {
+        if (each.boundary != boundary) return none;
+        outward += outward_normal(system, boundary, each.block);
+    }
+    outward = outward.stableNormalized();
+    const Vec2 along(-outward.y(), outward.x());
+    std::vector<double> places_along;
+    std::vector<double> places_out;
+    std::vector<double> pulls;
+    for (const SupportForce& each : part.supports) {
+        places_along.push_back(along.dot(each.place));
+        places_out.push_back(outward.dot(each.place));
+        pulls.push_back(outward.dot(each.force));
+    }
+    const auto [first, last] = std::ranges::minmax(places_along);
+    const auto [lowest, highest] = std::ranges::minmax(places_out);
+    const double length = last - first;
+    if (!(length > 0.0) || highest - lowest > straight_enough * length) return none;
+    double press = 0.0;
+    double moment = 0.0; // about the first point
+    for (std::size_t i = 0; i < pulls.size(); ++i) {
+        press -= pulls[i];
+        moment -= pulls[i] * (places_along[i] - first);
+    }
+    if (press <= 0.0) return none;
+    TurningPart found{.boundary = boundary, .n_blocks = part.n_blocks};
+    found.block = part.supports[static_cast<std::size_t>(std::ranges::max_element(pulls) - pulls.begin())].block;
+    found.beyond = std::max(-moment / press, moment / press - length);
+    found.force = press * found.beyond / length;
+    return found.force > large_turning * part.loads ? found : none;
+}
+
+std::string turning_warning(const Model& model, const TurningPart& found) {
+    const BlockSystem& system = model.system;
+    return fmt::format(
+        "the support of '{}' keeps block {} at {} and what is joined to it, {} blocks, from turning over: "
+        "it holds in tension, too, {:.3g} kN/m here, and its resultant lies {:.3g} m beyond the end of "
+        "what it holds. Rock that may part from what is below it stands on a fixed block, beside a joint",
+        system.boundaries[found.boundary].name, block_label(system, found.block),
+        place_text(system.origin + system.blocks[found.block].centroid), found.n_blocks, 1e-3 * found.force,
+        found.beyond);
+}
+
 } // namespace
 
 PullingSupport strongest_pulling_support(const Model& model, const State& state) {
     PullingSupport strongest;
-    if (std::ranges::any_of(model.loads.stages, [](const Stage& stage) { return stage.motion.has_value(); }))
-        return strongest;
+    if (has_platen(model)) return strongest;
     with_body_of_state(model, state, [&](const LoadedBody& body) {
         const Eigen::VectorXd& q = state.body.displacement;
         std::map<std::pair<int, int>, double> of_blocks; // by (boundary, block)
@@ -131,9 +220,24 @@ PullingSupport strongest_pulling_support(const Model& model, const State& state)
     return strongest;
 }
 
+TurningPart strongest_turning_part(const Model& model, const State& state) {
+    TurningPart strongest;
+    if (has_platen(model)) return strongest;
+    with_body_of_state(model, state, [&](const LoadedBody& body) {
+        for (const auto& [root, part] : joined_parts(body, state.body.displacement)) {
+            const TurningPart found = turning(model.system, part);
+            if (found.boundary >= 0 && found.force > strongest.force) strongest = found;
+        }
+    });
+    return strongest;
+}
+
 std::string pulling_support_warning(const Model& model, const State& state) {
     const PullingSupport found = strongest_pulling_support(model, state);
-    if (found.boundary < 0) return {};
+    if (found.boundary < 0) {
+        const TurningPart part = strongest_turning_part(model, state);
+        return part.boundary < 0 ? std::string() : turning_warning(model, part);
+    }
     const BlockSystem& system = model.system;
     return fmt::format("the support of '{}' pulls block {} at {}{} with {:.3g} kN/m: it holds in tension, too. Rock "
                        "that may part from what is behind it, as behind an open joint, stands beside a fixed block or "

@@ -73,6 +73,50 @@ TEST(PullingSupport, IsNoneWhereFrictionCouldHoldTheBlock) {
     EXPECT_THAT(pulling_support_warning(slippery.model, slippery.state), HasSubstr("'right' pulls block 1"));
 }
 
+/// Two cubes of 1 m on each other, with a gravity of (gravity_x, -10).
+SceneRun two_cubes(double gravity_x, const std::string& support) {
+    return run_scene(fmt::format(R"(kluft: 1
+analysis: {{gravity: [{}, -10]}}
+materials: {{rock: {{density: 2500, youngs_modulus: 20 GPa, poissons_ratio: 0.25}}}}
+interfaces: {{joint: {{kind: fracture, normal_stiffness: 1e11, shear_stiffness: 1e11, friction_angle: 60}}}}
+geometry:
+  domain: {{rectangle: {{width: 1, height: 2}}}}
+  reference_spacing: 1
+  fractures: [{{trace: [[-1, 1], [2, 1]], interface: joint}}]
+boundaries: {{bottom: {{support: {}}}}}
+stages: [{{steps: 2}}]
+)",
+                                 gravity_x, support));
+}
+
+// The weight of 50 kN/m acts at 1 m, and a push of g_x/10 of it: the resultant meets the base at 0.5 + g_x/10 m. At 9.5 that is
+// 0.45 m beyond its right end, and the left one pulls with 50 x 0.45 kN/m. The upper cube alone turns over from 10 on.
+TEST(PullingSupport, OfAStackThatWouldTurnOverIsNamed) {
+    for (const char* support : {"fixed", "pinned"}) {
+        const SceneRun run = two_cubes(9.5, support);
+        ASSERT_TRUE(stands(run)) << run.report.diagnosis;
+        const TurningPart found = strongest_turning_part(run.model, run.state);
+        EXPECT_EQ(found.boundary, 0) << support;
+        EXPECT_EQ(found.block, 0);
+        EXPECT_EQ(found.n_blocks, 2);
+        EXPECT_NEAR(found.beyond, 0.45, 1e-3);
+        EXPECT_NEAR(found.force, 22.5e3, 50.0);
+        EXPECT_THAT(pulling_support_warning(run.model, run.state),
+                    AllOf(HasSubstr("'bottom' keeps block 0"), HasSubstr("from turning over"), HasSubstr("22.5 kN/m")));
+    }
+}
+
+// At 4.5 the resultant is 0.05 m from the end of the base: the stack stands, though the left corner of its elastic foot, outside of the
+// middle third, pulls.
+TEST(PullingSupport, OfAStackThatStandsMayPullAtACorner) {
+    const SceneRun run = two_cubes(4.5, "fixed");
+    ASSERT_TRUE(stands(run)) << run.report.diagnosis;
+    EXPECT_EQ(strongest_turning_part(run.model, run.state).boundary, -1);
+    EXPECT_THAT(pulling_support_warning(run.model, run.state), IsEmpty());
+    const SceneRun turning = two_cubes(5.5, "fixed"); // 0.05 m beyond it
+    EXPECT_NEAR(strongest_turning_part(turning.model, turning.state).beyond, 0.05, 1e-3);
+}
+
 TEST(PullingSupport, IsNoneOfOneThatPresses) {
     const SceneRun pressed = block_on_plane(15.0, "left: {support: smooth}");
     ASSERT_TRUE(stands(pressed)) << pressed.report.diagnosis;

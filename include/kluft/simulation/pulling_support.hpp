@@ -3,7 +3,6 @@
 
 #include <string>
 
-#include "kluft/core/vector.hpp"
 #include "kluft/simulation/model.hpp"
 #include "kluft/simulation/state.hpp"
 
@@ -23,7 +22,22 @@ struct PullingSupport {
 /// specimen.
 [[nodiscard]] PullingSupport strongest_pulling_support(const Model& model, const State& state);
 
-/// What is to be said of one; "" where there is none.
+/// A boundary whose support keeps a part of the body from turning over: blocks that bonds and contacts hold together, and that
+/// nothing else holds. A support that only presses would bear them where its resultant lies between its points.
+struct TurningPart {
+    int boundary = -1;   ///< -1: none holds one
+    int block = -1;      ///< where the support pulls most
+    int n_blocks = 0;    ///< of the part
+    double beyond = 0.0; ///< how far the resultant of the support lies beyond its last point (m)
+    double force =
+        0.0; ///< with which the support pulls at one end, if the rest of it pressed at the other one alone (N/m)
+};
+
+/// The one of a committed state with the largest force, from a hundredth of the loads on the part on. Only of straight supports and
+/// of parts with a joint; none where a platen moves in any stage.
+[[nodiscard]] TurningPart strongest_turning_part(const Model& model, const State& state);
+
+/// What is to be said of either; "" where there is none.
 [[nodiscard]] std::string pulling_support_warning(const Model& model, const State& state);
 
 } // namespace kluft
