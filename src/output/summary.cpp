@@ -25,6 +25,7 @@ using Json = nlohmann::ordered_json;
 using Rows = std::vector<StepRecord>;
 
 constexpr double sliding_share = 0.01; // of what is closed: from there on a body is not elastic
+constexpr double opened_share = 0.01;  // of all joints and contacts: the same
 constexpr std::size_t least_elastic_rows = 3;
 constexpr double elastic_share = 0.3;       // of the peak differential stress, where there are fewer
 constexpr double ratio_slack = 1e-3;        // of Poisson's ratio, for round-off
@@ -192,6 +193,21 @@ Rows rows_up_to(const Rows& rows, double limit, double sense) {
     return elastic;
 }
 
+/// The first rows, until more than 1 % of the joints have opened since the platen started, or the platen presses and pulls no more: the
+/// body is in parts then, or alone.
+Rows rows_in_one_piece(const Rows& rows) {
+    double largest = 0.0;
+    const auto apart = std::ranges::find_if(rows, [&](const StepRecord& row) {
+        const int n_joints = row.open + row.sliding + row.locked;
+        if (row.open - rows.front().open > opened_share * n_joints) return true;
+        const double stress = std::abs(row.axial_stress);
+        if (largest > 0.0 && stress <= flat_rise * largest) return true;
+        largest = std::max(largest, stress);
+        return false;
+    });
+    return {rows.begin(), apart};
+}
+
 /// The rows up to the peak until a bond fails or more than 1 % of what is closed slides.
 Rows rows_before_failure(const Rows& rows, double sense) {
     const auto n_cracks = [](const StepRecord& row) { return row.cracks_tension + row.cracks_shear; };
@@ -238,7 +254,7 @@ void add_elastic_constants(const Rows& equilibria, const Rows& history, int plat
     const Rows balanced = balanced_rows(platen_rows(history, platen_stage));
     if (balanced.empty() || balanced_rows(platen_rows(equilibria, platen_stage)).empty()) return;
     const double sense = first_sense(history, platen_stage);
-    const Rows rows = rows_of_one_path(balanced, sense);
+    const Rows rows = rows_in_one_piece(rows_of_one_path(balanced, sense));
     std::vector<std::pair<double, double>> stress, lateral;
     for (const StepRecord& row : elastic_rows(equilibria, rows, platen_stage, sense)) {
         stress.emplace_back(row.axial_strain, row.differential_stress);
@@ -448,6 +464,10 @@ void clear_round_off(double modulus, CurveNumbers& numbers) {
     const double least = round_off * modulus * std::abs(numbers.peak_strain.value_or(0.0));
     for (std::optional<double>* const stress : {&numbers.peak_stress, &numbers.residual_stress})
         if (*stress && std::abs(**stress) < least) *stress = 0.0;
+    if (!numbers.axial_modulus || std::abs(*numbers.axial_modulus) >= round_off * modulus) return;
+    for (std::optional<double>* const constant :
+         {&numbers.axial_modulus, &numbers.lateral_ratio, &numbers.youngs_modulus, &numbers.poissons_ratio})
+        constant->reset();
 }
 
 bool is_strength(const CurveNumbers& numbers) { return numbers.peak_reached || numbers.levelled_off; }

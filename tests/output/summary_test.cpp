@@ -82,6 +82,43 @@ TEST(Summary, TakesRoundOffForZero) {
     EXPECT_EQ(*cleared(1e-10).residual_stress, 0.0);
 }
 
+/// A body under 1 MPa from which a platen goes back by 2.1 % in 100 steps: the stress falls by 100 MPa times the strain until it is gone.
+Rows relieved() {
+    Rows rows{row(0, 0, 0, 0, 0, 0), row(1, 0, 0.01, 1e6, 0, 0)};
+    for (int i = 1; i <= 100; ++i) {
+        const double strain = 2.1e-4 * i; // 0.987 % under load, 1.008 % without
+        rows.push_back(row(1 + i, 1, -strain, std::max(0.0, 1e6 - 100e6 * strain), 0.25 * strain, 0));
+    }
+    return rows;
+}
+
+TEST(Summary, FitsTheModulusUntilThePlatenHasLeft) {
+    const Rows rows = relieved();
+    EXPECT_NEAR(curve_numbers(rows, rows, 1, Plane::stress).youngs_modulus.value_or(0.0), 100e6, 1e-3);
+}
+
+// One of two joints opens at a strain of 0.5 %, from where on the body is half as stiff.
+TEST(Summary, FitsTheModulusUntilAJointOpens) {
+    Rows rows = relieved();
+    for (StepRecord& each : rows) each.locked = 2;
+    for (std::size_t i = 25; i < rows.size(); ++i) { // from 0.504 % on
+        rows[i].axial_stress = rows[i].differential_stress = 0.5e6 + 50e6 * (rows[i].axial_strain + 0.005);
+        rows[i].open = rows[i].locked = 1;
+    }
+    EXPECT_NEAR(curve_numbers(rows, rows, 1, Plane::stress).youngs_modulus.value_or(0.0), 100e6, 1e-3);
+    for (StepRecord& each : rows) each.open = 1; // open from the start: the body is what it is
+    EXPECT_LT(curve_numbers(rows, rows, 1, Plane::stress).youngs_modulus.value_or(0.0), 80e6);
+}
+
+TEST(Summary, HasNoConstantsOfRoundOff) {
+    Rows rows{row(0, 0, 0, 0, 0, 0)};
+    for (int i = 1; i <= 20; ++i) rows.push_back(row(i, 0, 1e-5 * i, 4e-7 * i, -2.5e-6 * i, 0));
+    auto numbers = curve_numbers(rows, rows, 0, Plane::stress);
+    ASSERT_NEAR(*numbers.youngs_modulus, 0.04, 1e-12);
+    clear_round_off(10e9, numbers); // 4e-12 of it
+    EXPECT_FALSE(numbers.youngs_modulus || numbers.poissons_ratio || numbers.axial_modulus || numbers.lateral_ratio);
+}
+
 // E' = E/(1 - nu^2) and nu' = nu/(1 - nu) with E = 80 MPa and nu = 0.25.
 TEST(Summary, TurnsTheSlopesOfPlaneStrainIntoTheRocksConstants) {
     const Rows rows = triangle(80e6 / (1.0 - 0.0625), 0.25 / 0.75);

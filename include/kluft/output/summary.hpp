@@ -68,7 +68,7 @@ struct CurveNumbers {
 /// no equilibria). Unbalanced rows count in `unbalanced_steps` only.
 ///
 /// Elastic constants: least squares over the balanced rows from the start of the platen's movement to its peak, at most to
-/// the last before more than 1 % of what is closed slides; where those are fewer than three, over the rows up to 30 % of the peak differential stress, of
+/// the last before more than 1 % of what is closed slides, or of all joints have opened, or the platen has left the body; where those are fewer than three, over the rows up to 30 % of the peak differential stress, of
 /// which the last is interpolated where they are fewer than two. In plane stress E = slope, nu = ratio; in plane
 /// strain the slopes are E' = E/(1 - nu^2) and nu' = nu/(1 - nu), hence nu = nu'/(1 + nu') and E = E' (1 - nu^2). A body whose nu is not between 0 and 0.5 has no such constants.
 /// `platen_stage`: the first stage that moves a platen; without one there are no elastic constants.
@@ -77,7 +77,7 @@ struct CurveNumbers {
                                          Plane plane);
 
 /// Takes stresses for zero that are round-off beside E times the strain at the peak, as those of a body that is cut through and
-/// pulled. `modulus`: E of the stiffest material (Pa).
+/// pulled; it has no elastic constants then. `modulus`: E of the stiffest material (Pa).
 void clear_round_off(double modulus, CurveNumbers& numbers);
 
 /// Whether the largest axial stress is a strength: it falls behind it, or has levelled off.

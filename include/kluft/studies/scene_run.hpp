@@ -9,6 +9,7 @@
 #include "kluft/output/summary.hpp"
 #include "kluft/scene/scene.hpp"
 #include "kluft/simulation/bond_bending.hpp"
+#include "kluft/simulation/left_platen.hpp"
 #include "kluft/simulation/model.hpp"
 #include "kluft/simulation/overloaded_bonds.hpp"
 #include "kluft/simulation/overloaded_corners.hpp"
@@ -47,7 +48,7 @@ RunReport run_stages(const Model& model, const Scene& scene, State& state, StepO
 class ContactWatch {
 public:
     ContactWatch(const Model& model, CrackCriterion criterion)
-        : corners_(model), bonds_(model, criterion), bending_(model) {}
+        : corners_(model), bonds_(model, criterion), bending_(model), platens_(model) {}
 
     /// A committed load step.
     void step(const StepRecord& record, const State& state);
@@ -57,16 +58,18 @@ public:
     [[nodiscard]] const CornerWatch& corners() const { return corners_; }
     [[nodiscard]] const BondWatch& bonds() const { return bonds_; }
     [[nodiscard]] const BendingWatch& bending() const { return bending_; }
+    [[nodiscard]] const PlatenWatch& platens() const { return platens_; }
 
 private:
     CornerWatch corners_;
     BondWatch bonds_;
     BendingWatch bending_;
+    PlatenWatch platens_;
     double largest_stress_ = 0.0;
 };
 
-/// Adds warnings of contacts that are pressed far more than the loads apply or than rock bears, and of bonds that carry more than
-/// they bear; of a run that is to go on, those of what it has gone through, not those of the state that it ends with. Where memory has
+/// Adds warnings of contacts that are pressed far more than the loads apply or than rock bears, of bonds that carry more than
+/// they bear, and of platens that have left the body; of a run that is to go on, those of what it has gone through, not those of the state that it ends with. Where memory has
 /// run out, what was run is all that counts.
 void warn_of_contacts(const Model& model, const State& state, const ContactWatch& watch, RunReport& report);
 
