@@ -182,7 +182,8 @@ private:
         std::vector<char> asked;
         for (int s = 0; s < static_cast<int>(sides.size()); ++s) {
             const int boundary = boundary_[s];
-            if (boundary < 0 || !spec_.boundaries[boundary].block.empty()) continue;
+            if (boundary < 0 || !spec_.boundaries[boundary].block.empty() || !spec_.boundaries[boundary].carries)
+                continue;
             Box box = bounding_box({sides[s].start, sides[s].end});
             const double reach = reach_of_open_joints(sizes[sides[s].block]);
             box.lower.array() -= reach;

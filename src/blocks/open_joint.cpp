@@ -19,8 +19,13 @@ constexpr double widest_strip = 0.01;
 /// The part of a covered side before one side of another block.
 struct CoveringSide {
     CoveredPart part;
-    double strip = 0.0; ///< what is this narrow beside it belongs to it (m)
+    double size = 0.0; ///< of the smaller block (m)
 };
+
+/// How wide what belongs to it is at most beside it (m).
+double margin(const CoveringSide& each, double tolerance) {
+    return (each.part.gap > tolerance ? widest_gap : widest_strip) * each.size;
+}
 
 /// Narrows the range of a parameter from 0 to 1 to where a linear function from `start` to `end` is within the limits.
 void clip(double start, double end, double least, double most, std::pair<double, double>& range) {
@@ -31,6 +36,14 @@ void clip(double start, double end, double least, double most, std::pair<double,
     }
     const auto [first, last] = std::minmax({(least - start) / change, (most - start) / change});
     range = {std::max(range.first, first), std::min(range.second, last)};
+}
+
+void join(const CoveringSide& each, CoveringSide& group) {
+    group.part.strips += std::max(0.0, each.part.from - group.part.to);
+    group.part.to = std::max(group.part.to, each.part.to);
+    group.size = std::min(group.size, each.size);
+    if (each.part.gap > group.part.gap)
+        std::tie(group.part.other, group.part.gap) = std::tie(each.part.other, each.part.gap);
 }
 
 std::optional<CoveringSide> covering(const SideOfBlock& side, const SideOfBlock& other,
@@ -54,8 +67,8 @@ std::optional<CoveringSide> covering(const SideOfBlock& side, const SideOfBlock&
     found.part.to = between(s_start, s_end, range.first);
     found.part.other = other.block;
     found.part.gap = std::max({0.0, between(t_start, t_end, range.first), between(t_start, t_end, range.second)});
-    found.strip = widest_strip * size;
-    if (found.part.to - found.part.from <= std::max(found.strip, 4.0 * tolerance)) return std::nullopt;
+    found.size = size;
+    if (found.part.to - found.part.from <= std::max(widest_strip * size, 4.0 * tolerance)) return std::nullopt;
     return found;
 }
 
@@ -74,27 +87,26 @@ std::vector<CoveredPart> covered_parts(const std::vector<SideOfBlock>& sides, in
         found, {}, [](const CoveringSide& each) { return std::tuple(each.part.from, each.part.to, each.part.other); });
     std::vector<CoveringSide> groups;
     for (const CoveringSide& each : found) {
-        if (groups.empty() || each.part.from - groups.back().part.to > std::min(each.strip, groups.back().strip)) {
+        const bool goes_on = !groups.empty() && each.part.from - groups.back().part.to <=
+                                                    std::max(margin(each, tolerance), margin(groups.back(), tolerance));
+        if (goes_on)
+            join(each, groups.back());
+        else
             groups.push_back(each);
-            continue;
-        }
-        CoveringSide& group = groups.back();
-        group.part.strips += std::max(0.0, each.part.from - group.part.to);
-        group.part.to = std::max(group.part.to, each.part.to);
-        group.strip = std::min(group.strip, each.strip);
-        if (each.part.gap > group.part.gap)
-            std::tie(group.part.other, group.part.gap) = std::tie(each.part.other, each.part.gap);
     }
     const double length = (sides[s].end - sides[s].start).norm();
     std::vector<CoveredPart> parts;
-    for (const auto& [part, strip] : groups) {
+    for (std::size_t i = 0; i < groups.size(); ++i) {
+        const CoveredPart& own = groups[i].part;
+        CoveredPart part = own;
+        const double beside = margin(groups[i], tolerance);
+        const double first = i > 0 ? groups[i - 1].part.to : 0.0;
+        const double last = i + 1 < groups.size() ? groups[i + 1].part.from : length;
+        const bool is_open = own.gap > tolerance;
+        if (is_open || own.from - beside <= first) part.from = std::max(first, own.from - beside);
+        if (is_open || own.to + beside >= last) part.to = std::min(last, own.to + beside);
+        part.strips += (own.from - part.from) + (part.to - own.to);
         parts.push_back(part);
-        CoveredPart& last = parts.back();
-        const double before = part.from;
-        const double behind = length - part.to;
-        if (before <= strip) last.from = 0.0;
-        if (behind <= strip) last.to = length;
-        last.strips += (part.from - last.from) + (last.to - part.to);
     }
     return parts;
 }

@@ -212,6 +212,18 @@ void require_spacing(const SceneSection& section, const InterfaceType& type, con
                              type.name));
 }
 
+/// Which boundaries anything acts on. A platen may have another one against it, wherever that lies.
+void mark_what_carries(const LoadProgram& loads, std::vector<BoundarySides>& boundaries) {
+    const bool has_platen =
+        std::ranges::any_of(loads.stages, [](const Stage& stage) { return stage.motion.has_value(); });
+    for (std::size_t i = 0; i < boundaries.size(); ++i) {
+        const bool is_held = i < loads.supports.size() && loads.supports[i] != Support::none;
+        const bool is_pressed = std::ranges::any_of(
+            loads.stages, [&](const Stage& stage) { return stage.pressure.contains(static_cast<int>(i)); });
+        boundaries[i].carries = has_platen || is_held || is_pressed;
+    }
+}
+
 Scene convert(const SceneSection& root, ReadingContext& context) {
     Scene scene;
     scene.title = root.given_text("title").value_or("");
@@ -222,6 +234,7 @@ Scene convert(const SceneSection& root, ReadingContext& context) {
     scene.geometry = read_geometry(root, names_of(scene.materials), names_of(scene.interface_types), context);
     scene.loads = read_loads(root, names_of(scene.geometry.boundaries), block_names(scene.geometry),
                              names_of(scene.interface_types), has_gravity(scene), context);
+    mark_what_carries(scene.loads, scene.geometry.boundaries);
     refuse_explicit_reduction(root, scene, context);
     scene.cracks = read_crack_options(root.section("cracks"));
     check_accuracy(root.section("solver"), scene, context);

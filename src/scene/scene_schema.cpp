@@ -613,9 +613,10 @@ std::vector<KeyRule> loading_rules() {
              "the boundaries given here exist, and sides in none of them are free. Walls of holes are boundaries "
              "where one here has `hole`. `kluft check` lists them. Of given blocks the same holds "
              "for all sides, of which the parts that no other block shares belong to the boundary; and of a boundary "
-             "without a `block` none that has another block straight before it, within 5 % of the smaller one's size "
-             "(the square root of its area), nor what juts out by 1 % of it beside such a part or a shared edge. A "
-             "warning says what was left out."},
+             "without a `block`, where it has a support or a load, none that has another block straight before it, "
+             "within "
+             "5 % of the smaller one's size (the square root of its area), or lies beside that by as little, nor what "
+             "juts out by 1 % of it beside a shared edge. A warning says what was left out."},
         {.path = "boundaries.*", .type = KeyType::mapping, .doc = "One boundary."},
         {.path = "boundaries.*.support",
          .type = KeyType::choice,

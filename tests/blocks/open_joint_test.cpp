@@ -29,9 +29,8 @@ TEST(OpenJoint, CoversWhatLiesStraightBeforeASide) {
     EXPECT_DOUBLE_EQ(whole[0].gap, 0.01);
     const auto half = covered_by({-1, 0.01}, {0.5, 0.01}); // the side runs to the left
     ASSERT_THAT(half, SizeIs(1));
-    EXPECT_DOUBLE_EQ(half[0].from, 0.5);
+    EXPECT_DOUBLE_EQ(half[0].from, 0.5 - 0.05) << "not below the other one's corner";
     EXPECT_EQ(half[0].to, 1.0);
-    EXPECT_EQ(half[0].strips, 0.0);
 }
 
 TEST(OpenJoint, IsNarrowBesideTheSmallerBlock) {
@@ -50,7 +49,7 @@ TEST(OpenJoint, EndsWhereItsSidesAreTooFarApart) {
     };
     const auto wedge = opening_at(14.0);
     ASSERT_THAT(wedge, SizeIs(1));
-    EXPECT_NEAR(wedge[0].from, 1.0 - 0.05 / std::tan(14.0 * std::numbers::pi / 180.0), 1e-12);
+    EXPECT_NEAR(wedge[0].from, 1.0 - 0.05 / std::tan(14.0 * std::numbers::pi / 180.0) - 0.05, 1e-12);
     EXPECT_EQ(wedge[0].to, 1.0);
     EXPECT_NEAR(wedge[0].gap, 0.05, 1e-12);
     EXPECT_THAT(opening_at(16.0), IsEmpty()) << "an overhang";
@@ -75,11 +74,25 @@ TEST(OpenJoint, GoesOnBetweenTwoBlocksSideBySide) {
         {{1, 0}, {0, 0}, 0}, {{0.1, 0.005}, {0.5, 0.005}, 1}, {{0.503, 0.006}, {0.9, 0.006}, 2}};
     const auto parts = covered_parts(sides, 0, {0, 1, 2}, {1.0, 0.4, 0.4}, same);
     ASSERT_THAT(parts, SizeIs(1));
-    EXPECT_DOUBLE_EQ(parts[0].from, 0.1);
-    EXPECT_DOUBLE_EQ(parts[0].to, 0.9);
+    EXPECT_DOUBLE_EQ(parts[0].from, 0.1 - 0.05 * 0.4);
+    EXPECT_DOUBLE_EQ(parts[0].to, 0.9 + 0.05 * 0.4);
     EXPECT_EQ(parts[0].other, 2) << "the one farther away";
     EXPECT_DOUBLE_EQ(parts[0].gap, 0.006);
-    EXPECT_NEAR(parts[0].strips, 0.003, 1e-12);
+}
+
+// One that touches ends 4 cm before the one that does not: what is between them is no outside, and that one's edge stays as it is.
+TEST(OpenJoint, EndsAtABlockThatTouches) {
+    const std::vector<SideOfBlock> sides{{{1, 0}, {0, 0}, 0}, {{0, 0}, {0.5, 0}, 1}, {{0.56, 0.005}, {0.9, 0.005}, 2}};
+    const auto near_by = covered_parts(sides, 0, {0, 1, 2}, {1.0, 1.0, 1.3}, same);
+    ASSERT_THAT(near_by, SizeIs(2));
+    EXPECT_DOUBLE_EQ(near_by[0].from, 0.1 - 0.05);
+    EXPECT_DOUBLE_EQ(near_by[0].to, 0.44 + 0.05);
+    EXPECT_DOUBLE_EQ(near_by[1].from, 0.5) << "touches to the end";
+    EXPECT_EQ(near_by[1].gap, 0.0);
+    const std::vector<SideOfBlock> nearer{sides[0], sides[1], {{0.54, 0.005}, {0.9, 0.005}, 2}};
+    const auto one = covered_parts(nearer, 0, {0, 1, 2}, {1.0, 1.0, 1.3}, same);
+    ASSERT_THAT(one, SizeIs(1));
+    EXPECT_EQ(one[0].to, 1.0);
 }
 
 } // namespace

@@ -72,6 +72,20 @@ TEST(CornersOnFaces, SlideAlongTheFace) {
             << chamfer << " " << height;
 }
 
+// The floor is pressed up to near the block, which is pressed from above: F = tan(phi) (W cos + p b)/(W sin), b = 2.6 m.
+TEST(CornersOnFaces, SlideAlongAFaceThatIsPressedBesideThem) {
+    for (const double chamfer : {20.0, 30.0}) {
+        const double rise = 0.3 * std::tan(chamfer * degree);
+        const double weight = 2600.0 * 10.0 * (2.6 * (1.0 - 1e-4) - 0.3 * rise);
+        const double expected =
+            std::tan(30 * degree) * (weight * std::cos(20 * degree) + 10e3 * 2.6) / (weight * std::sin(20 * degree));
+        const SceneRun run = run_scene(blocks_on_a_slope(
+            20, 30, floor_of_rock + chamfered_block(chamfer, 1e-4),
+            "{name: weight, pressure: {top: 10 kPa}}, {strength_reduction: {from: 1, to: 8}, steps: 20}"));
+        EXPECT_NEAR(run.report.results.factor_of_safety.value_or(0.0), expected, 2e-3 * expected) << chamfer;
+    }
+}
+
 TEST(CornersOnFaces, PolygonsSlideOnTheirSides) {
     const double expected = std::tan(30 * degree) / std::tan(9 * degree);
     for (const int sides : {6, 8, 12}) {

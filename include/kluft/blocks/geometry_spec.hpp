@@ -106,6 +106,8 @@ struct BoundarySides {
     std::vector<int> sides;
     std::string block{};       ///< the given block whose sides they are; empty: of the whole body
     bool by_direction = false; ///< those that face one way, wherever they lie
+    bool carries =
+        true; ///< has a support, a pressure or a platen in some stage; nothing depends on the sides of others
 };
 
 /// Where the scene gives its parts: file, line and key, as messages begin, or the keys alone.

@@ -25,8 +25,9 @@ struct CoveredPart {
 };
 
 /// The parts of side `s` that a side of another block faces, turned by at most 15 degrees, within a twentieth of the smaller
-/// block's size, its square root of area; `sizes` (m) by block. Strips beside them of at most a hundredth of that size are part of
-/// them, as of corners that do not match; parts as short as that are none. In order along the side. `near`: the sides among which
+/// block's size, its square root of area; `sizes` (m) by block. Strips beside one that touches, of at most a hundredth of that size,
+/// are part of it, as of corners that do not match; parts as short as that are none. One across a gap reaches farther by a twentieth
+/// of that size, so that it does not end before a corner, which would catch there. In order along the side. `near`: the sides among which
 /// the others are looked for.
 [[nodiscard]] std::vector<CoveredPart> covered_parts(const std::vector<SideOfBlock>& sides, int s,
                                                      const std::vector<int>& near, const std::vector<double>& sizes,
