@@ -285,6 +285,59 @@ std::vector<std::string> open_joints(const GeometrySpec& geometry, const BlockSy
         place_text(widest.at), others, fmt::join(lengths, ", "))};
 }
 
+/// The interface types that bonds and fractures of the body have, and that surfaces have which meet where none was.
+std::set<int> types_in(const Scene& scene, const BlockSystem& system) {
+    std::set<int> types;
+    for (const Interface& interface : system.interfaces) types.insert(interface.interface_type);
+    if (system.outline_type >= 0) types.insert(system.outline_type);
+    const std::vector<int> unbroken(types.begin(), types.end());
+    for (const int type : unbroken)
+        if (const int broken = scene.interface_types[static_cast<std::size_t>(type)].fails_to; broken >= 0)
+            types.insert(broken);
+    return types;
+}
+
+bool is_loaded(const Stage& stage, bool has_weight) {
+    const auto is_pressure = [](const auto& each) { return each.second != 0.0; };
+    const auto is_force = [](const auto& each) { return !each.second.isZero(); };
+    return has_weight || stage.motion || std::ranges::any_of(stage.pressure, is_pressure) ||
+           std::ranges::any_of(stage.forces, is_force);
+}
+
+/// Strengths of nothing, or of a body that carries nothing, have no factor of safety: any that is tried would be stood.
+/// Interfaces that are not in this body may be in another one of the same study: a warning. Throws InputError for the others.
+std::vector<std::string> strengths_of_nothing(const Scene& scene, const Model& model) {
+    std::vector<std::string> warnings;
+    const std::set<int> types = types_in(scene, model.system);
+    const bool has_weight = has_gravity(model) && std::ranges::any_of(model.system.blocks, [&](const Block& block) {
+                                return !block.fixed && model.densities[static_cast<std::size_t>(block.material)] > 0.0;
+                            });
+    bool loaded = false;
+    for (std::size_t s = 0; s < model.loads.stages.size(); ++s) {
+        const Stage& stage = model.loads.stages[s];
+        loaded = loaded || is_loaded(stage, has_weight);
+        if (!stage.strength_reduction) continue;
+        const std::string key = fmt::format("stages.{}.strength_reduction", s);
+        if (types.empty())
+            throw InputError(key + ": expected a body with an interface whose strength can be divided, found one "
+                                   "without any");
+        const std::vector<int>& named = stage.strength_reduction->interface_types;
+        std::vector<std::string> names;
+        for (const int type : named) names.push_back(scene.interface_types[static_cast<std::size_t>(type)].name);
+        if (!named.empty() && std::ranges::none_of(named, [&](int type) { return types.contains(type); }))
+            warnings.push_back(
+                fmt::format("{}.interfaces: none of {} occurs in the body: no strength is divided, and what is "
+                            "found is no factor of safety",
+                            key, fmt::join(names, ", ")));
+        if (!loaded)
+            throw InputError(
+                fmt::format("{}: expected a body that carries loads, found none: no pressure, force or platen{}", key,
+                            has_gravity(model) ? ", and gravity where no block that can move has a density above 0"
+                                               : " or gravity"));
+    }
+    return warnings;
+}
+
 /// The blocks of the scene's body.
 CutBody cut_body(const Scene& scene) {
     try {
@@ -316,6 +369,8 @@ SceneModel build_scene_model(const Scene& scene) {
     SceneModel built;
     try {
         built.model = build_model(std::move(body.system), model_input(scene));
+        const std::vector<std::string> warnings = strengths_of_nothing(scene, built.model);
+        built.model.warnings.insert(built.model.warnings.end(), warnings.begin(), warnings.end());
     } catch (const InputError& error) {
         blame_coarse_net(scene.geometry, error);
         throw located(error, scene.places);

@@ -810,7 +810,8 @@ std::vector<KeyRule> loading_rules() {
          .type = KeyType::list,
          .fallback_note = "all",
          .least_items = 1,
-         .doc = "Interfaces whose strengths are divided."},
+         .doc =
+             "Interfaces whose strengths are divided, of which at least one occurs in the body, or a warning says so."},
         {.path = "stages.#.strength_reduction.interfaces.#",
          .type = KeyType::text,
          .required = true,

@@ -176,6 +176,42 @@ stages: [{{name: weight}}]
                 Contains(AllOf(HasSubstr("share an edge"), HasSubstr("left out of 'bottom' (0.004 m)"))));
 }
 
+// A block on another one. The strength of nothing can be divided by anything: a factor above 3 was told.
+TEST(SceneModel, RefusesOrWarnsToReduceTheStrengthOfNothing) {
+    const auto model = [](const std::vector<std::string>& overrides) {
+        return build_scene_model(read_scene_text(R"(
+kluft: 1
+analysis: {gravity: 9.81}
+materials: {rock: {density: 2600, youngs_modulus: 20 GPa, poissons_ratio: 0.25}}
+interfaces:
+  bed: {kind: fracture, friction_angle: 30, normal_stiffness: 10 GPa/m, shear_stiffness: 10 GPa/m}
+  fault: {kind: fracture, friction_angle: 30, normal_stiffness: 10 GPa/m, shear_stiffness: 10 GPa/m}
+geometry:
+  domain: {polygon: [[0, 0], [1, 0], [1, 2], [0, 2]]}
+  fractures: [{trace: [[-1, 1], [2, 1]], interface: bed}]
+boundaries: {bottom: {support: fixed}}
+stages: [{name: weight}, {name: reduce, strength_reduction: {to: 3, interfaces: [bed]}}]
+)",
+                                                 overrides, "scene.yaml"))
+            .model;
+    };
+    const auto errors = [&](const std::vector<std::string>& overrides) {
+        return test::messages_of([&] { return model(overrides); });
+    };
+    EXPECT_THAT(model({}).warnings, IsEmpty());
+    EXPECT_THAT(model({"stages.1.strength_reduction.interfaces=[fault, bed]"}).warnings, IsEmpty());
+    EXPECT_THAT(model({"stages.1.strength_reduction.interfaces=[fault]"}).warnings,
+                ElementsAre(HasSubstr(
+                    "stages.1.strength_reduction.interfaces: none of fault occurs in the body: no strength")));
+    EXPECT_THAT(errors({"geometry.fractures=null"}),
+                ElementsAre(AllOf(HasSubstr("scene.yaml:12:"), HasSubstr("found one without any"))));
+    EXPECT_THAT(errors({"materials.rock.density=0"}),
+                ElementsAre(AllOf(HasSubstr("scene.yaml:12:"), HasSubstr("no block that can move has a density"))));
+    EXPECT_THAT(errors({"materials.rock.density=0", "stages.0.pressure={top: 1 MPa}"}), IsEmpty());
+    EXPECT_THAT(errors({"analysis.gravity=0", "stages.0.pressure={top: 0}"}),
+                ElementsAre(HasSubstr("no pressure, force or platen or gravity")));
+}
+
 TEST(SceneModel, WarnsOfFracturesThatAreNotLeft) {
     EXPECT_THAT(warnings_of({}), IsEmpty());
     EXPECT_THAT(warnings_of({"geometry.fractures.0.trace=[[0.3, 1], [0.306, 1]]"}),
