@@ -6,6 +6,7 @@
 #include <optional>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -16,6 +17,7 @@
 #include "kluft/core/nearest_name.hpp"
 #include "kluft/output/atomic_file.hpp"
 #include "kluft/output/blocks_picture.hpp"
+#include "kluft/output/canvas.hpp"
 #include "kluft/output/curve_picture.hpp"
 #include "kluft/output/field_reader.hpp"
 #include "kluft/output/field_series.hpp"
@@ -285,8 +287,10 @@ void draw_scene(const DrawArguments& arguments) {
 ExitCode draw(const DrawArguments& arguments) {
     require_possible_output(arguments.picture);
     if (!arguments.picture.empty()) {
-        (void)picture_format(arguments.picture);
+        const PictureFormat format = picture_format(arguments.picture);
         require_directory_of(arguments.picture);
+        require_own_file(arguments.picture, "a picture",
+                         [&](std::string_view content) { return is_drawn_picture(format, content); });
     }
     const bool several = arguments.sources.size() > 1;
     for (const auto& source : arguments.sources) {

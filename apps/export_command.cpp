@@ -1,5 +1,6 @@
 // kluft export DIR -o FILE.gpkg|FILE.geojson
 #include <filesystem>
+#include <string_view>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -69,6 +70,9 @@ ExitCode export_map(const ExportArguments& arguments) {
                 fmt::format("{}: expected another file for the map, found one that the scene reads; choose it with -o",
                             file.string()));
     }
+    require_own_file(file.string(), "a map", [&](std::string_view content) {
+        return format == MapFormat::geopackage ? is_own_geopackage(content) : is_own_geojson(content);
+    });
     const BlockSystem& system = run.built.model.system;
     const std::string& crs = run.scene.geometry.crs;
     if (crs.empty()) tell("no coordinate system is written: neither the maps of the scene nor geometry.crs name one\n");

@@ -10,10 +10,12 @@
 #include <stdexcept>
 #include <system_error>
 
+#include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "kluft/core/diagnostics.hpp"
+#include "kluft/output/atomic_file.hpp"
 
 namespace kluft {
 
@@ -103,11 +105,24 @@ void require_possible_output(const std::string& path) {
     struct stat status {};
     if (stat((path + ".part").c_str(), &status) != 0 && (errno == ENAMETOOLONG || errno == ENOTDIR || errno == ELOOP))
         refuse(errno);
-    if (path.empty() || stat(path.c_str(), &status) == 0) return;
+    if (path.empty()) return;
+    if (stat(path.c_str(), &status) == 0) {
+        if (S_ISFIFO(status.st_mode) || S_ISSOCK(status.st_mode))
+            throw InputError("-o: expected a name for the results, found a pipe, " + path);
+        return;
+    }
     fs::path place = fs::absolute(path).parent_path(); // or the next one above it that is there
     std::error_code error;
     while (!fs::exists(place, error) && place.has_relative_path()) place = place.parent_path();
     if (access(place.c_str(), W_OK | X_OK) != 0) refuse(errno);
+}
+
+void require_own_file(const std::string& file, std::string_view what,
+                      const std::function<bool(std::string_view content)>& is_own) {
+    std::error_code error;
+    if (!fs::is_regular_file(file, error) || fs::file_size(file, error) == 0 || is_own(read_file(file))) return;
+    throw InputError(fmt::format("-o: expected {} that Kluft made or none, found another file, which would be lost: {}",
+                                 what, file));
 }
 
 void require_directory_of(const std::string& file) {
@@ -115,6 +130,7 @@ void require_directory_of(const std::string& file) {
     std::error_code error;
     if (!fs::is_directory(place, error))
         throw InputError("-o: expected a file in a directory that is there, found " + file);
+    if (fs::is_directory(file, error)) throw InputError("-o: expected a name for a file, found a directory, " + file);
 }
 
 } // namespace kluft

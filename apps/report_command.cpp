@@ -7,6 +7,7 @@
 #include "commands.hpp"
 #include "failure.hpp"
 #include "kluft/core/diagnostics.hpp"
+#include "kluft/report/report_page.hpp"
 #include "kluft/report/run_page.hpp"
 #include "kluft/studies/finished_run.hpp"
 #include "standard_output.hpp"
@@ -26,6 +27,7 @@ void check_output(const ReportArguments& arguments) {
         throw InputError("--output: expected a name that ends in .html, found " + arguments.output);
     require_possible_output(arguments.output);
     require_directory_of(arguments.output);
+    require_own_file(arguments.output, "a page", is_report_page);
 }
 
 } // namespace

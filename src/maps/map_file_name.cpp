@@ -42,6 +42,11 @@ std::vector<fs::path> companions(const fs::path& file) {
     return files;
 }
 
+bool is_own_geojson(std::string_view content) {
+    constexpr std::size_t head = 200;
+    return content.substr(0, head).find(R"("name": "kluft")") != std::string_view::npos;
+}
+
 bool is_own_geopackage(std::string_view content) {
     return content.starts_with("SQLite format 3") && content.find(geopackage_mark) != std::string_view::npos;
 }

@@ -296,6 +296,14 @@ void Canvas::begin_part(const Vec2& corner) {
 
 void Canvas::end_part() { cairo_restore(context_); }
 
+namespace {
+
+constexpr std::string_view group_of_texts =
+    "<g font-family=\"'DejaVu Sans', Verdana, sans-serif\" xml:space=\"preserve\">";
+constexpr std::string_view last_line_of_pdf = "% Drawn by Kluft\n";
+
+} // namespace
+
 PictureFormat picture_format(const std::filesystem::path& path) {
     const std::string extension = path.extension();
     if (extension == ".png") return PictureFormat::png;
@@ -315,10 +323,9 @@ std::string draw_picture(PictureFormat format, double width, double height, doub
         draw_on(surface.get(), width, height, 1.0, draw, format == PictureFormat::svg ? &svg_texts : nullptr);
         cairo_surface_finish(surface.get());
         check(cairo_surface_status(surface.get()));
+        if (format == PictureFormat::pdf) bytes += last_line_of_pdf;
         if (!svg_texts.empty())
-            bytes.insert(bytes.rfind("</svg>"),
-                         "<g font-family=\"'DejaVu Sans', Verdana, sans-serif\" xml:space=\"preserve\">\n" + svg_texts +
-                             "</g>\n");
+            bytes.insert(bytes.rfind("</svg>"), std::string(group_of_texts) + "\n" + svg_texts + "</g>\n");
     } else {
         const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24,
                                                          static_cast<int>(std::lround(width * pixels_per_point)),
@@ -328,6 +335,18 @@ std::string draw_picture(PictureFormat format, double width, double height, doub
         bytes.insert(head_of_png, maker_chunk());
     }
     return bytes;
+}
+
+bool is_drawn_picture(PictureFormat format, std::string_view content) {
+    switch (format) {
+    case PictureFormat::png:
+        return is_drawn_png(content);
+    case PictureFormat::svg:
+        return content.find(group_of_texts) != std::string_view::npos;
+    case PictureFormat::pdf:
+        return content.ends_with(last_line_of_pdf);
+    }
+    return false;
 }
 
 bool is_drawn_png(std::string_view content) {

@@ -76,4 +76,9 @@ std::string html_of(const ReportPage& page) {
                                             {"programs", std::move(programs)}});
 }
 
+bool is_report_page(std::string_view content) {
+    constexpr std::size_t head = 1000;
+    return content.substr(0, head).find(R"(<meta name="generator" content="Kluft">)") != std::string_view::npos;
+}
+
 } // namespace kluft

@@ -21,6 +21,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -1274,6 +1275,30 @@ TEST_F(CommandLine, AFileInADirectoryThatIsNotThereIsRefused) {
                        HasSubstr("expected a file in a directory that is there"));
 }
 
+TEST_F(CommandLine, FilesOfTheUsersOwnAreNotReplaced) {
+    write("tiny.yaml", tiny_scene);
+    ASSERT_EQ(kluft({"run", "tiny.yaml", "-o", "r", "--quiet"}).code, 0);
+    std::vector<std::pair<std::string, Words>> files{{"mine.html", {"report", "r", "-o", "mine.html"}}};
+    for (const char* const picture : {"mine.png", "mine.svg", "mine.pdf"})
+        files.push_back({picture, {"draw", "tiny.yaml", "-o", picture}});
+    if (gdal_problem().empty())
+        for (const char* const map : {"mine.gpkg", "mine.geojson"}) files.push_back({map, {"export", "r", "-o", map}});
+    for (const auto& [file, command] : files) {
+        write(file, "mine");
+        expect_refused(command, AllOf(HasSubstr(file), HasSubstr("which would be lost")));
+        EXPECT_EQ(content_of(path(file)), "mine");
+        write(file, ""); // as mktemp makes it
+        EXPECT_EQ(kluft(command).code, 0) << file;
+        EXPECT_EQ(kluft(command).code, 0) << file << ": its own gives way";
+        fs::remove(path(file));
+        fs::create_directory(path(file));
+        expect_refused(command, HasSubstr("found a directory"));
+        fs::remove(path(file));
+        ASSERT_EQ(mkfifo(path(file).c_str(), 0600), 0);
+        expect_refused(command, HasSubstr("found a pipe"));
+    }
+}
+
 TEST_F(CommandLine, ARunIsExportedAsAMapInTheSystemOfItsScene) {
     write("tiny.yaml", std::regex_replace(tiny_scene, std::regex("domain: \\{rectangle: \\{"),
                                           "crs: EPSG:25832\n  domain: {rectangle: {origin: [691400, 5334600], "));
@@ -1565,6 +1590,7 @@ TEST_F(CommandLine, PicturesAndMapsThatNobodyNamedReplaceTheirLikeOnly) {
         expect_refused(words,
                        AllOf(StartsWith(name + ": expected a "), HasSubstr("would be lost; choose a name with -o")));
         EXPECT_EQ(content_of(path(name)), "mine");
+        fs::remove(path(name));
         EXPECT_EQ(kluft(with(words, {"-o", name})).code, 0);
         for (int i = 0; i < 2; ++i) EXPECT_EQ(kluft(words).code, 0) << name;
     }

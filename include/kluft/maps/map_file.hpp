@@ -37,4 +37,7 @@ inline constexpr std::string_view geopackage_mark = "Made by Kluft from a state 
 /// Whether map_file_content has made the GeoPackage, whatever others have done to it since.
 [[nodiscard]] bool is_own_geopackage(std::string_view content);
 
+/// Whether map_file_content has made the GeoJSON: GDAL writes the name of the layer into its head.
+[[nodiscard]] bool is_own_geojson(std::string_view content);
+
 } // namespace kluft

@@ -30,4 +30,7 @@ struct ReportPage {
 
 [[nodiscard]] std::string html_of(const ReportPage& page);
 
+/// Whether html_of has made the page: its head says so.
+[[nodiscard]] bool is_report_page(std::string_view content);
+
 } // namespace kluft
