@@ -80,6 +80,9 @@ public:
             }
         });
         report.motion = MotionReport{time_steps_, motion_.time_step(), worst_energy_error_};
+        if (report.status == RunStatus::interrupted)
+            report.diagnosis =
+                "an explicit run does not go on from its saved state, which has no velocities: it is run anew";
         return report;
     }
 

@@ -146,7 +146,10 @@ void add_end(const RunFacts& facts, std::vector<std::string>& warnings) {
         warnings.push_back("The run ended early, out of disk or memory" + message);
         return;
     case RunStatus::interrupted:
-        warnings.push_back("The run was stopped before its end; kluft run --resume goes on with it" + message);
+        warnings.push_back((facts.summary->motion
+                                ? "The run was stopped before its end"
+                                : "The run was stopped before its end; kluft run --resume goes on with it") +
+                           message);
         return;
     }
 }

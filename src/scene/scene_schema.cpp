@@ -29,7 +29,9 @@ std::vector<KeyRule> analysis_rules() {
          .fallback = "implicit",
          .doc = "How the body moves from one state to the next: `implicit` finds equilibrium in every load step, "
                 "`explicit` follows the damped motion in small time steps, as a reference for the other. Of `solver` "
-                "it uses `balance` and `max_unbalanced_steps` only."},
+                "it uses `balance` and `max_unbalanced_steps` only. An explicit run cannot be resumed: its saved state "
+                "has no "
+                "velocities."},
         {.path = "analysis.damping",
          .type = KeyType::number,
          .range = {.least = 0.0, .most = 1.0, .open_above = true},

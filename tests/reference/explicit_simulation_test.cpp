@@ -368,6 +368,7 @@ TEST(ExplicitSimulation, InterruptedRunKeepsTheLastCommittedStep) {
     const std::atomic<bool> stop{true};
     const auto report = run_explicit(model, scene.cracks, scene.solver, scene.explicit_options, state, observer, stop);
     EXPECT_EQ(report.status, RunStatus::interrupted);
+    EXPECT_THAT(report.diagnosis, testing::HasSubstr("does not go on from its saved state"));
     EXPECT_EQ(state.at.step, 0);
     EXPECT_EQ(state.body.displacement.norm(), 0.0);
 }

@@ -176,6 +176,9 @@ TEST(RunAnswer, OfARunThatWasKilledOrStoppedSaysSo) {
     RunFacts facts = pressed();
     facts.summary->status = RunStatus::interrupted;
     EXPECT_THAT(run_answer(facts).warnings, Contains(HasSubstr("kluft run --resume")));
+    facts.summary->motion = MotionReport{}; // of an explicit run, which does not go on
+    EXPECT_THAT(run_answer(facts).warnings, Not(Contains(HasSubstr("--resume"))));
+    EXPECT_THAT(run_answer(facts).warnings, Contains(HasSubstr("was stopped before its end")));
     facts.summary->status = RunStatus::out_of_resources;
     facts.summary->message = "disk full";
     EXPECT_THAT(run_answer(facts).warnings, Contains(HasSubstr("disk full")));
