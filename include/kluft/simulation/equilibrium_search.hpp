@@ -21,8 +21,9 @@ namespace kluft {
 
 /// What a search should know of the body and of its loads.
 struct Circumstances {
-    bool unloaded = false;    ///< contacts carry no force yet (IterationGoal)
-    bool given_loads = false; ///< and not the motion of a platen (IterationGoal)
+    bool unloaded = false;     ///< contacts carry no force yet (IterationGoal)
+    bool given_loads = false;  ///< and not the motion of a platen (IterationGoal)
+    bool may_be_loose = false; ///< a body that carries nothing: its blocks may be moved apart
 };
 
 /// What was found at one load level.
@@ -60,7 +61,8 @@ public:
     [[nodiscard]] const std::vector<std::pair<int, int>>& near_pairs() const { return near_pairs_; }
     void order_for(std::vector<std::pair<int, int>> near_pairs);
 
-    /// Solves from `guess`, and again from the result, until the mass-like term is small (docs/theory.md, balance) and the
+    /// Where a body may be loose and carries nothing, its blocks are moved apart if friction could not make them carry (29f). Else
+    /// solves from `guess`, and again from the result, until the mass-like term is small (docs/theory.md, balance) and the
     /// platens press on all that they hold and are penetrated by nothing (docs/theory.md, platens).
     [[nodiscard]] Equilibrium find(const EquilibriumProblem& problem, const Eigen::VectorXd& guess,
                                    const BlockGoal& balance, const Circumstances& circumstances);
@@ -77,6 +79,8 @@ public:
 private:
     template <class Solve>
     Equilibrium find_touching(const EquilibriumProblem& problem, Aim aim, const BlockGoal& balance, Solve solve);
+    Equilibrium find_apart(EquilibriumProblem problem, const BlockGoal& balance);
+    Equilibrium settle_apart(EquilibriumProblem problem, Eigen::VectorXd from, const BlockGoal& balance);
     Equilibrium find_held(EquilibriumProblem problem, Eigen::VectorXd guess, const BlockGoal& balance,
                           const Circumstances& circumstances);
     Equilibrium find_by_held_friction(EquilibriumProblem problem, Eigen::VectorXd guess, const BlockGoal& balance);
