@@ -300,7 +300,8 @@ namespace {
 
 constexpr std::string_view group_of_texts =
     "<g font-family=\"'DejaVu Sans', Verdana, sans-serif\" xml:space=\"preserve\">";
-constexpr std::string_view last_line_of_pdf = "% Drawn by Kluft\n";
+constexpr std::string_view table_of_pdf = "startxref"; ///< after it comes the end, which readers look for
+constexpr std::string_view maker_of_pdf = "% Drawn by Kluft\n";
 
 } // namespace
 
@@ -323,7 +324,7 @@ std::string draw_picture(PictureFormat format, double width, double height, doub
         draw_on(surface.get(), width, height, 1.0, draw, format == PictureFormat::svg ? &svg_texts : nullptr);
         cairo_surface_finish(surface.get());
         check(cairo_surface_status(surface.get()));
-        if (format == PictureFormat::pdf) bytes += last_line_of_pdf;
+        if (format == PictureFormat::pdf) bytes.insert(bytes.rfind(table_of_pdf), maker_of_pdf);
         if (!svg_texts.empty())
             bytes.insert(bytes.rfind("</svg>"), std::string(group_of_texts) + "\n" + svg_texts + "</g>\n");
     } else {
@@ -344,7 +345,7 @@ bool is_drawn_picture(PictureFormat format, std::string_view content) {
     case PictureFormat::svg:
         return content.find(group_of_texts) != std::string_view::npos;
     case PictureFormat::pdf:
-        return content.ends_with(last_line_of_pdf);
+        return content.find(std::string(maker_of_pdf) + std::string(table_of_pdf)) != std::string_view::npos;
     }
     return false;
 }

@@ -109,7 +109,7 @@ enum class PictureFormat { png, svg, pdf };
 [[nodiscard]] std::string draw_picture(PictureFormat format, double width, double height, double pixels_per_point,
                                        const std::function<void(Canvas&)>& draw);
 
-/// Whether draw_picture has made the file: a PNG says so in a chunk of text, a PDF in its last line, and a SVG has its texts in a group
+/// Whether draw_picture has made the file: a PNG says so in a chunk of text, a PDF in a comment at its end, and a SVG has its texts in a group
 /// of its own.
 [[nodiscard]] bool is_drawn_picture(PictureFormat format, std::string_view content);
 
