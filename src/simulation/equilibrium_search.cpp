@@ -7,6 +7,7 @@
 #include "kluft/equilibrium/left_over.hpp"
 #include "kluft/equilibrium/loose_blocks.hpp"
 #include "kluft/simulation/mass_term.hpp"
+#include "kluft/simulation/over_damped_motion.hpp"
 #include "kluft/simulation/whole_body.hpp"
 
 namespace kluft {
@@ -20,13 +21,11 @@ constexpr double sharpening = 0.1;   ///< of the tolerance, where what a solve l
 constexpr double sharpest = 1e-5;    ///< of the tolerance
 constexpr int rounds_that_open = 12; ///< points of platens: then they may only close
 constexpr int max_platen_rounds = 24;
-constexpr double eta_of_parting = 0.01; ///< of that of (26), while loose blocks are moved apart
 constexpr double eta_of_settling =
-    3e4; ///< of the same, when they have been: what is left over is small, and so is the way
+    3e4; ///< of that of (26), when loose blocks have been moved apart: what is left over is small, and so is the way
 constexpr double settling_decay = 0.5; ///< of that, from round to round
 constexpr int settling_rounds = 12;
-constexpr double longest_parting = 5e-3; ///< motion of a block: contacts are to be detected anew after it
-constexpr double share_of_solve = 0.1;   ///< of what may be left over on a block: largest residual of a solve
+constexpr double share_of_solve = 0.1; ///< of what may be left over on a block: largest residual of a solve
 
 OpenCloseOptions open_close_options(const SolverOptions& solver) {
     OpenCloseOptions options;
@@ -144,37 +143,33 @@ Equilibrium EquilibriumSearch::find_touching(const EquilibriumProblem& problem, 
 
 Equilibrium EquilibriumSearch::find(const EquilibriumProblem& problem, const Eigen::VectorXd& guess,
                                     const BlockGoal& balance, const Circumstances& circumstances) {
-    Equilibrium apart;
-    if (circumstances.may_be_loose && is_loose(problem)) apart = find_apart(problem, balance);
-    if (apart.balanced) return apart;
     Equilibrium found =
         find_touching(problem, Aim::equilibrium, balance, [&](const EquilibriumProblem& held, const Equilibrium* last) {
             if (last == nullptr) return find_held(held, guess, balance, circumstances);
             return find_held(held, last->displacement, balance,
                              {.unloaded = false, .given_loads = circumstances.given_loads});
         });
-    found.iterations += apart.iterations;
+    if (found.balanced || !circumstances.may_be_loose || !is_loose(problem)) return found;
+    Equilibrium apart = find_apart(problem, balance);
+    apart.iterations += found.iterations;
+    if (apart.balanced) return apart;
+    found.iterations = apart.iterations;
     return found;
 }
 
-/// Where loose blocks are moved apart to (29f), if friction could not make them carry (29h). Not balanced where it could, or where this way
-/// comes to nothing.
+/// Where loose blocks go (29f). Not balanced where friction could make them carry (29h), where they would jump, or where this way comes
+/// to nothing.
 Equilibrium EquilibriumSearch::find_apart(EquilibriumProblem problem, const BlockGoal& balance) {
-    const double eta = problem.eta.front();
-    std::ranges::fill(problem.eta, eta_of_parting * eta);
     Equilibrium found;
-    PartedBlocks parted;
-    for (const Passage passage : {Passage::opening, Passage::sliding}) {
-        parted = part_blocks(linear_, problem, pattern_, passage);
-        open_close_.start_anew();
-        found.iterations += parted.iterations;
-        if (parted.displacement.size() == 0) return found;
-    }
-    if (relative_motion(model_.system, parted.displacement - problem.start) > longest_parting) return found;
+    const PartedBlocks parted = part_blocks(linear_, problem, pattern_);
+    open_close_.start_anew();
+    found.iterations = parted.iterations;
+    if (parted.displacement.size() == 0) return found;
+    if (relative_motion(model_.system, parted.displacement - problem.start) > jump_motion) return found;
     Loads loads = *problem.body.loads;
     open_platens(problem.body, parted.displacement, loads);
     problem.body.loads = &loads;
-    std::ranges::fill(problem.eta, eta_of_settling * eta);
+    for (double& eta : problem.eta) eta *= eta_of_settling;
     const int n_parting = found.iterations;
     found =
         find_touching(problem, Aim::equilibrium, balance, [&](const EquilibriumProblem& held, const Equilibrium* last) {

@@ -61,9 +61,9 @@ public:
     [[nodiscard]] const std::vector<std::pair<int, int>>& near_pairs() const { return near_pairs_; }
     void order_for(std::vector<std::pair<int, int>> near_pairs);
 
-    /// Where a body may be loose and carries nothing, its blocks are moved apart if friction could not make them carry (29f). Else
-    /// solves from `guess`, and again from the result, until the mass-like term is small (docs/theory.md, balance) and the
-    /// platens press on all that they hold and are penetrated by nothing (docs/theory.md, platens).
+    /// Solves from `guess`, and again from the result, until the mass-like term is small (docs/theory.md, balance) and the
+    /// platens press on all that they hold and are penetrated by nothing (docs/theory.md, platens). Where that finds nothing and a body
+    /// that may be loose carries nothing, its blocks are moved out of the way if friction could not make them carry (29f).
     [[nodiscard]] Equilibrium find(const EquilibriumProblem& problem, const Eigen::VectorXd& guess,
                                    const BlockGoal& balance, const Circumstances& circumstances);
     /// One step of a motion from the problem's start.
