@@ -14,7 +14,8 @@ namespace kluft {
 
 namespace {
 
-constexpr double steepest_friction = 100.0; ///< tangent, on a platen on which all points stick
+constexpr double steepest_friction =
+    100.0; ///< tangent: of a platen on which all points stick, and beside friction of cohesion
 
 constexpr double eta_of_following = 1e-5; ///< of that of (26), where it is asked whether the platens can be followed
 constexpr double opening_friction =
@@ -45,11 +46,13 @@ struct Spot {
     double pressing = 0.0; ///< force, at the start or as found last (N/m)
 
     /// The steepest that the shear force rises with small pressing forces.
-    [[nodiscard]] double steepest() const { return tan_friction + (cohesion > 0.0 ? cohesion / onset : 0.0); }
+    [[nodiscard]] double steepest() const {
+        return tan_friction + (cohesion > 0.0 ? std::min(cohesion / onset, steepest_friction) : 0.0);
+    }
     /// Of the shear force beside what dilation resists.
     [[nodiscard]] double friction_limit() const {
-        const double whole = cohesion > 0.0 ? std::min(1.0, pressing / onset) : 0.0;
-        return (tan_friction - tan_dilation) * pressing + whole * cohesion;
+        if (pressing <= 0.0) return 0.0;
+        return (tan_friction - tan_dilation) * pressing + cohesion * std::min(1.0, pressing / onset);
     }
 };
 

@@ -96,10 +96,12 @@ TEST(LooseBlocks, PushAwayWhatFrictionDoesNotHold) {
     EXPECT_LT(body.motion(BlockUnderAPlaten::middle).x(), -0.1);
 }
 
-// Under small pressures a joint with cohesion is steeper than its friction: t_r = 0.01 c, and 100 in place of tan 10.
+// Under small pressures a joint with cohesion is steeper than its friction: t_r = 0.01 c, and 100 in place of tan 10; or whole at once.
 TEST(LooseBlocks, AreHeldByCohesion) {
-    BlockUnderAPlaten body("friction_angle: 10, cohesion: 1 MPa");
-    EXPECT_EQ(body.part().displacement.size(), 0);
+    for (const char* onset : {"", ", cohesion_onset: 0"}) {
+        BlockUnderAPlaten body(fmt::format("friction_angle: 10, cohesion: 1 MPa{}", onset));
+        EXPECT_EQ(body.part().displacement.size(), 0);
+    }
 }
 
 // A joint that dilates by 10 degrees opens as it slides: along a way that is flatter by so much.
