@@ -312,16 +312,6 @@ void hold_by_platens(const LoadedBody& body, const Eigen::VectorXd& q, Loads& lo
         body.kinematics == Kinematics::rigid ? Constraints(std::move(rows), system, q) : Constraints(std::move(rows));
 }
 
-void open_platens(const LoadedBody& body, const Eigen::VectorXd& q, Loads& loads) {
-    if (loads.platens.empty()) return;
-    for (PlatenPoint& point : loads.platen_points) {
-        if (!touches(point.contact) || platen_on(loads.platens, point.boundary)->glued) continue;
-        point.contact = PlatenContact::open;
-        point.friction = 0.0;
-    }
-    hold_by_platens(body, q, loads);
-}
-
 bool update_platen_points(const BlockSystem& system, const Eigen::VectorXd& q, const Eigen::VectorXd& residual,
                           bool may_open, Loads& loads) {
     if (loads.platen_points.empty()) return false;

@@ -5,9 +5,7 @@
 
 #include "kluft/equilibrium/held_friction.hpp"
 #include "kluft/equilibrium/left_over.hpp"
-#include "kluft/equilibrium/loose_blocks.hpp"
 #include "kluft/simulation/mass_term.hpp"
-#include "kluft/simulation/over_damped_motion.hpp"
 #include "kluft/simulation/whole_body.hpp"
 
 namespace kluft {
@@ -21,10 +19,6 @@ constexpr double sharpening = 0.1;   ///< of the tolerance, where what a solve l
 constexpr double sharpest = 1e-5;    ///< of the tolerance
 constexpr int rounds_that_open = 12; ///< points of platens: then they may only close
 constexpr int max_platen_rounds = 24;
-constexpr double eta_of_settling =
-    3e4; ///< of that of (26), when loose blocks have been moved apart: what is left over is small, and so is the way
-constexpr double settling_decay = 0.5; ///< of that, from round to round
-constexpr int settling_rounds = 12;
 constexpr double share_of_solve = 0.1; ///< of what may be left over on a block: largest residual of a solve
 
 OpenCloseOptions open_close_options(const SolverOptions& solver) {
@@ -59,16 +53,6 @@ bool lags_behind(const EquilibriumProblem& problem, const Equilibrium& found, do
 bool has_friction(const LoadedBody& body) {
     return std::ranges::any_of(body.placement->contacts,
                                [&](const ContactPoint& point) { return (*body.laws)[point.law].tan_friction > 0.0; });
-}
-
-/// Whether nothing acts on a body but platens that can only press, and it carries nothing any more (27c).
-bool is_loose(const EquilibriumProblem& problem) {
-    const LoadedBody& body = problem.body;
-    if (!(body.carried_stress > 0.0) || body.kinematics == Kinematics::rigid) return false;
-    if (problem.eta.empty() || body.loads->platen_force) return false;
-    if (std::ranges::any_of(body.loads->platens, &Platen::glued)) return false;
-    const OwnForces own = own_forces(body, problem.start);
-    return own.has_shed_its_load && std::ranges::none_of(own.loaded, [](char loaded) { return loaded != 0; });
 }
 
 /// Each block and group, and the mass-like term, which holds strains of blocks back too.
@@ -143,60 +127,12 @@ Equilibrium EquilibriumSearch::find_touching(const EquilibriumProblem& problem, 
 
 Equilibrium EquilibriumSearch::find(const EquilibriumProblem& problem, const Eigen::VectorXd& guess,
                                     const BlockGoal& balance, const Circumstances& circumstances) {
-    Equilibrium found =
-        find_touching(problem, Aim::equilibrium, balance, [&](const EquilibriumProblem& held, const Equilibrium* last) {
-            if (last == nullptr) return find_held(held, guess, balance, circumstances);
-            return find_held(held, last->displacement, balance,
-                             {.unloaded = false, .given_loads = circumstances.given_loads});
-        });
-    if (found.balanced || !circumstances.may_be_loose || !is_loose(problem)) return found;
-    Equilibrium apart = find_apart(problem, balance);
-    apart.iterations += found.iterations;
-    if (apart.balanced) return apart;
-    found.iterations = apart.iterations;
-    return found;
-}
-
-/// Where loose blocks go (29f). Not balanced where friction could make them carry (29h), where they would jump, or where this way comes
-/// to nothing.
-Equilibrium EquilibriumSearch::find_apart(EquilibriumProblem problem, const BlockGoal& balance) {
-    Equilibrium found;
-    const PartedBlocks parted = part_blocks(linear_, problem, pattern_);
-    open_close_.start_anew();
-    found.iterations = parted.iterations;
-    if (parted.displacement.size() == 0) return found;
-    if (relative_motion(model_.system, parted.displacement - problem.start) > jump_motion) return found;
-    Loads loads = *problem.body.loads;
-    open_platens(problem.body, parted.displacement, loads);
-    problem.body.loads = &loads;
-    for (double& eta : problem.eta) eta *= eta_of_settling;
-    const int n_parting = found.iterations;
-    found =
-        find_touching(problem, Aim::equilibrium, balance, [&](const EquilibriumProblem& held, const Equilibrium* last) {
-            return settle_apart(held, last != nullptr ? last->displacement : parted.displacement, balance);
-        });
-    found.iterations += n_parting;
-    if (!found.hold)
-        found.hold = {std::move(loads.platen_points), std::move(loads.constraints), std::move(loads.friction)};
-    return found;
-}
-
-/// Lets blocks that have been moved apart give back what still presses on them.
-Equilibrium EquilibriumSearch::settle_apart(EquilibriumProblem problem, Eigen::VectorXd from,
-                                            const BlockGoal& balance) {
-    Equilibrium found;
-    found.displacement = std::move(from);
-    for (int round = 0; round < settling_rounds && !found.balanced; ++round) {
-        problem.start = found.displacement;
-        iterate(problem, balance, {}, found);
-        if (!found.converged()) return found;
-        found.viscous_share = viscous_share(problem, found.displacement, found.summary.force_scale);
-        found.blocks = block_balance(problem.body, found.displacement);
-        found.verdict = judge_blocks(found.blocks, nullptr, balance);
-        found.balanced = is_balanced(found, balance);
-        for (double& each : problem.eta) each *= settling_decay;
-    }
-    return found;
+    return find_touching(problem, Aim::equilibrium, balance,
+                         [&](const EquilibriumProblem& held, const Equilibrium* last) {
+                             if (last == nullptr) return find_held(held, guess, balance, circumstances);
+                             return find_held(held, last->displacement, balance,
+                                              {.unloaded = false, .given_loads = circumstances.given_loads});
+                         });
 }
 
 Equilibrium EquilibriumSearch::find_held(EquilibriumProblem problem, Eigen::VectorXd guess, const BlockGoal& balance,

@@ -139,8 +139,7 @@ Equilibrium find_at(StepInProgress& p, const PlacedState& placed, double load_fa
     const LoadsAt at = p.loads_at(load_factor);
     if (model.kinematics == Kinematics::rigid) make_rigid(model.system, guess);
     const Circumstances circumstances{.unloaded = state.body.contacts.empty(),
-                                      .given_loads = is_loaded_by_stress(p.bench.stage(p.from)),
-                                      .may_be_loose = load_factor == p.goal.load_factor};
+                                      .given_loads = is_loaded_by_stress(p.bench.stage(p.from))};
     Equilibrium found = search.find(pose(model, placed, at, p.displacement()), guess, p.goal.balance, circumstances);
     found.load_factor = load_factor;
     found.strength_factor = at.strength_factor;

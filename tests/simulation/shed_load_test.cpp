@@ -71,7 +71,7 @@ TEST_P(ShedLoad, PiecesThatCarryNothingComeToStand) {
         EXPECT_TRUE(row.balanced) << row.axial_strain;
         n_solves += row.open_close_iterations;
     }
-    EXPECT_LT(n_solves, 100 * static_cast<int>(loose.size()));
+    EXPECT_LT(n_solves, 400 * static_cast<int>(loose.size()));
 }
 
 INSTANTIATE_TEST_SUITE_P(SlowSeeds, ShedLoad, testing::Values(1));

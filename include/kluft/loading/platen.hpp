@@ -76,9 +76,6 @@ void append_rows(const BlockSystem& system, const Platen& platen, const PlatenPo
 /// are linearised at q.
 void hold_by_platens(const LoadedBody& body, const Eigen::VectorXd& q, Loads& loads);
 
-/// Takes all points off the platens that are not glued.
-void open_platens(const LoadedBody& body, const Eigen::VectorXd& q, Loads& loads);
-
 /// Which points touch, slide and stick at displacements q, by the `forces` (internal - external, without the supports', N/m)
 /// on those that are held and by the place of the others (docs/theory.md 28a). True if any has changed; the rows are then to
 /// be made anew. Points leave their platen only where they `may_open`; the last one of a platen under a given force stays.

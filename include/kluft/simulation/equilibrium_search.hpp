@@ -21,9 +21,8 @@ namespace kluft {
 
 /// What a search should know of the body and of its loads.
 struct Circumstances {
-    bool unloaded = false;     ///< contacts carry no force yet (IterationGoal)
-    bool given_loads = false;  ///< and not the motion of a platen (IterationGoal)
-    bool may_be_loose = false; ///< a body that carries nothing: its blocks may be moved apart
+    bool unloaded = false;    ///< contacts carry no force yet (IterationGoal)
+    bool given_loads = false; ///< and not the motion of a platen (IterationGoal)
 };
 
 /// What was found at one load level.
@@ -62,8 +61,7 @@ public:
     void order_for(std::vector<std::pair<int, int>> near_pairs);
 
     /// Solves from `guess`, and again from the result, until the mass-like term is small (docs/theory.md, balance) and the
-    /// platens press on all that they hold and are penetrated by nothing (docs/theory.md, platens). Where that finds nothing and a body
-    /// that may be loose carries nothing, its blocks are moved out of the way if friction could not make them carry (29f).
+    /// platens press on all that they hold and are penetrated by nothing (docs/theory.md, platens).
     [[nodiscard]] Equilibrium find(const EquilibriumProblem& problem, const Eigen::VectorXd& guess,
                                    const BlockGoal& balance, const Circumstances& circumstances);
     /// One step of a motion from the problem's start.
@@ -79,8 +77,6 @@ public:
 private:
     template <class Solve>
     Equilibrium find_touching(const EquilibriumProblem& problem, Aim aim, const BlockGoal& balance, Solve solve);
-    Equilibrium find_apart(EquilibriumProblem problem, const BlockGoal& balance);
-    Equilibrium settle_apart(EquilibriumProblem problem, Eigen::VectorXd from, const BlockGoal& balance);
     Equilibrium find_held(EquilibriumProblem problem, Eigen::VectorXd guess, const BlockGoal& balance,
                           const Circumstances& circumstances);
     Equilibrium find_by_held_friction(EquilibriumProblem problem, Eigen::VectorXd guess, const BlockGoal& balance);
