@@ -133,8 +133,8 @@ bool levels_off(const Rows& rows, double sense) {
 }
 
 /// None where the peak lies in the last fifth of the strain, as where a run ends with the drop behind it: the stress has not settled.
-std::optional<double> residual_stress(const Rows& history, std::optional<int> platen_stage, double peak_strain) {
-    const Rows rows = balanced_rows(platen_rows(history, platen_stage.value_or(0)));
+std::optional<double> residual_stress(const Rows& history, int platen_stage, double peak_strain) {
+    const Rows rows = balanced_rows(platen_rows(history, platen_stage));
     if (rows.empty()) return std::nullopt;
     const double first = rows.front().axial_strain;
     const double last = rows.back().axial_strain;
@@ -333,6 +333,10 @@ RunSummary summary_in(const Json& json) {
     json.at("title").get_to(summary.title);
     read_numbers(json, summary.numbers);
     if (!json.at("platen_stage").is_null()) summary.platen_stage = json.at("platen_stage").get<int>();
+    if (!summary.platen_stage) { // an earlier version gave the stress of a load
+        summary.numbers.peak_stress.reset();
+        summary.numbers.peak_strain.reset();
+    }
     json.at("blocks").get_to(summary.blocks);
     json.at("interfaces").get_to(summary.interfaces);
     json.at("unknowns").get_to(summary.unknowns);
@@ -437,24 +441,33 @@ bool is_unloaded_before_fall(const std::vector<StepRecord>& rows, const StepReco
            std::max(of_lateral * std::abs(peak.lateral_stress), of_axial * std::abs(peak.axial_stress));
 }
 
+namespace {
+
+void add_peak_numbers(const Rows& all, const Rows& history, int platen_stage, CurveNumbers& numbers) {
+    const auto peak = peak_row(all, platen_stage);
+    if (!peak) return;
+    const double sense = platen_sense(all, platen_stage);
+    numbers.peak_stress = peak->axial_stress;
+    numbers.peak_strain = peak->axial_strain;
+    numbers.jumps_to_peak = peak->jumps;
+    numbers.net_locked = is_net_locked(all, platen_stage);
+    numbers.peak_reached = !numbers.net_locked && falls_after_peak(all, *peak, sense);
+    numbers.levelled_off =
+        !numbers.net_locked && !numbers.peak_reached && levels_off(platen_rows(all, platen_stage), sense);
+    numbers.sides_unloaded = is_strength(numbers) && is_unloaded_before_fall(all, *peak, platen_stage);
+    if (numbers.peak_reached) numbers.residual_stress = residual_stress(history, platen_stage, peak->axial_strain);
+}
+
+} // namespace
+
 CurveNumbers curve_numbers(const std::vector<StepRecord>& equilibria, const std::vector<StepRecord>& history,
                            std::optional<int> platen_stage, Plane plane) {
     CurveNumbers numbers;
     const Rows& all = equilibria.empty() ? history : equilibria;
-    const auto peak = peak_row(all, platen_stage);
-    if (peak && (platen_stage || peak->axial_stress != 0.0)) { // else nothing presses on a gauge of the axial stress
-        numbers.peak_stress = peak->axial_stress;
-        numbers.peak_strain = peak->axial_strain;
-        numbers.jumps_to_peak = peak->jumps;
-        numbers.net_locked = is_net_locked(all, platen_stage);
-        numbers.peak_reached =
-            platen_stage && !numbers.net_locked && falls_after_peak(all, *peak, platen_sense(all, platen_stage));
-        numbers.levelled_off = platen_stage && !numbers.net_locked && !numbers.peak_reached &&
-                               levels_off(platen_rows(all, *platen_stage), platen_sense(all, platen_stage));
-        numbers.sides_unloaded = is_strength(numbers) && is_unloaded_before_fall(all, *peak, platen_stage);
+    if (platen_stage) {
+        add_peak_numbers(all, history, *platen_stage, numbers);
+        add_elastic_constants(all, history, *platen_stage, plane, numbers);
     }
-    if (numbers.peak_reached) numbers.residual_stress = residual_stress(history, platen_stage, *numbers.peak_strain);
-    if (platen_stage) add_elastic_constants(all, history, *platen_stage, plane, numbers);
     add_counts(history, numbers);
     return numbers;
 }

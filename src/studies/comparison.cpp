@@ -150,7 +150,8 @@ std::optional<double> matching_distance(const FinishedRun& a, const FinishedRun&
 
 std::optional<CurveDifference> difference_of_curves(const FinishedRun& a, const FinishedRun& b) {
     const auto peak = peak_row(a.fine_rows(), a.platen_stage);
-    if (!peak || !a.numbers.peak_strain || !b.numbers.peak_strain) return std::nullopt;
+    if (!a.platen_stage || !b.platen_stage || !peak || !a.numbers.peak_strain || !b.numbers.peak_strain)
+        return std::nullopt;
     if (*a.numbers.peak_strain * *b.numbers.peak_strain < 0.0) return std::nullopt; // one pressed, one pulled
     return curve_difference(platen_rows(a.fine_rows(), a.platen_stage.value_or(0)),
                             platen_rows(b.fine_rows(), b.platen_stage.value_or(0)),
@@ -158,17 +159,30 @@ std::optional<CurveDifference> difference_of_curves(const FinishedRun& a, const 
                             std::abs(peak->differential_stress));
 }
 
-/// `tested`: a platen moves in one of the runs; without one strain and modulus mean nothing.
-void add_mechanics(const CurveNumbers& a, const CurveNumbers& b, bool tested, TableWriter& writer) {
-    const auto judge = [&](ComparedQuantity& quantity) {
-        if (tested) writer.judge(quantity);
-    };
-    ComparedQuantity& peak = writer.add("peak_stress", "peak axial stress", "MPa", mega, a.peak_stress, b.peak_stress);
-    if (tested || a.peak_stress || b.peak_stress) writer.judge(peak);
+void add_mechanics(const CurveNumbers& a, const CurveNumbers& b, TableWriter& writer) {
+    const auto judge = [&](ComparedQuantity& quantity) { writer.judge(quantity); };
+    judge(writer.add("peak_stress", "peak axial stress", "MPa", mega, a.peak_stress, b.peak_stress));
     judge(writer.add("peak_strain", "peak strain", "%", 1.0 / percent, a.peak_strain, b.peak_strain));
     judge(writer.add("youngs_modulus", "Young's modulus", "MPa", mega, a.youngs_modulus, b.youngs_modulus));
     writer.add("poissons_ratio", "Poisson's ratio", "", 1.0, a.poissons_ratio, b.poissons_ratio);
     writer.add("residual_stress", "residual axial stress", "MPa", mega, a.residual_stress, b.residual_stress);
+}
+
+/// Of runs without a strength: how far their loads went. At another stage the factors say nothing.
+void add_load(const FinishedRun& a, const FinishedRun& b, TableWriter& writer) {
+    const auto last = [](const FinishedRun& run) {
+        const auto row = std::find_if(run.history.rbegin(), run.history.rend(),
+                                      [](const StepRecord& each) { return each.balanced && each.load_factor > 0.0; });
+        return row == run.history.rend() ? std::nullopt : std::optional(*row);
+    };
+    const auto of_a = last(a);
+    const auto of_b = last(b);
+    const auto factor = [](const std::optional<StepRecord>& row) {
+        return row ? std::optional(row->load_factor) : std::nullopt;
+    };
+    ComparedQuantity& load = writer.add("load_factor", "last load factor", "", 1.0, factor(of_a), factor(of_b));
+    if (of_a && of_b && of_a->stage != of_b->stage) load.difference.reset();
+    writer.judge(load);
 }
 
 void add_cracks(const FinishedRun& a, const FinishedRun& b, const Comparison& comparison, TableWriter& writer) {
@@ -400,11 +414,13 @@ Comparison compare_runs(const FinishedRun& a, const FinishedRun& b, double toler
     const auto curves = difference_of_curves(a, b);
     if (curves) table.curve_end = curves->end;
     TableWriter writer(table);
-    add_mechanics(a.numbers, b.numbers, a.platen_stage || b.platen_stage, writer);
+    add_mechanics(a.numbers, b.numbers, writer);
     const auto factor_a = a.summary ? a.summary->results.factor_of_safety : std::nullopt;
     const auto factor_b = b.summary ? b.summary->results.factor_of_safety : std::nullopt;
     if (factor_a || factor_b)
         writer.judge(writer.add("factor_of_safety", "factor of safety", "", 1.0, factor_a, factor_b));
+    else if (!a.platen_stage && !b.platen_stage)
+        add_load(a, b, writer);
     add_cracks(a, b, comparison, writer);
     add_curves(curves, writer);
     add_costs(a, b, writer);
@@ -446,14 +462,17 @@ void write_comparison(const std::filesystem::path& directory, const FinishedRun&
     for (const char* name : pictures_and_text) remove_file(directory / name);
     ComparisonTable& table = comparison.table;
     const Model* const model = a.model ? &*a.model : b.model ? &*b.model : nullptr;
-    table.pictures = {"curves.png"};
+    const bool has_curve = a.platen_stage || b.platen_stage;
+    if (has_curve) table.pictures = {"curves.png"};
     if (model != nullptr) table.pictures.emplace_back("cracks.png");
     write_file(directory / "compare.json", comparison_json(table)); // first: it says whose the others are
-    CurvePlot curves = stress_strain_plot(fmt::format("{} and {}", a.name, b.name),
-                                          {{a.name, a.history, a.equilibria, a.platen_stage.value_or(0)},
-                                           {b.name, b.history, b.equilibria, b.platen_stage.value_or(0)}});
-    curves.curves.back().dashed = true;
-    for (const char* name : {"curves.png", "curves.svg"}) write_curves(directory / name, curves);
+    if (has_curve) {
+        CurvePlot curves = stress_strain_plot(fmt::format("{} and {}", a.name, b.name),
+                                              {{a.name, a.history, a.equilibria, a.platen_stage.value_or(0)},
+                                               {b.name, b.history, b.equilibria, b.platen_stage.value_or(0)}});
+        curves.curves.back().dashed = true;
+        for (const char* name : {"curves.png", "curves.svg"}) write_curves(directory / name, curves);
+    }
     if (model != nullptr) {
         const CracksPlot cracks = cracks_plot(a, b, comparison.matches);
         write_cracks(directory / "cracks.png", model->system, cracks);

@@ -122,7 +122,15 @@ FinishedRun read_finished_run(const fs::path& directory, const std::string& name
         const int stage = make_gauges(*run.model).first_platen_stage;
         if (stage >= 0) run.platen_stage = stage;
     }
-    run.numbers = curve_numbers(run.equilibria, run.history, run.platen_stage, plane);
+    // of a body that is not known its tables are taken for those of a platen
+    const std::optional<int> of_platen = run.model ? run.platen_stage : 0;
+    run.numbers = curve_numbers(run.equilibria, run.history, of_platen, plane);
+    if (!run.model) { // of which stage is not known
+        CurveNumbers& numbers = run.numbers;
+        for (std::optional<double>* const constant :
+             {&numbers.axial_modulus, &numbers.lateral_ratio, &numbers.youngs_modulus, &numbers.poissons_ratio})
+            constant->reset();
+    }
     return run;
 }
 

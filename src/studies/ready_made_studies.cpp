@@ -40,7 +40,7 @@ std::size_t studied_stage(const Scene& scene) {
 const char* quantities_of(const Stage& stage) {
     if (stage.strength_reduction) return "factor_of_safety, cracks_tension, cracks_shear";
     return stage.motion ? "peak_stress, peak_strain, residual_stress, youngs_modulus, cracks_tension, cracks_shear"
-                        : "peak_stress, cracks_tension, cracks_shear";
+                        : "cracks_tension, cracks_shear";
 }
 
 } // namespace

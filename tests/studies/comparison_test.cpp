@@ -199,13 +199,36 @@ TEST(Comparison, OfARunWithItselfAgreesWithinNothing) {
 TEST(Comparison, WithoutPlatenStageHasNoModuliAndNoCurves) {
     FinishedRun run = triangle("a", 1e6);
     run.platen_stage.reset();
-    for (StepRecord& each : run.history) each.axial_strain = 0.0;
     run.numbers = curve_numbers({}, run.history, {}, Plane::stress);
+    for (StepRecord& each : run.history) each.load_factor = 1.0;
     const auto comparison = compare_runs(run, run, 0.05);
+    EXPECT_FALSE(quantity(comparison, "peak_stress").a);
     EXPECT_FALSE(quantity(comparison, "youngs_modulus").a);
     EXPECT_EQ(quantity(comparison, "youngs_modulus").verdict, Verdict::not_judged);
     EXPECT_FALSE(quantity(comparison, "curve_mean").difference);
-    EXPECT_TRUE(comparison.table.agree); // in what is known, the peak
+    EXPECT_TRUE(comparison.table.agree); // in what is known, the load factor
+    FinishedRun other = run;
+    other.history.back().load_factor = 0.9;
+    EXPECT_NEAR(*quantity(compare_runs(run, other, 0.05), "load_factor").difference, -0.1, 1e-12);
+    EXPECT_FALSE(compare_runs(run, other, 0.05).table.agree);
+    for (StepRecord& each : other.history) each = run.history.back();
+    for (StepRecord& each : other.history) each.stage = 7;
+    EXPECT_EQ(quantity(compare_runs(run, other, 0.05), "load_factor").verdict, Verdict::missed);
+}
+
+// The same slope at the same factor of safety, under loads whose strains differ by half.
+TEST(Comparison, OfFactorsOfSafetyHasNoCurve) {
+    const auto reduced = [](double stress) {
+        FinishedRun run = triangle("a", stress);
+        run.platen_stage.reset();
+        run.numbers = curve_numbers({}, run.history, {}, Plane::stress);
+        run.summary.emplace().results.factor_of_safety = 2.4;
+        return run;
+    };
+    const auto comparison = compare_runs(reduced(1e6), reduced(2e6), 0.05);
+    EXPECT_TRUE(comparison.table.agree);
+    EXPECT_EQ(quantity(comparison, "curve_mean").verdict, Verdict::not_judged);
+    EXPECT_EQ(quantity(comparison, "factor_of_safety").verdict, Verdict::within);
 }
 
 TEST(Comparison, OfARunWithoutAnyBalancedStepNeverAgrees) {

@@ -16,7 +16,8 @@ namespace kluft {
 
 /// The mechanical numbers of a run. Pa and fractions, positive in compression.
 struct CurveNumbers {
-    std::optional<double> peak_stress; ///< largest axial stress over all balanced equilibria, see peak_row
+    std::optional<double>
+        peak_stress; ///< largest axial stress over all balanced equilibria, see peak_row; none without a platen
     std::optional<double> peak_strain; ///< axial strain there
     bool peak_reached =
         false; ///< a later balanced equilibrium lies at least 1 % below the peak, or a state out of balance by half
@@ -71,7 +72,8 @@ struct CurveNumbers {
 /// the last before more than 1 % of what is closed slides, or of all joints have opened, or the platen has left the body; where those are fewer than three, over the rows up to 30 % of the peak differential stress, of
 /// which the last is interpolated where they are fewer than two. In plane stress E = slope, nu = ratio; in plane
 /// strain the slopes are E' = E/(1 - nu^2) and nu' = nu/(1 - nu), hence nu = nu'/(1 + nu') and E = E' (1 - nu^2). A body whose nu is not between 0 and 0.5 has no such constants.
-/// `platen_stage`: the first stage that moves a platen; without one there are no elastic constants.
+/// `platen_stage`: the first stage that moves a platen; without one there are no peak and no elastic constants, since
+/// the axial stress is that of a load.
 [[nodiscard]] CurveNumbers curve_numbers(const std::vector<StepRecord>& equilibria,
                                          const std::vector<StepRecord>& history, std::optional<int> platen_stage,
                                          Plane plane);

@@ -58,7 +58,8 @@ struct Comparison {
 
 /// Differences of b from a, relative to a. The runs agree if peak stress, peak strain, Young's modulus and the mean
 /// difference of the curves (up to the smaller peak strain, relative to the peak differential stress of a) are within
-/// `tolerance`, as far as they are known; what is known of one run only is a miss. Cracks are matched within the
+/// `tolerance`, as far as they are known, and so is a factor of safety; what is known of one run only is a miss. Runs that neither move a
+/// platen nor look for a factor are judged by the load factor of their last balanced load step, which must be of one stage. Cracks are matched within the
 /// spacing of the hexagons, the larger one of two bodies.
 [[nodiscard]] Comparison compare_runs(const FinishedRun& a, const FinishedRun& b, double tolerance);
 
@@ -69,7 +70,7 @@ struct Comparison {
 /// Throws InputError where the directory has a file that no comparison wrote and that write_comparison would take the place of.
 void require_no_other_comparison(const std::filesystem::path& directory);
 
-/// Writes compare.json, compare.md, curves.png, curves.svg, and where the body of a run is known cracks.png and
+/// Writes compare.json, compare.md, where a platen moves curves.png and curves.svg, and where the body of a run is known cracks.png and
 /// cracks.svg (no SVG of very many blocks); removes older ones. Enters the pictures into the table.
 /// Throws ResourceError.
 void write_comparison(const std::filesystem::path& directory, const FinishedRun& a, const FinishedRun& b,
