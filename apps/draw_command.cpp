@@ -161,7 +161,15 @@ void draw_blocks_of_run(const DrawArguments& arguments, const std::vector<fs::pa
     std::erase_if(history, [&](const StepRecord& record) { return record.step > state.at.step; });
     BlocksPlot plot = plot_of(scene);
     plot.title = arguments.title.empty() ? heading_of(directory).title : arguments.title;
-    plot.after = moves_no_platen(directory) ? "after" : after_title(history);
+    std::optional<double> factor;
+    if (fs::exists(directory / "summary.json")) {
+        const RunSummary summary = read_summary(directory / "summary.json");
+        if (summary.numbers.steps == state.at.step) { // else a run that went on, and has not ended
+            plot.moving = summary.falling;
+            factor = summary.results.factor_of_safety;
+        }
+    }
+    plot.after = after_title(history, !moves_no_platen(directory), factor);
     const FieldRecord fields = fields_of_state(built.model, state);
     for (const auto& picture : pictures) {
         write_blocks(picture, built.model.system, fields, plot);

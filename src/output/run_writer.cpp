@@ -291,10 +291,8 @@ void RunWriter::write_fields(const StepRecord& record, const FieldRecord& fields
 
 void RunWriter::write_pictures(const RunSummary& summary, const Rows& history, const Rows& equilibria,
                                const FieldRecord& fields) const {
-    BlocksPlot blocks{options_.title, "after", 1.0, options_.material_names, {}, summary.falling};
-    if (options_.platen_stage) blocks.after = after_title(history);
-    if (const auto factor = summary.results.factor_of_safety)
-        blocks.after = fmt::format("after, factor of safety {:.4g}", *factor);
+    const std::string after = after_title(history, options_.platen_stage.has_value(), summary.results.factor_of_safety);
+    const BlocksPlot blocks{options_.title, after, 1.0, options_.material_names, {}, summary.falling};
     const bool svg = system_.n_blocks() <= most_blocks_in_svg;
     FirstError errors;
     if (options_.platen_stage) { // otherwise nothing is loaded along an axis, and there is no such curve

@@ -1265,6 +1265,19 @@ TEST_F(CommandLine, TheReportOfABodyThatStandsAtTheSmallestStrengthsHasThemAsABo
     EXPECT_THAT(content_of(path("half.html")), Not(HasSubstr("at least")));
 }
 
+// A sliding block (20 deg, joint 35 deg: tan 35/tan 20 = 1.92): the picture drawn later is the run's, with the arrow of what slides and the factor.
+TEST_F(CommandLine, DrawMakesThePictureOfAFactorOfSafetyAgain) {
+    write("slide.yaml", sliding_block_scene);
+    ASSERT_EQ(kluft({"run", "slide.yaml", "-o", "r", "--quiet", "--set", "stages.1.strength_reduction.to=3", "--set",
+                     "output.pictures=true"})
+                  .code,
+              0);
+    const std::string of_run = content_of(path("r/blocks.svg"));
+    EXPECT_THAT(of_run, AllOf(HasSubstr("after, factor of safety 1.92"), HasSubstr("moves on beyond this state")));
+    EXPECT_EQ(kluft({"draw", "r"}).code, 0);
+    EXPECT_EQ(content_of(path("r/blocks.svg")), of_run);
+}
+
 TEST_F(CommandLine, AFileInADirectoryThatIsNotThereIsRefused) {
     write("tiny.yaml", tiny_scene);
     ASSERT_EQ(kluft({"run", "tiny.yaml", "-o", "r", "--quiet"}).code, 0);

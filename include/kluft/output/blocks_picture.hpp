@@ -24,8 +24,10 @@ struct BlocksPlot {
     std::vector<FallingBlock> moving; ///< marked in the deformed body, with where they go
 };
 
-/// The words above the deformed body after the given load steps.
-[[nodiscard]] std::string after_title(const std::vector<StepRecord>& history);
+/// The words above the deformed body after the given load steps: with the factor of safety that was found, or else where a platen
+/// moves the axial strain.
+[[nodiscard]] std::string after_title(const std::vector<StepRecord>& history, bool moves_platen,
+                                      const std::optional<double>& factor_of_safety);
 
 /// A field of blocks by which a picture is coloured.
 struct ColouredField {
