@@ -42,10 +42,12 @@ MovingBlock farthest_block(const BlockSystem& system, const Eigen::VectorXd& mot
 /// The body is balanced each time: what is named is the block that goes farthest.
 void fail_by_moving_on(StepInProgress& p, const Equilibrium& found, const Eigen::VectorXd& motion) {
     fail(p, found, found.viscous_share, FailureKind::falling);
-    p.step.failure->moving = {farthest_block(p.bench.model.system, motion)};
-    p.step.failure->what =
-        fmt::format("each time its contacts are detected anew the body moves on, {} times at this load: {}",
-                    max_rounds_of_detection, description(p.bench.model, p.step.failure->moving));
+    const BlockSystem& system = p.bench.model.system;
+    Failure& failure = *p.step.failure;
+    failure.moving = {farthest_block(system, motion)};
+    failure.along = moving_along(system, p.displacement() - motion, p.displacement(), failure.moving);
+    failure.what = fmt::format("each time its contacts are detected anew the body moves on, {} times at this load: {}",
+                               max_rounds_of_detection, description(p.bench.model, all_moving(failure)));
 }
 
 } // namespace

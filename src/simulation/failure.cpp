@@ -20,6 +20,7 @@ namespace {
 
 constexpr double clear_motion = 0.1;     ///< of a block in a load step, in spacings of hexagons of its size
 constexpr double share_of_largest = 0.1; ///< of the farthest motion: a block that moves less stands beside it
+constexpr double share_along = 0.3;      ///< of the farthest motion: a block that moves as much moves along
 constexpr double clear_turn =
     0.1; ///< rotation times sqrt(area) over motion: a block turns too, as one that topples does
 
@@ -56,26 +57,64 @@ std::vector<MovingBlock> those_that_move(std::vector<MovingBlock> moving, const 
     return result;
 }
 
+Vec2 motion_of(const Eigen::VectorXd& before, const Eigen::VectorXd& now, int block) {
+    const int first = n_block_unknowns * block;
+    return now.segment<2>(first) - before.segment<2>(first);
+}
+
+/// Where a block that has moved has gone, and whether it has turned.
+MovingBlock moved_block(const BlockSystem& system, const Eigen::VectorXd& before, const Eigen::VectorXd& now,
+                        int index) {
+    const Block& block = system.blocks[index];
+    const Vec2 motion = motion_of(before, now, index);
+    const double length = motion.norm();
+    const double turned = std::remainder(rotation_of(now, index, block.size) - rotation_of(before, index, block.size),
+                                         2.0 * std::numbers::pi);
+    const bool turns = std::abs(turned) * std::sqrt(block.area) > clear_turn * length;
+    return {index, motion / length, turns ? (turned > 0.0 ? 1 : -1) : 0};
+}
+
 } // namespace
 
 std::vector<MovingBlock> moving_on(const BlockSystem& system, const Eigen::VectorXd& before, const Eigen::VectorXd& now,
                                    std::vector<MovingBlock> moving) {
     std::vector<double> lengths; // of the motions
     for (MovingBlock& each : moving) {
-        const Block& block = system.blocks[each.block];
-        const int first = n_block_unknowns * each.block;
-        const Vec2 motion = now.segment<2>(first) - before.segment<2>(first);
-        const double length = motion.norm();
+        const double length = motion_of(before, now, each.block).norm();
         lengths.push_back(length);
-        if (length <= clear_motion * spacing_of(block)) continue;
-        const double turned =
-            std::remainder(rotation_of(now, each.block, block.size) - rotation_of(before, each.block, block.size),
-                           2.0 * std::numbers::pi);
-        const bool turns = std::abs(turned) * std::sqrt(block.area) > clear_turn * length;
-        each.direction = motion / length;
-        each.turn = turns ? (turned > 0.0 ? 1 : -1) : 0;
+        if (length > clear_motion * spacing_of(system.blocks[each.block]))
+            each = moved_block(system, before, now, each.block);
     }
     return those_that_move(std::move(moving), lengths);
+}
+
+std::vector<MovingBlock> moving_along(const BlockSystem& system, const Eigen::VectorXd& before,
+                                      const Eigen::VectorXd& now, const std::vector<MovingBlock>& moving) {
+    double farthest = 0.0;
+    for (int b = 0; b < system.n_blocks(); ++b) farthest = std::max(farthest, motion_of(before, now, b).norm());
+    std::set<int> reached = blocks_of(moving);
+    std::vector<int> next(reached.begin(), reached.end());
+    std::vector<MovingBlock> along;
+    while (!next.empty()) {
+        const int from = next.back();
+        next.pop_back();
+        for (const Edge& edge : system.blocks[from].edges) {
+            if (edge.interface < 0) continue;
+            const Interface& interface = system.interfaces[edge.interface];
+            const int to = interface.block_a == from ? interface.block_b : interface.block_a;
+            const double length = motion_of(before, now, to).norm();
+            if (length == 0.0 || length < share_along * farthest || !reached.insert(to).second) continue;
+            next.push_back(to);
+            along.push_back(moved_block(system, before, now, to));
+        }
+    }
+    return along;
+}
+
+std::vector<MovingBlock> all_moving(const Failure& failure) {
+    std::vector<MovingBlock> all = failure.moving;
+    all.insert(all.end(), failure.along.begin(), failure.along.end());
+    return all;
 }
 
 std::string description(const Model& model, const std::vector<MovingBlock>& moving) {
@@ -93,7 +132,7 @@ std::string description(const Model& model, const std::vector<MovingBlock>& movi
 
 std::string description(const Model& model, const Failure& failure) {
     std::string text = failure.what;
-    if (text.empty()) text = description(model, failure.moving);
+    if (text.empty()) text = description(model, all_moving(failure));
     if (text.empty()) {
         text = fmt::format("residual {:.2g} of the forces", failure.residual_ratio);
         if (failure.worst_block >= 0) text += ", worst is " + block_description(model.system, failure.worst_block);

@@ -214,6 +214,9 @@ void fail(StepInProgress& p, const Equilibrium& found, double residual_ratio, Fa
                              .nothing_holds = p.bench.loads.constraints().rows().empty(),
                              .moving = moving_on(p, p.displacement(), found.verdict.moving),
                              .what = found.summary.flaw};
+    Failure& failure = *p.step.failure;
+    if (failure.kind == FailureKind::falling || p.goal.must_rest) // else what loads have displaced moves as far
+        failure.along = moving_along(p.bench.model.system, p.from.body.displacement, p.displacement(), failure.moving);
 }
 
 void count_solves(StepInProgress& p, const Equilibrium& found) {

@@ -92,10 +92,14 @@ std::vector<MovingBlock> moved_blocks(const BlockSystem& system, const Eigen::Ve
 /// Of a step that ends in another equilibrium than that in which the body stood.
 Failure failure_by_motion(const StepBench& bench, const Step& step, const Eigen::VectorXd& before, double farthest) {
     const auto& at = step.end.at;
-    return {.kind = FailureKind::falling,
-            .load_factor = at.load_factor,
-            .strength_factor = strength_factor(bench.model.loads, at.stage, at.load_factor),
-            .moving = moved_blocks(bench.model.system, step.end.body.displacement - before, farthest)};
+    const BlockSystem& system = bench.model.system;
+    const Eigen::VectorXd& now = step.end.body.displacement;
+    Failure failure{.kind = FailureKind::falling,
+                    .load_factor = at.load_factor,
+                    .strength_factor = strength_factor(bench.model.loads, at.stage, at.load_factor),
+                    .moving = moved_blocks(system, now - before, farthest)};
+    failure.along = moving_along(system, before, now, failure.moving);
+    return failure;
 }
 
 /// A corner that holds a block and is none of the earlier ones; nothing if there is none.

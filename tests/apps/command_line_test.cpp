@@ -1265,6 +1265,24 @@ TEST_F(CommandLine, TheReportOfABodyThatStandsAtTheSmallestStrengthsHasThemAsABo
     EXPECT_THAT(content_of(path("half.html")), Not(HasSubstr("at least")));
 }
 
+// A block that slides on its plane is named as a whole where a net cuts it into cells, too: its share of the body is that above the trace,
+// from 4 m on the left to 7.64 m on the right of 10 m: 1 - 0.582 = 0.418.
+TEST_F(CommandLine, ANettedBlockThatSlidesIsNamedAsAWhole) {
+    write("slide.yaml", sliding_block_scene);
+    ASSERT_EQ(
+        kluft({"run", "slide.yaml", "-o", "r", "--quiet", "--set", "stages.1.strength_reduction.to=3", "--set",
+               "interfaces.bond={kind: potential_crack, fails_to: joint}", "--set", "materials.rock.cohesion=5 MPa",
+               "--set", "materials.rock.friction_angle=40", "--set", "materials.rock.tensile_strength=2 MPa", "--set",
+               "geometry.tessellation={triangles: {spacing: 2 m}, interface: bond}"})
+            .code,
+        0);
+    double share = 0.0;
+    const auto json = summary("r");
+    for (const auto& each : json["falling_blocks"]) share += each["share_of_body"].get<double>();
+    EXPECT_NEAR(json["factor_of_safety"].get<double>(), 1.92, 0.01);
+    EXPECT_NEAR(share, 0.418, 0.002);
+}
+
 // A sliding block (20 deg, joint 35 deg: tan 35/tan 20 = 1.92): the picture drawn later is the run's, with the arrow of what slides and the factor.
 TEST_F(CommandLine, DrawMakesThePictureOfAFactorOfSafetyAgain) {
     write("slide.yaml", sliding_block_scene);

@@ -26,6 +26,7 @@ struct Failure {
     double strength_factor = 1.0;    ///< F that strengths were divided by
     bool nothing_holds = false;      ///< the body, which has neither a support nor a platen
     std::vector<MovingBlock> moving; ///< blocks that are not balanced, the worst first
+    std::vector<MovingBlock> along;  ///< of a fall, see moving_along; none that is in `moving`
     std::string what;                ///< in place of the residual, of a broken body or a motion
 
     /// Whether the body may just have reached what it carries, where its load is a stress.
@@ -38,6 +39,14 @@ struct Failure {
 /// and turn on, whatever pushes them at the moment.
 [[nodiscard]] std::vector<MovingBlock> moving_on(const BlockSystem& system, const Eigen::VectorXd& before,
                                                  const Eigen::VectorXd& now, std::vector<MovingBlock> moving);
+
+/// What moves along with blocks that fall, from the displacements `before` to `now`: all that have moved by 0.3 of the farthest motion of a
+/// block or more, and are joined to one of `moving` by interfaces of the body as cut through others that have. Without those of `moving`.
+[[nodiscard]] std::vector<MovingBlock> moving_along(const BlockSystem& system, const Eigen::VectorXd& before,
+                                                    const Eigen::VectorXd& now, const std::vector<MovingBlock>& moving);
+
+/// Those that are not balanced, and after them what moves along.
+[[nodiscard]] std::vector<MovingBlock> all_moving(const Failure& failure);
 
 /// In words the blocks that move and where to; "" without any.
 [[nodiscard]] std::string description(const Model& model, const std::vector<MovingBlock>& moving);
