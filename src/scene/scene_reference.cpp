@@ -38,7 +38,7 @@ geometry:
     - {trace: [[-0.01, 0.1], [0.21, 0.3]], interface: joint}
   tessellation: {triangles: {spacing: 4 cm}, interface: bond}
 boundaries:
-  bottom: {support: smooth}
+  bottom: {support: pinned}
 stages:
   - {name: weight, pressure: {left: 0.1 MPa, right: 0.1 MPa, top: 0.1 MPa}}
   - {name: platen, strain: {boundary: top, value: 1 %}, steps: 20}

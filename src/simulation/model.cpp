@@ -1,6 +1,7 @@
 #include "kluft/simulation/model.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <set>
@@ -14,6 +15,7 @@
 #include "kluft/core/units.hpp"
 #include "kluft/kinematics/material_point.hpp"
 #include "kluft/loading/boundary_geometry.hpp"
+#include "kluft/simulation/free_body.hpp"
 #include "kluft/simulation/rock_constants.hpp"
 #include "kluft/simulation/stage_loads.hpp"
 #include "kluft/simulation/undeformable_blocks.hpp"
@@ -510,6 +512,7 @@ void warn_of_unmeasured_sides(Model& model) {
     const int moved = motion->motion->boundary;
     if (!lateral_sides(model.system, moved)[0].empty()) return;
     const int opposite = resting_boundary(model.system, *motion->motion);
+    if (opposite < 0) return; // one part is pushed past another, as in a shear box: no specimen between platens
     for (const Stage& stage : model.loads.stages) {
         for (const auto& [boundary, pressure] : stage.pressure) {
             if (pressure == 0.0 || boundary == moved || boundary == opposite) continue;
@@ -587,8 +590,8 @@ Model build_model(BlockSystem system, const ModelInput& input) {
     warn_of_bent_supports(model);
     warn_of_unmeasured_sides(model);
     refuse_contradicting_supports(model);
-    if (std::string warning = undeformable_blocks_warning(model); !warning.empty())
-        model.warnings.push_back(std::move(warning));
+    for (std::string& warning : std::array{undeformable_blocks_warning(model), free_body_warning(model)})
+        if (!warning.empty()) model.warnings.push_back(std::move(warning));
     return model;
 }
 

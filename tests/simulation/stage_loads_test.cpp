@@ -5,6 +5,8 @@
 #include <cmath>
 #include <initializer_list>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
@@ -485,6 +487,49 @@ stages:
         lateral_stress("{high_left: {sides: [4]}, high_right: {sides: [2]}, low_left: {sides: [5]}, top: {sides: [3]}, "
                        "low_right: {sides: [1]}, bottom: {sides: [0], support: smooth}}"),
         expected, 2e-3 * expected);
+}
+
+/// A specimen between smooth platens whose sides are pressed alike, on a support of that kind.
+std::vector<std::string> warnings_on(const std::string& support) {
+    return build_scene_model(read_scene_text(R"(
+kluft: 1
+materials: {rock: {density: 2600, youngs_modulus: 1 GPa, poissons_ratio: 0.2}}
+geometry: {domain: {rectangle: {width: 1, height: 2}}}
+boundaries: {bottom: {support: )" + support + R"(}}
+stages:
+  - {name: cell, pressure: {left: 1 MPa, right: 1 MPa, top: 1 MPa}}
+  - {name: axial, strain: {boundary: top, value: 0.1 %}}
+)"))
+        .model.warnings;
+}
+
+// By statics: smooth supports and platens have no force along their faces.
+TEST(FreeBody, ASpecimenThatOnlyFrictionHoldsSidewaysIsWarnedOf) {
+    EXPECT_THAT(warnings_on("smooth"), testing::Contains(testing::HasSubstr(
+                                           "nothing but friction holds the body along (1, 0) in stage cell")));
+    const auto none = testing::Not(testing::Contains(testing::HasSubstr("nothing but friction")));
+    EXPECT_THAT(warnings_on("pinned"), none);
+    EXPECT_THAT(warnings_on("fixed"), none);
+}
+
+// A block that is pushed along a joint under its lid has no lateral stress, and needs none.
+TEST(BoundaryFrame, ThePressureOnTheLidOfAShearBoxIsNotWarnedOf) {
+    const auto warnings = build_scene_model(read_scene_text(R"(
+kluft: 1
+materials: {rock: {youngs_modulus: 30 GPa, poissons_ratio: 0.25}}
+interfaces: {joint: {kind: fracture, normal_stiffness: 20 GPa/m, shear_stiffness: 10 GPa/m, friction_angle: 32 deg}}
+geometry:
+  reference_spacing: 0.1 m
+  blocks:
+    - {name: lower, polygon: [[0, 0], [0.3, 0], [0.3, 0.1], [0, 0.1]], support: fixed}
+    - {name: upper, polygon: [[0, 0.1], [0.3, 0.1], [0.3, 0.2], [0, 0.2]]}
+boundaries: {lid: {block: upper, facing: top}, push: {block: upper, facing: left}}
+stages:
+  - {name: normal load, pressure: {lid: 1 MPa}}
+  - {name: shear, displacement: {boundary: push, value: 5 mm, against: none}, steps: 50}
+)"))
+                              .model.warnings;
+    EXPECT_THAT(warnings, testing::Not(testing::Contains(testing::HasSubstr("lateral stress"))));
 }
 
 TEST(BoundaryFrame, APressureOnNoSideOfItsOwnIsWarnedOf) {
