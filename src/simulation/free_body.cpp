@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "kluft/core/dense_decompositions.hpp"
 #include "kluft/simulation/stage_loads.hpp"
 #include "kluft/simulation/whole_body.hpp"
 
@@ -15,19 +16,14 @@ namespace kluft {
 
 namespace {
 
-constexpr double no_resistance = 1e-9; ///< of that along the direction which is held
+constexpr double no_resistance = 1e-9; ///< of the largest eigenvalue: a direction that no row resists
 constexpr double no_component = 1e-6;  ///< of a unit vector
 
 /// The translation (unit vector) that is free where the one across it is held.
 std::optional<Vec2> free_translation(const Mat3& resistance) {
-    const double xx = resistance(0, 0);
-    const double yy = resistance(1, 1);
-    const double xy = resistance(0, 1);
-    const double middle = 0.5 * (xx + yy);
-    const double radius = std::hypot(0.5 * (xx - yy), xy);
-    if (middle == 0.0 || middle - radius > no_resistance * (middle + radius)) return std::nullopt;
-    const double held = 0.5 * std::atan2(2.0 * xy, xx - yy); // the angle of the direction that is held
-    const Vec2 free(-std::sin(held), std::cos(held));
+    const SymmetricEigen eigen = symmetric_eigen(resistance.topLeftCorner<2, 2>());
+    if (eigen.values[1] <= 0.0 || eigen.values[0] > no_resistance * eigen.values[1]) return std::nullopt;
+    const Vec2 free = eigen.vectors.col(0);
     return free.x() < -no_component || (free.x() < no_component && free.y() < 0.0) ? Vec2(-free) : free;
 }
 

@@ -12,7 +12,7 @@
 namespace kluft {
 namespace {
 
-// A wedge of half the friction angle that is driven into a notch stays there when its platen leaves it. Explicitly it rises to -0.843 mm.
+// A wedge whose faces are 5 degrees off the vertical, beside a friction angle of 35, that is driven into a notch stays there when its platen leaves it. Explicitly it rises to -0.843 mm.
 TEST(BlocksWithoutLoad, StayLockedWhereFrictionHoldsThem) {
     const SceneRun run = run_scene(R"(
 kluft: 1
@@ -127,7 +127,7 @@ double start_of_load(const SceneRun& run, int n_steps) {
 }
 
 // The slider pushes its base by 20 degrees off the vertical, which a friction of 45 holds: it meets the wall after 5 tan 65 = 10.72 mm.
-// Where its way begins a load step of 0.1 mm and the compliance are to be added.
+// The compliance and one load step are to be added.
 TEST(BlocksWithoutLoad, SlideOnABaseThatFrictionHolds) {
     for (const int n_steps : {50, 200}) {
         const SceneRun run = slider_beside_a_wall(65.0, "friction_angle: 45", "", n_steps);
