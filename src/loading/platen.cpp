@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <limits>
 #include <set>
 #include <utility>
@@ -157,32 +158,65 @@ bool update(const PointCheck& check, bool may_open, PlatenPoint& point) {
     return check.platen.tan_friction > 0.0 && update_friction(check, point);
 }
 
+/// Vertices nearer to a vertex of the block than this are one point with it (m).
+double one_point_of(const Block& block) {
+    return std::min(one_point * spacing_of(block), of_thickness * thickness(block));
+}
+
 /// Whether a point stands for a vertex of its block: two so near that their forces could only be a couple, which pulls.
 bool has_near(const BlockSystem& system, const std::vector<PlatenPoint>& points, int block, int vertex) {
-    const Block& of_vertex = system.blocks[block];
-    const double near = std::min(one_point * spacing_of(of_vertex), of_thickness * thickness(of_vertex));
+    const double near = one_point_of(system.blocks[block]);
     return std::ranges::any_of(points, [&](const PlatenPoint& point) {
         return point.block == block && (system.vertices[point.vertex] - system.vertices[vertex]).norm() < near;
     });
 }
 
-/// Vertices in the plane of the platen's boundary that are none of it.
-void append_beyond(const BlockSystem& system, const Platen& platen, std::vector<PlatenPoint>& points) {
-    std::set<std::pair<int, int>> known;
-    double plane = -std::numeric_limits<double>::infinity();
+/// The points that a platen is laid on, as cut.
+struct LaidFace {
+    double plane = -std::numeric_limits<double>::infinity(); ///< of the outermost, along the normal (m)
+    double low = std::numeric_limits<double>::infinity();    ///< along the tangent (m)
+    double high = -std::numeric_limits<double>::infinity();
+    double distance = 0.0; ///< from the plane and from the ends: no more than round-off (m)
+};
+
+LaidFace laid_face(const BlockSystem& system, const Platen& platen, const std::vector<PlatenPoint>& points) {
+    LaidFace face;
+    face.distance = in_plane * (system.upper - system.lower).maxCoeff();
     for (const PlatenPoint& point : points) {
-        known.emplace(point.block, point.vertex);
-        plane = std::max(plane, platen.normal.dot(system.vertices[point.vertex]));
+        if (point.boundary != platen.boundary || !point.is_laid) continue;
+        const Vec2& x = system.vertices[point.vertex];
+        face.plane = std::max(face.plane, platen.normal.dot(x));
+        face.low = std::min(face.low, platen.tangent().dot(x));
+        face.high = std::max(face.high, platen.tangent().dot(x));
     }
-    const double distance = in_plane * (system.upper - system.lower).maxCoeff();
+    return face;
+}
+
+/// Vertices in the plane of the platen where the body goes on in it beyond an end, that end included.
+void append_beyond(const BlockSystem& system, const Platen& platen, std::vector<PlatenPoint>& points) {
+    const LaidFace face = laid_face(system, platen, points);
+    std::set<std::pair<int, int>> known;
+    for (const PlatenPoint& point : points) known.emplace(point.block, point.vertex);
+    std::vector<PlatenPoint> others;
+    double low = face.low;
+    double high = face.high;
     for (int b = 0; b < system.n_blocks(); ++b) {
         for (const Edge& edge : system.blocks[b].edges) {
-            if (platen.normal.dot(system.vertices[edge.start]) < plane - distance) continue;
-            if (!known.emplace(b, edge.start).second) continue;
-            points.push_back(
+            const Vec2& x = system.vertices[edge.start];
+            if (platen.normal.dot(x) < face.plane - face.distance || known.contains({b, edge.start})) continue;
+            low = std::min(low, platen.tangent().dot(x));
+            high = std::max(high, platen.tangent().dot(x));
+            others.push_back(
                 {.boundary = platen.boundary, .block = b, .vertex = edge.start, .contact = PlatenContact::beyond});
         }
     }
+    const bool goes_on_low = low < face.low - face.distance;
+    const bool goes_on_high = high > face.high + face.distance;
+    std::ranges::copy_if(others, std::back_inserter(points), [&](const PlatenPoint& point) {
+        const double along = platen.tangent().dot(system.vertices[point.vertex]);
+        return (goes_on_low && along <= face.low + face.distance) ||
+               (goes_on_high && along >= face.high - face.distance);
+    });
 }
 
 /// Along the tangent, as cut: where a platen ends because the body goes on in the plane of its face; infinite where it does not.
@@ -191,20 +225,14 @@ struct PlatenEnds {
     double high = std::numeric_limits<double>::infinity();
 };
 
-PlatenEnds ends_of(const BlockSystem& system, const Platen& platen, const std::vector<PlatenPoint>& points) {
-    const auto along = [&](const PlatenPoint& point) { return platen.tangent().dot(system.vertices[point.vertex]); };
-    PlatenEnds laid{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-    for (const PlatenPoint& point : points) {
-        if (point.boundary != platen.boundary || !point.is_laid) continue;
-        laid.low = std::min(laid.low, along(point));
-        laid.high = std::max(laid.high, along(point));
-    }
-    const double distance = in_plane * (system.upper - system.lower).maxCoeff();
+PlatenEnds ends_of(const BlockSystem& system, const Platen& platen, const LaidFace& face,
+                   const std::vector<PlatenPoint>& points) {
     PlatenEnds ends;
     for (const PlatenPoint& point : points) {
         if (point.boundary != platen.boundary || point.contact != PlatenContact::beyond) continue;
-        if (along(point) <= laid.low + distance) ends.low = laid.low + distance;
-        if (along(point) >= laid.high - distance) ends.high = laid.high - distance;
+        const double along = platen.tangent().dot(system.vertices[point.vertex]);
+        if (along <= face.low + face.distance) ends.low = face.low + face.distance;
+        if (along >= face.high - face.distance) ends.high = face.high - face.distance;
     }
     return ends;
 }
@@ -253,8 +281,9 @@ void add_near_points(const BlockSystem& system, const Eigen::VectorXd& q, double
     for (const PlatenPoint& point : loads.platen_points) known.emplace(point.block, point.vertex);
     const double travel = platen_travel(loads, q);
     for (const Platen& platen : loads.platens) {
-        const double face = platen.face + platen.moved + platen.rate * travel;
-        const PlatenEnds ends = ends_of(system, platen, loads.platen_points);
+        const double went = platen.moved + platen.rate * travel;
+        const LaidFace laid = laid_face(system, platen, loads.platen_points);
+        const PlatenEnds ends = ends_of(system, platen, laid, loads.platen_points);
         for (int b = 0; b < system.n_blocks(); ++b) {
             if (system.blocks[b].fixed) continue;
             for (const Edge& edge : system.blocks[b].edges) {
@@ -266,8 +295,12 @@ void add_near_points(const BlockSystem& system, const Eigen::VectorXd& q, double
                                   .vertex = edge.start,
                                   .contact = PlatenContact::open,
                                   .reach = platen.face - platen.normal.dot(x)};
-                const double place = platen.normal.dot(x + displacement_of(system, point, q));
-                if (place < face - distance || known.contains({b, edge.start})) continue;
+                const double moved = platen.normal.dot(displacement_of(system, point, q));
+                if (moved < point.reach + went - distance || known.contains({b, edge.start})) continue;
+                if (platen.normal.dot(x) >= laid.plane - laid.distance) { // a corner between faces
+                    if (has_near(system, loads.platen_points, b, edge.start)) continue;
+                    point.reach = std::max(point.reach + one_point_of(system.blocks[b]), moved - went);
+                }
                 loads.platen_points.push_back(point);
             }
         }

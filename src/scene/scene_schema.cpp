@@ -762,8 +762,9 @@ std::vector<KeyRule> loading_rules() {
          .type = KeyType::choice_or_mapping,
          .choices = {"smooth", "rough"},
          .fallback = "smooth",
-         .doc = "Platens are rigid half-planes that the body touches and leaves and that no block enters. They are "
-                "laid on "
+         .doc = "Platens are rigid half-planes that the body touches and leaves and that no block enters, but for a "
+                "corner "
+                "between two faces, which is rounded by 0.5 % of its block's spacing. They are laid on "
                 "the sides of their boundary as these lie at the start, even or not, but on none that has the body "
                 "before it, as "
                 "in an opening. `smooth` ones leave the tangential motion free, to `rough` ones the body sticks where "

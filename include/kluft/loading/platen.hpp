@@ -64,7 +64,8 @@ struct PlatenPoint {
 [[nodiscard]] double mean_reach(const Platen& platen, const std::vector<PlatenPoint>& points);
 
 /// Adds, without contact, the vertices that are within `distance` (m) of the face of a platen at q and no points yet, but not those that
-/// lay beyond an end at which the body goes on in the plane of the face.
+/// lay beyond an end at which the body goes on in the plane of the face. Corners in the plane of the face that have no face on it are
+/// rounded: they touch a little later.
 void add_near_points(const BlockSystem& system, const Eigen::VectorXd& q, double distance, Loads& loads);
 
 /// The prescribed displacements of a touching point: along the normal, and along the face where it sticks. `index`: of the
