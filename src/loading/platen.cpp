@@ -355,7 +355,8 @@ bool update_platen_points(const BlockSystem& system, const Eigen::VectorXd& q, c
     for (std::size_t i = 0; i < loads.platen_points.size(); ++i) {
         PlatenPoint& point = loads.platen_points[i];
         const Platen& platen = *platen_on(loads.platens, point.boundary);
-        if (platen.glued || point.contact == PlatenContact::beyond) continue;
+        const bool is_glued = platen.glued && touches(point.contact);
+        if (is_glued || point.contact == PlatenContact::beyond) continue;
         const Vec2 u = displacement_of(system, point, q);
         const double reach = point.reach + platen.moved + platen.rate * travel;
         const PointCheck check{platen,         forces.pressing[i],           forces.along[i],
@@ -365,7 +366,7 @@ bool update_platen_points(const BlockSystem& system, const Eigen::VectorXd& q, c
         const bool is_last = platen.rate != 0.0 && !was_open && touching_points(platen, loads.platen_points) == 1;
         if (!update(check, may_open && !is_last, point)) continue;
         changed = true;
-        if (was_open) open_third(system, forces.pressing, i, loads.platen_points);
+        if (was_open && !platen.glued) open_third(system, forces.pressing, i, loads.platen_points);
     }
     return changed;
 }
