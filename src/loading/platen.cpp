@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -163,11 +164,12 @@ double one_point_of(const Block& block) {
     return std::min(one_point * spacing_of(block), of_thickness * thickness(block));
 }
 
-/// Whether a point stands for a vertex of its block: two so near that their forces could only be a couple, which pulls.
-bool has_near(const BlockSystem& system, const std::vector<PlatenPoint>& points, int block, int vertex) {
+/// Whether a point of the platen on a boundary stands for a vertex of its block: two so near that their forces could only be a couple, which pulls.
+bool has_near(const BlockSystem& system, const std::vector<PlatenPoint>& points, int boundary, int block, int vertex) {
     const double near = one_point_of(system.blocks[block]);
     return std::ranges::any_of(points, [&](const PlatenPoint& point) {
-        return point.block == block && (system.vertices[point.vertex] - system.vertices[vertex]).norm() < near;
+        return point.boundary == boundary && point.block == block &&
+               (system.vertices[point.vertex] - system.vertices[vertex]).norm() < near;
     });
 }
 
@@ -192,18 +194,45 @@ LaidFace laid_face(const BlockSystem& system, const Platen& platen, const std::v
     return face;
 }
 
-/// Vertices in the plane of the platen where the body goes on in it beyond an end, that end included.
+/// Vertices between the ends at which the platen is not laid on the body, as cut: of blocks that reach in front of its plane, and of
+/// faces in it that are none of its boundary.
+std::set<int> uncovered_vertices(const BlockSystem& system, const Platen& platen, const LaidFace& face) {
+    std::set<std::pair<int, int>> laid;
+    for (const auto& [b, e] : outer_edges(system, platen.boundary)) laid.emplace(b, e);
+    const auto place = [&](int vertex) { return platen.normal.dot(system.vertices[vertex]); };
+    std::set<int> uncovered;
+    for (int b = 0; b < system.n_blocks(); ++b) {
+        const auto& edges = system.blocks[b].edges;
+        const bool in_front = std::ranges::any_of(
+            edges, [&](const Edge& edge) { return place(edge.start) > face.plane + face.distance; });
+        for (int e = 0; e < static_cast<int>(edges.size()); ++e) {
+            const bool is_face = std::min(place(edges[e].start), place(edges[e].end)) >= face.plane - face.distance;
+            if (in_front) uncovered.insert(edges[e].start);
+            if (is_face && !laid.contains({b, e})) uncovered.insert({edges[e].start, edges[e].end});
+        }
+    }
+    return uncovered;
+}
+
+/// Vertices in the plane of the platen or before it that it does not meet: where it is not laid on the body, its ends included.
 void append_beyond(const BlockSystem& system, const Platen& platen, std::vector<PlatenPoint>& points) {
     const LaidFace face = laid_face(system, platen, points);
+    const std::set<int> uncovered = uncovered_vertices(system, platen, face);
     std::set<std::pair<int, int>> known;
-    for (const PlatenPoint& point : points) known.emplace(point.block, point.vertex);
+    std::set<int> laid;
+    for (const PlatenPoint& point : points) {
+        known.emplace(point.block, point.vertex);
+        laid.insert(point.vertex);
+    }
     std::vector<PlatenPoint> others;
     double low = face.low;
     double high = face.high;
     for (int b = 0; b < system.n_blocks(); ++b) {
         for (const Edge& edge : system.blocks[b].edges) {
             const Vec2& x = system.vertices[edge.start];
-            if (platen.normal.dot(x) < face.plane - face.distance || known.contains({b, edge.start})) continue;
+            const bool beside_lower_face = laid.contains(edge.start) && uncovered.contains(edge.start);
+            if (platen.normal.dot(x) < face.plane - face.distance && !beside_lower_face) continue;
+            if (known.contains({b, edge.start})) continue;
             low = std::min(low, platen.tangent().dot(x));
             high = std::max(high, platen.tangent().dot(x));
             others.push_back(
@@ -214,7 +243,7 @@ void append_beyond(const BlockSystem& system, const Platen& platen, std::vector<
     const bool goes_on_high = high > face.high + face.distance;
     std::ranges::copy_if(others, std::back_inserter(points), [&](const PlatenPoint& point) {
         const double along = platen.tangent().dot(system.vertices[point.vertex]);
-        return (goes_on_low && along <= face.low + face.distance) ||
+        return uncovered.contains(point.vertex) || (goes_on_low && along <= face.low + face.distance) ||
                (goes_on_high && along >= face.high - face.distance);
     });
 }
@@ -242,7 +271,7 @@ PlatenEnds ends_of(const BlockSystem& system, const Platen& platen, const LaidFa
 std::vector<PlatenPoint> laid_points(const BlockSystem& system, const Platen& platen, const Eigen::VectorXd& q) {
     std::vector<PlatenPoint> points;
     for_each_vertex(system, platen.boundary, [&](int block, int vertex) {
-        if (has_near(system, points, block, vertex)) return;
+        if (has_near(system, points, platen.boundary, block, vertex)) return;
         PlatenPoint point{.boundary = platen.boundary, .block = block, .vertex = vertex, .is_laid = true};
         const Vec2 u = displacement_of(system, point, q);
         const bool sticks = platen.tan_friction > 0.0;
@@ -277,10 +306,17 @@ double mean_reach(const Platen& platen, const std::vector<PlatenPoint>& points) 
 
 void add_near_points(const BlockSystem& system, const Eigen::VectorXd& q, double distance, Loads& loads) {
     if (loads.platens.empty()) return;
-    std::set<std::pair<int, int>> known; // (block, vertex)
-    for (const PlatenPoint& point : loads.platen_points) known.emplace(point.block, point.vertex);
     const double travel = platen_travel(loads, q);
     for (const Platen& platen : loads.platens) {
+        std::set<std::pair<int, int>> known; // (block, vertex)
+        std::map<int, double> laid_reach;    // of a vertex that faces have there
+        for (const PlatenPoint& point : loads.platen_points) {
+            if (point.boundary != platen.boundary) continue;
+            known.emplace(point.block, point.vertex);
+            if (!point.is_laid) continue;
+            double& reach = laid_reach.emplace(point.vertex, point.reach).first->second;
+            reach = std::max(reach, point.reach);
+        }
         const double went = platen.moved + platen.rate * travel;
         const LaidFace laid = laid_face(system, platen, loads.platen_points);
         const PlatenEnds ends = ends_of(system, platen, laid, loads.platen_points);
@@ -295,12 +331,14 @@ void add_near_points(const BlockSystem& system, const Eigen::VectorXd& q, double
                                   .vertex = edge.start,
                                   .contact = PlatenContact::open,
                                   .reach = platen.face - platen.normal.dot(x)};
+                const auto corner = laid_reach.find(edge.start); // between faces that are there
+                if (corner != laid_reach.end()) point.reach = corner->second + one_point_of(system.blocks[b]);
                 const double moved = platen.normal.dot(displacement_of(system, point, q));
                 if (moved < point.reach + went - distance || known.contains({b, edge.start})) continue;
-                if (platen.normal.dot(x) >= laid.plane - laid.distance) { // a corner between faces
-                    if (has_near(system, loads.platen_points, b, edge.start)) continue;
-                    point.reach = std::max(point.reach + one_point_of(system.blocks[b]), moved - went);
-                }
+                if (platen.normal.dot(x) >= laid.plane - laid.distance &&
+                    has_near(system, loads.platen_points, platen.boundary, b, edge.start))
+                    continue;
+                if (corner != laid_reach.end()) point.reach = std::max(point.reach, moved - went); // touches as it lies
                 loads.platen_points.push_back(point);
             }
         }

@@ -220,7 +220,7 @@ stages: [{{displacement: {{boundary: top, value: 20 mm}}, steps: 10}}]
 }
 
 /// A wedge whose tip lies between two blocks in the plane of a platen, and which they slide down under 0.1 MPa; upright or on its head.
-SceneRun press_a_tip(bool upright, bool glued, const char* integrator) {
+SceneRun press_a_tip(bool upright, bool glued, const char* integrator, const char* spacing = "0.5") {
     const double tip = upright ? 1.0 : 0.0;
     return run_scene(fmt::format(R"(
 kluft: 1
@@ -233,12 +233,13 @@ geometry:
     - {{trace: [[-0.1, 0.5], [1.1, 0.5]]}}
     - {{trace: [[0.5, {}], [0, 0.5]]}}
     - {{trace: [[0.5, {}], [1, 0.5]]}}
+  reference_spacing: {}
 boundaries: {{bottom: {{support: pinned}}}}
 stages:
   - {{pressure: {{top: 0.1 MPa, left: 0.1 MPa, right: 0.1 MPa}}}}
   - {{displacement: {{boundary: top, value: 10 mm, glued: {}}}, platens: smooth, steps: 20}}
 )",
-                                 integrator, tip, tip, glued));
+                                 integrator, tip, tip, spacing, glued));
 }
 
 /// Both integrators stop the tip, each with iterations of its own, and no farther out of the plane than 0.5 % of the wedge,
@@ -264,9 +265,77 @@ TEST(Platens, StopATipBetweenTheFacesThatTheyAreLaidOn) {
     expect_a_stop(false, false);
 }
 
+TEST(Platens, StopATipWhateverTheSpacing) {
+    for (const bool upright : {true, false}) {
+        const double expected = press_a_tip(upright, false, "implicit").history.back().axial_stress;
+        for (const char* spacing : {"0.05", "20"})
+            EXPECT_NEAR(press_a_tip(upright, false, "implicit", spacing).history.back().axial_stress, expected,
+                        1e-3 * expected);
+    }
+}
+
+// The tip lies in the lower step of its boundary, and touches as the faces beside it do: as they were laid.
+TEST(Platens, StopATipBetweenLowerFaces) {
+    const SceneRun run = run_scene(R"(
+kluft: 1
+analysis: {plane: stress}
+materials: {rock: {youngs_modulus: 10 GPa, poissons_ratio: 0.2, density: 2500}}
+interfaces: {joint: {kind: fracture, normal_stiffness: 100 GPa/m, shear_stiffness: 50 GPa/m, friction_angle: 10}}
+geometry:
+  domain: {polygon: [[0, 0], [1, 0], [1, 1], [0.2, 1], [0.2, 1.02], [0, 1.02]]}
+  fractures:
+    - {trace: [[-0.1, 0.5], [1.1, 0.5]]}
+    - {trace: [[0.5, 1], [0, 0.5]]}
+    - {trace: [[0.5, 1], [1, 0.5]]}
+  reference_spacing: 0.5
+boundaries:
+  bottom: {sides: [0], support: pinned}
+  right: {sides: [1]}
+  top: {sides: [2, 4]}
+  left: {sides: [5]}
+stages:
+  - {pressure: {top: 0.1 MPa, left: 0.1 MPa, right: 0.1 MPa}}
+  - {displacement: {boundary: top, value: 10 mm}, platens: smooth, steps: 20}
+)");
+    ASSERT_EQ(run.report.status, RunStatus::done) << run.report.diagnosis;
+    EXPECT_GT(run.history.back().axial_stress, 40e6);
+}
+
 TEST(Platens, StopWhatComesToThemWhereTheyAreGlued) {
     expect_a_stop(true, true);
     expect_a_stop(false, true);
+}
+
+/// Columns of 1 m beside and under a platen on both outer ones, without friction between them: E = 10 GPa, nu = 0, 1 mm.
+SceneRun press_columns(const char* polygon, const char* laid_sides, const char* traces) {
+    return run_scene(fmt::format(R"(
+kluft: 1
+analysis: {{plane: stress}}
+materials: {{rock: {{youngs_modulus: 10 GPa, poissons_ratio: 0}}}}
+interfaces: {{joint: {{kind: fracture, normal_stiffness: 1e12, shear_stiffness: 1e12, friction_angle: 0}}}}
+geometry:
+  domain: {{polygon: {}}}
+  fractures: [{}]
+  reference_spacing: 1
+boundaries:
+  bottom: {{sides: [0], support: pinned}}
+  laid: {{sides: {}}}
+stages: [{{displacement: {{boundary: laid, value: 1 mm}}, steps: 4}}]
+)",
+                                 polygon, traces, laid_sides));
+}
+
+// A platen presses what it is laid on: two columns of three. A stem that stands out between its two parts, or a face there that is another
+// boundary's, is none of it.
+TEST(Platens, PressNothingBetweenTheirParts) {
+    const char* const joints = "{trace: [[1, -1], [1, 3]]}, {trace: [[2, -1], [2, 3]]}";
+    const SceneRun stem =
+        press_columns("[[0, 0], [3, 0], [3, 1], [2, 1], [2, 2], [1, 2], [1, 1], [0, 1]]", "[2, 6]", joints);
+    const SceneRun face = press_columns("[[0, 0], [3, 0], [3, 1], [2, 1], [1, 1], [0, 1]]", "[2, 4]", joints);
+    for (const SceneRun* run : {&stem, &face}) {
+        ASSERT_EQ(run->report.status, RunStatus::done) << run->report.diagnosis;
+        EXPECT_NEAR(run->history.back().axial_stress, 10e6, 1e-4 * 10e6); // over the 2 m
+    }
 }
 
 // Direct shear: the body goes on in the plane of the fixed platen beyond its end, and passes there.

@@ -32,7 +32,7 @@ enum class PlatenContact {
     open,
     sliding,
     sticking,
-    beyond ///< the body goes on in the plane of the face beyond its end, and nothing stops it there
+    beyond ///< of a part of the body that the platen is not laid on and that nothing stops there
 };
 [[nodiscard]] inline bool touches(PlatenContact contact) {
     return contact == PlatenContact::sliding || contact == PlatenContact::sticking;
@@ -64,8 +64,8 @@ struct PlatenPoint {
 [[nodiscard]] double mean_reach(const Platen& platen, const std::vector<PlatenPoint>& points);
 
 /// Adds, without contact, the vertices that are within `distance` (m) of the face of a platen at q and no points yet, but not those that
-/// lay beyond an end at which the body goes on in the plane of the face. Corners in the plane of the face that have no face on it are
-/// rounded: they touch a little later.
+/// lay beyond an end at which the body goes on in the plane of the face. Corners between faces that it is laid on are rounded: they touch a
+/// little later.
 void add_near_points(const BlockSystem& system, const Eigen::VectorXd& q, double distance, Loads& loads);
 
 /// The prescribed displacements of a touching point: along the normal, and along the face where it sticks. `index`: of the
