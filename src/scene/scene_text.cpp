@@ -131,6 +131,10 @@ public:
             return;
         }
         path_ = assignment.substr(0, equals);
+        if (std::ranges::count(path_, '.') >= deepest_level) {
+            errors_.add(at_, {}, fmt::format("expected a key of at most {} levels", deepest_level));
+            return;
+        }
         const std::string text = assignment.substr(equals + 1);
         if (!is_scene_text(text) || text.size() > largest_scene) {
             errors_.add(at_, path_, "expected a value in UTF-8 text");

@@ -20,7 +20,6 @@ namespace {
 constexpr std::size_t widest_line = 160;
 constexpr std::size_t longest_quote = 60;
 constexpr std::size_t most_messages = 1000;
-constexpr int deepest_level = 32;
 constexpr std::size_t most_keys = 10'000; ///< of one mapping
 
 bool continues_character(char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; }

@@ -159,10 +159,22 @@ std::optional<CurveDifference> difference_of_curves(const FinishedRun& a, const 
                             std::abs(peak->differential_stress));
 }
 
-void add_mechanics(const CurveNumbers& a, const CurveNumbers& b, TableWriter& writer) {
+/// Whether the run was stopped before its stress had a peak: it might have gone on to any.
+bool is_short_of_peak(const FinishedRun& run) {
+    const bool ended = run.summary && run.summary->status != RunStatus::interrupted;
+    return run.platen_stage && !ended && !is_strength(run.numbers);
+}
+
+void add_mechanics(const FinishedRun& of_a, const FinishedRun& of_b, TableWriter& writer) {
+    const CurveNumbers& a = of_a.numbers;
+    const CurveNumbers& b = of_b.numbers;
     const auto judge = [&](ComparedQuantity& quantity) { writer.judge(quantity); };
-    judge(writer.add("peak_stress", "peak axial stress", "MPa", mega, a.peak_stress, b.peak_stress));
-    judge(writer.add("peak_strain", "peak strain", "%", 1.0 / percent, a.peak_strain, b.peak_strain));
+    const auto judge_peak = [&](ComparedQuantity& quantity) {
+        if (is_short_of_peak(of_a) != is_short_of_peak(of_b)) quantity.difference.reset();
+        writer.judge(quantity);
+    };
+    judge_peak(writer.add("peak_stress", "peak axial stress", "MPa", mega, a.peak_stress, b.peak_stress));
+    judge_peak(writer.add("peak_strain", "peak strain", "%", 1.0 / percent, a.peak_strain, b.peak_strain));
     judge(writer.add("youngs_modulus", "Young's modulus", "MPa", mega, a.youngs_modulus, b.youngs_modulus));
     writer.add("poissons_ratio", "Poisson's ratio", "", 1.0, a.poissons_ratio, b.poissons_ratio);
     writer.add("residual_stress", "residual axial stress", "MPa", mega, a.residual_stress, b.residual_stress);
@@ -241,6 +253,8 @@ void note_peak(const FinishedRun& run, std::vector<std::string>& notes) {
         notes.push_back(run.name + " has no balanced equilibrium, so no peak");
     } else if (run.numbers.net_locked) {
         notes.push_back(run.name + " has no peak: its net locked, its largest stress before is compared");
+    } else if (is_short_of_peak(run)) {
+        notes.push_back(run.name + " was stopped before its stress fell: it has no peak yet to compare");
     } else if (!is_strength(run.numbers)) {
         notes.push_back(run.name + " has no peak: its stress was not yet falling, its largest one is compared");
     }
@@ -414,7 +428,7 @@ Comparison compare_runs(const FinishedRun& a, const FinishedRun& b, double toler
     const auto curves = difference_of_curves(a, b);
     if (curves) table.curve_end = curves->end;
     TableWriter writer(table);
-    add_mechanics(a.numbers, b.numbers, writer);
+    add_mechanics(a, b, writer);
     const auto factor_a = a.summary ? a.summary->results.factor_of_safety : std::nullopt;
     const auto factor_b = b.summary ? b.summary->results.factor_of_safety : std::nullopt;
     if (factor_a || factor_b)

@@ -242,6 +242,30 @@ TEST(Comparison, OfARunWithoutAnyBalancedStepNeverAgrees) {
     EXPECT_THAT(comparison_text(comparison.table), Not(HasSubstr("nan")));
 }
 
+// A run that was killed at 97 % of the other one's peak has none: its stress might have risen on.
+TEST(Comparison, OfARunThatWasStoppedBeforeItsPeakNeverAgreesWithOneThatEnded) {
+    const FinishedRun ended = [] {
+        FinishedRun run = triangle("ended", 1e6);
+        run.summary.emplace();
+        run.summary->status = RunStatus::done;
+        return run;
+    }();
+    FinishedRun stopped = triangle("stopped", 1e6);
+    stopped.history.resize(20); // up to 0.95 %
+    stopped.numbers = curve_numbers({}, stopped.history, stopped.platen_stage, Plane::stress);
+    for (const bool was_killed : {true, false}) {
+        if (!was_killed) {
+            stopped.summary.emplace();
+            stopped.summary->status = RunStatus::interrupted;
+        }
+        const auto comparison = compare_runs(ended, stopped, 0.06);
+        EXPECT_FALSE(comparison.table.agree);
+        EXPECT_EQ(quantity(comparison, "peak_stress").verdict, Verdict::missed);
+        EXPECT_THAT(comparison.table.notes, ::testing::Contains(HasSubstr("stopped was stopped before its stress fell")));
+        EXPECT_TRUE(compare_runs(stopped, stopped, 0.0).table.agree); // as far as they went
+    }
+}
+
 TEST(Comparison, OfARunWithoutDifferentialStressHasNoNumbersThatAreNone) {
     FinishedRun flat = triangle("flat", 0.0);
     const auto comparison = compare_runs(flat, triangle("b", 1e6), 0.05);

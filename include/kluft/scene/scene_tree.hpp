@@ -25,6 +25,9 @@ struct SceneKey {
     bool is_word = true; ///< false: a list, a mapping or nothing, which parse_scene_tree refuses and leaves out
 };
 
+/// Of mappings and lists in one another, in files and in the keys of overrides.
+inline constexpr int deepest_level = 32;
+
 struct SceneNode {
     enum class Kind { nothing, scalar, list, mapping };
 
