@@ -86,8 +86,6 @@ std::string mohr_coulomb_text(const Envelope& envelope) {
                                angle_error ? std::optional(*angle_error * degrees) : std::nullopt, 2, " deg"),
                     envelope.covariance ? "standard errors; " + quality(envelope.residuals)
                                         : "standard errors unknown: a line through two points leaves no residual");
-    if (envelope.cohesion < 0.0 || envelope.friction_angle < 0.0)
-        text += "  below zero: these strengths are not those of a Mohr-Coulomb rock\n";
     return text;
 }
 
@@ -111,6 +109,19 @@ std::string hoek_brown_text(const HoekBrownFit& fit) {
     return fmt::format("Hoek-Brown: sigma_ci {}, m_i {} (s = 1, a = 0.5)\n  standard errors; {}\n",
                        in_mega(fit.curve->sigma_ci), with_error(fit.curve->m_i.value, fit.curve->m_i.error, 3, ""),
                        quality(fit.curve->residuals));
+}
+
+/// A line that no rock has, most likely because its tests are not of one rock.
+std::string implausible_text(const Envelope& envelope) {
+    if (envelope.friction_angle < 0.0)
+        return "warning: the friction angle is below zero: the strength sigma_1 - sigma_3 falls as the lateral stress "
+               "rises; "
+               "these tests are not of one material, or it is none that Mohr-Coulomb's criterion describes\n";
+    if (envelope.cohesion < 0.0)
+        return "warning: the cohesion is below zero: the line has no strength at small lateral stresses; these tests "
+               "are not "
+               "of one material, or it is none that Mohr-Coulomb's criterion describes\n";
+    return "";
 }
 
 /// No rock is so weak: most likely the stresses of a table are in another unit than Pa.
@@ -216,7 +227,8 @@ std::string envelope_text(const std::vector<PeakPoint>& points, const StrengthFi
                             shown_in_mega(point.sigma_1), fitted, remark(point, fit));
     }
     return text + mohr_coulomb_text(fit.envelope) + tension_text(fit, number_of(PeakUse::tension, points)) +
-           hoek_brown_text(fit.hoek_brown) + bounds_text(points, fit) + units_text(points);
+           hoek_brown_text(fit.hoek_brown) + bounds_text(points, fit) + implausible_text(fit.envelope) +
+           units_text(points);
 }
 
 std::string envelope_json(const std::vector<PeakPoint>& points, const StrengthFit& fit) {

@@ -116,12 +116,21 @@ TEST(EnvelopeText, TellsErrorsTensionBoundsAndWhatContradicts) {
     EXPECT_THAT(text, HasSubstr("the fit is contradicted: it lies below what was carried by rising\n"));
 }
 
-// sigma_1 = 1 + 0.5 sigma_3: sin(phi) = (0.5 - 1)/(0.5 + 1) = -1/3.
-TEST(EnvelopeText, SaysWhereNoRockHasSuchAFit) {
+// sigma_1 = 1 + 0.5 sigma_3: sin(phi) = (0.5 - 1)/(0.5 + 1) = -1/3; a soft rock under the higher pressure.
+TEST(EnvelopeText, WarnsWhereTheStrengthFallsWithTheLateralStress) {
     const std::vector<PeakPoint> points{{"a", 0.0, 1e6}, {"b", 1e6, 1.5e6}};
     EXPECT_THAT(envelope_text(points, fit_strength(points)),
-                AllOf(HasSubstr("friction angle -19.47 deg"), HasSubstr("not those of a Mohr-Coulomb rock")));
-    EXPECT_THAT(envelope_text(two_points(), fit_strength(two_points())), Not(HasSubstr("below zero")));
+                AllOf(HasSubstr("friction angle -19.47 deg"),
+                      HasSubstr("\nwarning: the friction angle is below zero: "),
+                      HasSubstr("falls as the lateral stress rises; these tests are not of one material")));
+}
+
+// sigma_1 = 4 (sigma_3 - 0.1): c = -0.4/(2 sqrt(4)); a stronger rock under the higher pressure.
+TEST(EnvelopeText, WarnsOfACohesionBelowZero) {
+    const std::vector<PeakPoint> points{{"a", 0.2e6, 0.4e6}, {"b", 1e6, 3.6e6}};
+    EXPECT_THAT(envelope_text(points, fit_strength(points)),
+                AllOf(HasSubstr("cohesion -0.1000 MPa"), HasSubstr("\nwarning: the cohesion is below zero: ")));
+    EXPECT_THAT(envelope_text(two_points(), fit_strength(two_points())), Not(HasSubstr("warning")));
 }
 
 // sigma_t = 0.3 MPa is beyond c cot(phi) = 0.16/tan(36.2 deg) = 0.2186 MPa.
