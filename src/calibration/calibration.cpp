@@ -18,12 +18,14 @@ struct QuantityRow {
     std::string_view name;
     Measure measure;
     std::string_view doc;
+    Range range = above_zero;
 };
 
 constexpr std::array quantity_rows{
     QuantityRow{TargetQuantity::youngs_modulus, "youngs_modulus", Measure::stress,
                 "Young's modulus of the rock, of the whole body with all bonds whole and mapped fractures closed."},
-    QuantityRow{TargetQuantity::poissons_ratio, "poissons_ratio", Measure::fraction, "Poisson's ratio of the same."},
+    QuantityRow{TargetQuantity::poissons_ratio, "poissons_ratio", Measure::fraction, "Poisson's ratio of the same.",
+                Range{.least = 0.0, .most = 0.5, .open_below = true, .open_above = true}},
     QuantityRow{TargetQuantity::peak_stress, "peak_stress", Measure::stress,
                 "Largest axial stress of a run, as peak_stress in summary.json."},
     QuantityRow{TargetQuantity::peak_strain, "peak_strain", Measure::fraction, "Axial strain at the peak."},
@@ -33,7 +35,8 @@ constexpr std::array quantity_rows{
                 "Largest tension, above zero, of a run that pulls with glued platens."},
     QuantityRow{TargetQuantity::cohesion, "cohesion", Measure::stress,
                 "Of the envelope through the peaks at several lateral pressures."},
-    QuantityRow{TargetQuantity::friction_angle, "friction_angle", Measure::angle, "Of the same envelope."},
+    QuantityRow{TargetQuantity::friction_angle, "friction_angle", Measure::angle, "Of the same envelope.",
+                Range{.least = 0.0, .most = 90.0, .open_below = true, .open_above = true}},
     QuantityRow{TargetQuantity::curve, "curve", Measure::stress, "A measured curve."},
 };
 
@@ -66,7 +69,7 @@ void add_target_rules(const QuantityRow& row, std::vector<KeyRule>& rules) {
         rules.push_back({.path = path[1],
                          .type = KeyType::number,
                          .measure = row.measure,
-                         .range = above_zero,
+                         .range = row.range,
                          .required = true,
                          .doc = "What is wanted."});
     rules.push_back({.path = path[3],

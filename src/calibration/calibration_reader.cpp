@@ -178,10 +178,29 @@ private:
             return errors_.add(node.find("start")->at, joined_path(path, "start"),
                                fmt::format("expected a value from {} to {}, found {}", value_text(*from, *measure),
                                            value_text(*to, *measure), found_text(*node.find("start"))));
+        require_reachable("from", *from, node, path, parameter);
+        require_reachable("to", *to, node, path, parameter);
         parameter.start = *start;
         parameter.from = *from;
         parameter.to = *to;
         result_.parameters.push_back(std::move(parameter));
+    }
+
+    /// A bound that a key of the scene does not take could be where the search ends.
+    void require_reachable(const std::string& bound, double value, const SceneNode& node, const std::string& path,
+                           const CalibrationParameter& parameter) {
+        const SceneNode& found = *node.find(bound);
+        for (const ParameterKey& key : parameter.keys) {
+            const KeyRule& rule = *known_rule(key, path);
+            SceneNode of_key;
+            of_key.kind = SceneNode::Kind::scalar;
+            of_key.text = plain_text(key.times * value, parameter.measure);
+            if (scalar_problem(of_key, rule).empty()) continue;
+            return errors_.add(found.at, joined_path(path, bound),
+                               fmt::format("expected {} for {}, found {}{}", scene_schema().expected_text(rule),
+                                           in_quotes(key.key), found_text(found),
+                                           key.times == 1.0 ? "" : fmt::format(", times {:g}", key.times)));
+        }
     }
 
     /// What the keys measure; nothing if they are wrong.

@@ -86,6 +86,32 @@ TEST_F(CalibrationFiles, KeysOfTheSceneFollowTheParameters) {
     EXPECT_NEAR(number(2), 30.0, 1e-12); // degrees
 }
 
+// An isotropic body has a Poisson's ratio below 0.5, and no rock a friction angle of 90 degrees.
+TEST_F(CalibrationFiles, ATargetThatNoBodyReachesIsRefused) {
+    EXPECT_THAT(
+        refusal(head + parameters + "targets: {poissons_ratio: {value: 0.7, tolerance: 1 %}}\n"),
+        HasSubstr("target.yaml:6:35: targets.poissons_ratio.value: expected a number > 0 and < 0.5, found '0.7'"));
+    EXPECT_THAT(
+        refusal(head + parameters +
+                "targets: {friction_angle: {value: 95 deg, tolerance: 1 %, pressures: [0, 1 MPa]}}\n"),
+        AllOf(HasSubstr("target.yaml:6:35: targets.friction_angle.value: expected "), HasSubstr("found '95 deg'")));
+}
+
+TEST_F(CalibrationFiles, ABoundThatTheSceneRefusesIsRefused) {
+    const auto refused = [&](const std::string& parameter) {
+        return refusal(head + "parameters:\n  p: " + parameter +
+                       "\ntargets: {youngs_modulus: {value: 1 GPa, tolerance: 1 %}}\n");
+    };
+    EXPECT_THAT(refused("{keys: [materials.rock.poissons_ratio], start: 0.2, from: 0.1, to: 0.7}"),
+                HasSubstr("target.yaml:4:73: parameters.p.to: expected a number >= 0 and < 0.5 for "
+                          "'materials.rock.poissons_ratio', found '0.7'"));
+    EXPECT_THAT(refused("{keys: [{key: materials.rock.poissons_ratio, times: 2}], start: 0.2, from: 0.1, to: 0.3}"),
+                HasSubstr("found '0.3', times 2"));
+    EXPECT_THAT(refused("{keys: [materials.rock.friction_angle], start: 30, from: 10, to: 100 deg}"),
+                AllOf(HasSubstr("parameters.p.to: expected "), HasSubstr("found '100 deg'")));
+    EXPECT_EQ(refused("{keys: [materials.rock.poissons_ratio], start: 0.2, from: 0.1, to: 0.49}"), "accepted");
+}
+
 TEST_F(CalibrationFiles, MistakesAreAnsweredWithPlaceAndNearestKey) {
     const std::string target = "targets: {peak_stress: {value: 1 MPa, tolerance: 1 %}}\n";
     EXPECT_THAT(refusal("kluft_calibration: 1\nscen: scene.yaml\n"),
