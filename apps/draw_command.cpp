@@ -316,6 +316,8 @@ ExitCode draw(const DrawArguments& arguments) {
     if (is_run && !arguments.overrides.empty()) {
         throw InputError("--set: expected a scene file, found a directory of results, whose scene stays as it was run");
     }
+    for (const auto& source : arguments.sources)
+        if (is_run) warn_of_missing_rows(source);
     if (several) {
         draw_several_runs(arguments);
     } else if (arguments.is_of_state()) {

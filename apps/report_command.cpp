@@ -10,6 +10,7 @@
 #include "kluft/report/report_page.hpp"
 #include "kluft/report/run_page.hpp"
 #include "kluft/studies/finished_run.hpp"
+#include "results_run.hpp"
 #include "standard_output.hpp"
 
 namespace kluft {
@@ -38,6 +39,7 @@ ExitCode report(const ReportArguments& arguments) {
     for (const std::string& directory : arguments.directories) {
         const fs::path file =
             arguments.output.empty() ? fs::path(directory) / "report.html" : fs::path(arguments.output);
+        warn_of_missing_rows(directory);
         write_run_page(directory, file);
         say("{}\n", file.string());
     }

@@ -42,6 +42,13 @@ RunCurve read_curve(const fs::path& directory, const std::string& label) {
     return curve;
 }
 
+void warn_of_missing_rows(const fs::path& directory) {
+    if (!fs::exists(directory / "summary.json")) return;
+    const RunCurve curve = read_curve(directory, {});
+    const std::string missing = missing_rows(curve.history, curve.equilibria, read_summary(directory / "summary.json"));
+    if (!missing.empty()) tell("warning: {}: {}\n", directory.string(), missing);
+}
+
 namespace {
 
 int nearest_of(const std::vector<int>& steps, int step) {

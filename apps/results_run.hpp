@@ -22,6 +22,9 @@ struct RunHeading {
 
 [[nodiscard]] RunCurve read_curve(const std::filesystem::path& directory, const std::string& label);
 
+/// Tells of a table that ends before the summary of its run does: its last row was cut off, or rows are lost.
+void warn_of_missing_rows(const std::filesystem::path& directory);
+
 /// Of the states that a run keeps, the one that `text` asks for: a load step, "peak", "last" or "" for it. Tells where the
 /// peak itself is not kept. Throws InputError for one that is not kept.
 [[nodiscard]] int step_asked_for(const std::string& text, const std::filesystem::path& directory);

@@ -1231,6 +1231,32 @@ TEST_F(CommandLine, AReportSaysWhereATableIsNotTheWholeOne) {
     EXPECT_THAT(content_of(path("r/report.html")), Not(HasSubstr("do not give the numbers of summary.json")));
 }
 
+// A row that was cut off is left out, as a killed run leaves it; where the run has ended, that is said.
+TEST_F(CommandLine, ReadersOfResultsSayWhereATableIsDamaged) {
+    write("tiny.yaml", tiny_scene);
+    ASSERT_EQ(kluft({"run", "tiny.yaml", "-o", "r", "--quiet"}).code, 0);
+    const std::vector<Words> commands{{"report", "r"}, {"draw", "r"}, {"draw", "r", "--step", "last", "-o", "x.png"}};
+    for (const char* name : {"history.csv", "equilibria.csv"}) {
+        const std::string table = std::string("r/") + name;
+        const std::string whole = content_of(path(table));
+        const auto second_row = whole.find('\n', whole.find('\n') + 1) + 1;
+        const auto third_row = whole.find('\n', second_row) + 1;
+        for (const Words& command : commands) {
+            write(table, whole.substr(0, second_row) + "no number" + whole.substr(second_row));
+            expect_refused(command, StartsWith(table + ":3: step: expected an integer, found 'no number"));
+            write(table, whole.substr(0, second_row) + "1,2\n" + whole.substr(third_row));
+            expect_refused(command, StartsWith(table + ":3: expected 22 columns, found 2"));
+            write(table, whole.substr(0, whole.size() - 20));
+            const Result cut = kluft(command);
+            EXPECT_EQ(cut.code, 0);
+            EXPECT_THAT(cut.err,
+                        HasSubstr(fmt::format("warning: r: {} ends at load step 9, summary.json says 10", name)));
+            write(table, whole);
+            EXPECT_THAT(kluft(command).err, Not(HasSubstr("ends at load step")));
+        }
+    }
+}
+
 /// A block on a plane of 20 degrees with a friction angle of 35: F = tan 35 / tan 20 = 1.924.
 constexpr const char* sliding_block_scene = R"(kluft: 1
 analysis: {gravity: 9.81}
