@@ -302,54 +302,74 @@ RunStatus status_of(const std::string& name) {
 }
 
 std::optional<double> optional_number(const Json& json, const char* key) {
+    if (!json.contains(key)) throw InputError(fmt::format("{}: expected a number or null, found nothing", key));
     const Json& value = json.at(key);
     if (!value.is_null() && !value.is_number())
         throw InputError(fmt::format("{}: expected a number or null, found {}", key, value.dump().substr(0, 40)));
     return value.is_null() ? std::nullopt : std::optional(value.get<double>());
 }
 
+/// The value of a key that must be there.
+template <class Value> void read_key(const Json& json, const char* key, Value& value) {
+    const auto found = json.find(key);
+    if (found == json.end()) throw InputError(fmt::format("{}: expected a value, found nothing", key));
+    try {
+        found->get_to(value);
+    } catch (const Json::exception&) {
+        throw InputError(
+            fmt::format("{}: expected a value as a run writes it, found {}", key, found->dump().substr(0, 40)));
+    }
+}
+
+/// The same of a key that an earlier version does not have.
+template <class Value> void read_newer_key(const Json& json, const char* key, Value& value) {
+    if (json.contains(key)) read_key(json, key, value);
+}
+
 void read_numbers(const Json& json, CurveNumbers& numbers) {
     numbers.peak_stress = optional_number(json, "peak_stress");
     numbers.peak_strain = optional_number(json, "peak_strain");
-    numbers.peak_reached = json.at("peak_reached").get<bool>();
-    numbers.net_locked = json.value("net_locked", false); // an earlier version does not say
-    numbers.levelled_off = json.value("levelled_off", false);
-    numbers.sides_unloaded = json.value("sides_unloaded", false);
+    read_key(json, "peak_reached", numbers.peak_reached);
+    read_newer_key(json, "net_locked", numbers.net_locked);
+    read_newer_key(json, "levelled_off", numbers.levelled_off);
+    read_newer_key(json, "sides_unloaded", numbers.sides_unloaded);
     numbers.residual_stress = optional_number(json, "residual_stress");
     numbers.youngs_modulus = optional_number(json, "youngs_modulus");
     numbers.poissons_ratio = optional_number(json, "poissons_ratio");
     numbers.axial_modulus = optional_number(json, "axial_modulus");
     numbers.lateral_ratio = optional_number(json, "lateral_ratio");
-    json.at("cracks_tension").get_to(numbers.cracks_tension);
-    json.at("cracks_shear").get_to(numbers.cracks_shear);
-    numbers.jumps = json.value("jumps", 0);
-    json.at("steps").get_to(numbers.steps);
-    json.at("unbalanced_steps").get_to(numbers.unbalanced_steps);
+    read_key(json, "cracks_tension", numbers.cracks_tension);
+    read_key(json, "cracks_shear", numbers.cracks_shear);
+    read_newer_key(json, "jumps", numbers.jumps);
+    read_key(json, "steps", numbers.steps);
+    read_key(json, "unbalanced_steps", numbers.unbalanced_steps);
 }
 
+/// Throws Json::exception for what is no summary at all.
 RunSummary summary_in(const Json& json) {
+    (void)json.at("status");
     RunSummary summary;
-    summary.status = status_of(json.at("status").get<std::string>());
-    json.at("title").get_to(summary.title);
+    std::string status;
+    read_key(json, "status", status);
+    summary.status = status_of(status);
+    read_key(json, "title", summary.title);
     read_numbers(json, summary.numbers);
-    if (!json.at("platen_stage").is_null()) summary.platen_stage = json.at("platen_stage").get<int>();
+    if (!json.at("platen_stage").is_null()) read_key(json, "platen_stage", summary.platen_stage.emplace());
     if (!summary.platen_stage) { // an earlier version gave the stress of a load
         summary.numbers.peak_stress.reset();
         summary.numbers.peak_strain.reset();
     }
-    json.at("blocks").get_to(summary.blocks);
-    json.at("interfaces").get_to(summary.interfaces);
-    json.at("unknowns").get_to(summary.unknowns);
-    visit_counts(summary.costs, [&](const char* name, int& count) {
-        count = json.value(name, 0); // an earlier version has fewer
-    });
+    read_key(json, "blocks", summary.blocks);
+    read_key(json, "interfaces", summary.interfaces);
+    read_key(json, "unknowns", summary.unknowns);
+    visit_counts(summary.costs, [&](const char* name, int& count) { read_newer_key(json, name, count); });
     summary.costs.elapsed_s = optional_number(json, "elapsed_s").value_or(0.0);
     if (json.contains("loading_cpu_s"))
         summary.costs.loading_cpu_s = optional_number(json, "loading_cpu_s").value_or(0.0);
     if (json.contains("cpu_s")) summary.cpu_s = optional_number(json, "cpu_s").value_or(0.0);
-    json.at("peak_memory_bytes").get_to(summary.peak_memory_bytes);
-    json.at("version").get_to(summary.version);
-    summary.blas_core = json.value("blas_core", ""); // an earlier version does not say
+    read_key(json, "peak_memory_bytes", summary.peak_memory_bytes);
+    read_key(json, "version", summary.version);
+    read_newer_key(json, "blas_core", summary.blas_core);
     for (const Json& each : json.value("falling_blocks", Json::array())) {
         const Json& direction = each.at("direction");
         summary.falling.push_back(
@@ -361,8 +381,8 @@ RunSummary summary_in(const Json& json) {
     visit_seconds(summary.costs.seconds, [&](const char* name, double& seconds) {
         if (times.contains(name)) seconds = optional_number(times, name).value_or(0.0);
     });
-    json.at("message").get_to(summary.message);
-    summary.warnings = json.value("warnings", std::vector<std::string>{}); // an earlier version does not say
+    read_key(json, "message", summary.message);
+    read_newer_key(json, "warnings", summary.warnings);
     visit_results(summary.results, [&](const char* name, std::optional<double>& result) {
         if (json.contains(name)) result = optional_number(json, name);
     });

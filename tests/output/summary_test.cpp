@@ -14,7 +14,10 @@
 namespace kluft {
 namespace {
 
+using ::testing::AllOf;
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
+using ::testing::StartsWith;
 using testing::TemporaryDirectory;
 using ::testing::ThrowsMessage;
 using Rows = std::vector<StepRecord>;
@@ -567,6 +570,17 @@ TEST(Summary, IsReadBack) {
     const std::string expected = (directory / "summary.json").string() + ": expected the summary of a run, found ";
     EXPECT_EQ(message_of("{"), expected + "no JSON from byte 2 on");
     EXPECT_EQ(message_of("[1]"), expected + "JSON without all its keys or with other values");
+    const std::string whole = summary_json(summary);
+    for (const std::string key :
+         {"residual_stress", "peak_reached", "steps", "blocks", "unknowns", "title", "warnings"}) {
+        const std::string place = (directory / "summary.json").string() + ": " + key + ": expected ";
+        EXPECT_THAT(
+            message_of(std::regex_replace(whole, std::regex("\"" + key + "\": [^,]*,"), "\"" + key + "\": {},")),
+            AllOf(StartsWith(place), EndsWith("found {}")));
+        if (key == "warnings") continue; // earlier versions wrote none
+        EXPECT_THAT(message_of(std::regex_replace(whole, std::regex("\"" + key + "\": [^,]*,"), "")),
+                    AllOf(StartsWith(place), EndsWith("found nothing")));
+    }
 }
 
 TEST(Summary, CountsAtLeastTheMemoryThatIsHeld) {
