@@ -136,8 +136,9 @@ class Scene(MutableMapping[str, Any]):
     def _set(self, key: str, settings: list[str]) -> None:
         before = self._settings
         self._settings = [*before, *settings]
+        missed = key if settings == [f"{key}=null"] else None  # only the whole scene misses what is taken away
         try:
-            self._refuse(lambda problem: not problem.file and _is_about(problem.path, key))
+            self._refuse(lambda problem: not problem.file and _is_about(problem.path, key) and problem.path != missed)
         except InputError:
             self._settings = before
             raise

@@ -149,7 +149,8 @@ public:
         for (const auto& key : missing) {
             const KeyRule& rule = *keys_.find(joined_path(std::string(pattern), key));
             if (rule.required && !mistyped.contains(key))
-                fail(node, joined_path(path, key), keys_.expected_text(rule), "nothing");
+                errors_.add(node.place_without(key), joined_path(path, key),
+                            fmt::format("expected {}, found nothing", keys_.expected_text(rule)));
         }
     }
 

@@ -151,7 +151,8 @@ std::vector<long long> SceneSection::integers(std::string_view key) const {
 
 TextPosition SceneSection::position(std::string_view key) const {
     const SceneNode* node = value(key);
-    return node == nullptr ? position() : node->at;
+    if (node != nullptr) return node->at;
+    return node_ == nullptr ? position() : node_->place_without(key);
 }
 
 TextPosition SceneSection::position() const { return node_ == nullptr ? TextPosition{} : node_->at; }

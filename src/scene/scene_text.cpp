@@ -201,11 +201,7 @@ private:
     SceneNode* entry(SceneNode& mapping, const std::string& key, bool last) {
         SceneNode* found = mapping.find(key);
         if (last && value_->removes) {
-            if (found != nullptr) {
-                const auto index = found - mapping.items.data();
-                mapping.keys.erase(mapping.keys.begin() + index);
-                mapping.items.erase(mapping.items.begin() + index);
-            }
+            if (found != nullptr) mapping.remove(key, at_);
             return nullptr;
         }
         if (found != nullptr) return found;

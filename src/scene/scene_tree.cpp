@@ -216,6 +216,18 @@ const SceneNode* SceneNode::find(std::string_view key) const {
 
 SceneNode* SceneNode::find(std::string_view key) { return const_cast<SceneNode*>(std::as_const(*this).find(key)); }
 
+TextPosition SceneNode::place_without(std::string_view key) const {
+    const auto last = std::find_if(removed.rbegin(), removed.rend(), [&](const SceneKey& k) { return k.text == key; });
+    return last == removed.rend() ? at : last->at;
+}
+
+void SceneNode::remove(std::string_view key, const TextPosition& said_at) {
+    const auto index = find(key) - items.data();
+    removed.push_back({keys[static_cast<std::size_t>(index)].text, said_at});
+    keys.erase(keys.begin() + index);
+    items.erase(items.begin() + index);
+}
+
 int SceneSources::add_file(const std::filesystem::path& file, std::string_view text) {
     sources_.push_back({printable(file.string()), file.parent_path(), split_lines(text)});
     return static_cast<int>(sources_.size()) - 1;
@@ -339,9 +351,7 @@ void merge_scene_trees(SceneNode& base, SceneNode over) {
             base.keys.push_back(key);
             base.items.push_back(std::move(over.items[i]));
         } else if (over.items[i].removes) {
-            const auto index = existing - base.items.data();
-            base.keys.erase(base.keys.begin() + index);
-            base.items.erase(base.items.begin() + index);
+            base.remove(key.text, key.at);
         } else {
             base.keys[static_cast<std::size_t>(existing - base.items.data())] = key;
             merge_scene_trees(*existing, std::move(over.items[i]));

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -199,6 +200,14 @@ TEST(Overrides, MappingsMergeAndNullRemoves) {
     EXPECT_FALSE(read_scene_text(test::full_scene, {"geometry.tessellation=~"}).geometry.tessellation);
     EXPECT_EQ(read_scene_text(test::full_scene, {"stages.0=null"}).loads.stages.size(), 3U);
     EXPECT_THAT(errors_in(test::short_scene, {"geometry.tessellation=null"}), IsEmpty()) << "nothing to remove";
+}
+
+TEST(Overrides, KeyThatIsMissingBecauseOneTookItAwayIsToldThere) {
+    for (const std::string key : {"stages", "geometry", "materials", "kluft", "materials.rock.density"}) {
+        for (const char* nothing : {"null", "~"})
+            EXPECT_THAT(errors_in(test::full_scene, {key + "=" + nothing}),
+                        ::testing::Contains(StartsWith(fmt::format("--set {}={}: {}: expected ", key, nothing, key))));
+    }
 }
 
 TEST(Overrides, ThatAreWrongSayWhichOne) {

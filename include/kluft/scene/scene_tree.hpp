@@ -38,6 +38,7 @@ struct SceneNode {
     std::vector<SceneKey> keys;   ///< of a mapping, one per item
     std::vector<SceneNode> items; ///< of a list or a mapping
     TextPosition at;
+    std::vector<SceneKey> removed; ///< keys of a mapping that `null` took away, at the places that say so
 
     [[nodiscard]] bool is_mapping() const { return kind == Kind::mapping; }
     [[nodiscard]] bool is_list() const { return kind == Kind::list; }
@@ -46,6 +47,10 @@ struct SceneNode {
     /// The value of a key of a mapping; null if there is none.
     [[nodiscard]] const SceneNode* find(std::string_view key) const;
     [[nodiscard]] SceneNode* find(std::string_view key);
+    /// Where a key that is not there was taken away, else where the node stands.
+    [[nodiscard]] TextPosition place_without(std::string_view key) const;
+    /// Takes away a key that is there, as is said at a place.
+    void remove(std::string_view key, const TextPosition& said_at);
 };
 
 /// The files (and overrides) that a scene was read from, for the positions in messages.
