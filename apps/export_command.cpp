@@ -60,7 +60,7 @@ ExitCode export_map(const ExportArguments& arguments) {
     const MapFormat format = map_format(file);
     require_directory_of(file.string());
     require_possible_output(file.string());
-    if (!gdal_problem().empty()) throw InputError(gdal_problem());
+    require_gdal();
     const int step = step_asked_for(arguments.step, directory);
     const RunOfResults run = run_of_results(directory);
     for (const std::string& map : geometry_files(run.scene)) {

@@ -1,6 +1,8 @@
 #include "gdal_library.hpp"
 
 #include <algorithm>
+#include <array>
+#include <string_view>
 
 #include <dlfcn.h>
 #include <fmt/format.h>
@@ -16,7 +18,14 @@ namespace {
 struct GdalLibrary {
     void* handle = nullptr;
     std::string problem;
+    bool lacks_memory = false;
 };
+
+/// Of what the C library says of a library that it cannot load; the number of the error is lost there.
+bool is_lack_of_memory(std::string_view reason) {
+    constexpr std::array<std::string_view, 3> words{"failed to map segment", "cannot map zero-fill pages", "llocate"};
+    return std::ranges::any_of(words, [&](std::string_view word) { return reason.find(word) != reason.npos; });
+}
 
 GdalLibrary load_gdal() {
     GdalLibrary library;
@@ -25,6 +34,7 @@ GdalLibrary load_gdal() {
         if (library.handle != nullptr) return {library.handle, {}};
         const char* const reason = ::dlerror();
         library.problem = fmt::format("GDAL cannot be loaded: {}", reason == nullptr ? name : reason);
+        library.lacks_memory = library.lacks_memory || is_lack_of_memory(library.problem);
     }
     return library;
 }
@@ -46,8 +56,15 @@ std::string gdal_version() { return KLUFT_GDAL_VERSION; }
 
 std::string gdal_problem() { return gdal_library().problem; }
 
+void require_gdal(const std::string& what) {
+    if (gdal_problem().empty()) return;
+    const std::string message = what.empty() ? gdal_problem() : fmt::format("{}: {}", what, gdal_problem());
+    if (gdal_library().lacks_memory) throw ResourceError("out of memory: " + message);
+    throw InputError(message);
+}
+
 void* gdal_symbol(const char* name) {
-    if (!gdal_problem().empty()) throw InputError(gdal_problem());
+    require_gdal();
     void* const found = ::dlsym(gdal_library().handle, name);
     if (found == nullptr)
         throw InputError(fmt::format("expected GDAL {} or newer, found one without {}", gdal_version(), name));

@@ -336,8 +336,7 @@ void write_geojson(const OpenMap& map, const std::vector<MapLayer>& layers, cons
 
 MapLayer read_map_layer(const fs::path& file, const std::string& name) {
     require_files(file);
-    if (const std::string problem = gdal_problem(); !problem.empty())
-        throw InputError(fmt::format("{}: {}", file.string(), problem));
+    require_gdal(file.string());
     const GdalMessages messages;
     const OpenMap map = open_map(file, messages);
     OGRLayerH const layer = chosen_layer(map, file, name);

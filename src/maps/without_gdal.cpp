@@ -15,6 +15,10 @@ std::string gdal_problem() {
            "then build again)";
 }
 
+void require_gdal(const std::string& what) {
+    throw InputError(what.empty() ? gdal_problem() : fmt::format("{}: {}", what, gdal_problem()));
+}
+
 CoordinateSystem describe_crs(const std::string& text) {
     throw InputError(fmt::format("coordinate system {}: {}", text, gdal_problem()));
 }

@@ -1473,6 +1473,26 @@ TEST_F(SlowCommandLine, OutOfMemoryEndsWithExitCode4) {
     EXPECT_THAT(result.err, HasSubstr("out of memory"));
 }
 
+TEST_F(SlowCommandLine, GdalThatTheMemoryDoesNotHoldEndsWithExitCode4) {
+#ifdef KLUFT_SANITIZED
+    GTEST_SKIP() << "the address sanitizer reserves more address space than any limit";
+#endif
+    if (!gdal_problem().empty()) GTEST_SKIP() << gdal_problem();
+    write("tiny.yaml", tiny_scene);
+    ASSERT_EQ(kluft({"run", "tiny.yaml", "-o", "r", "--quiet"}).code, 0);
+    constexpr rlim_t megabyte = 1000000;
+    int n_without_room = 0;
+    for (rlim_t room = 64 * megabyte; room < 4000 * megabyte; room += 16 * megabyte) {
+        const Result result = kluft({"export", "r", "-o", "r.gpkg"}, {.memory_bytes = room});
+        if (result.code == 0) break;
+        if (result.err.find("GDAL") == std::string::npos) continue; // too little for the program itself
+        EXPECT_EQ(result.code, 4) << result.err;
+        EXPECT_THAT(result.err, StartsWith("out of memory: GDAL cannot be loaded"));
+        ++n_without_room;
+    }
+    EXPECT_GE(n_without_room, 2);
+}
+
 // The BLAS tries for ever to get its work space of 128 MB where the system refuses it: also in a second start with other
 // kernels, which are tried before anything else.
 TEST_F(SlowCommandLine, SecondStartWithoutRoomForTheBlasEndsWithExitCode4) {

@@ -11,4 +11,8 @@ namespace kluft {
 /// What keeps GDAL from use: that the build is without it, or why it cannot be loaded. Empty where nothing does.
 [[nodiscard]] std::string gdal_problem();
 
+/// Throws InputError with that problem, after `what` and a colon where that is given; ResourceError where GDAL is there and the memory
+/// to load it is not.
+void require_gdal(const std::string& what = {});
+
 } // namespace kluft
