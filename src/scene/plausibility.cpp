@@ -217,6 +217,19 @@ void warn_of_symmetric_reduction(const SceneSection& root, const Scene& scene, R
             "unsymmetric finds them");
 }
 
+/// What is left over on a block is missing in what holds it: a block on a plane of 20 degrees stands with a share of 0.02 where its
+/// factor of safety is 1 - 0.02/sin(20 deg) = 0.94.
+void warn_of_loose_balance(const SceneSection& root, const Scene& scene, ReadingContext& context) {
+    constexpr double loose = 0.01;
+    const double balance = scene.solver.balance;
+    if (balance > loose)
+        context.warn(
+            root.section("solver"), "balance",
+            fmt::format("blocks count as balanced with {:.3g} % of their own load left over, so that blocks that "
+                        "fall may count as standing; the default is {}",
+                        100.0 * balance, scene_schema().find("solver.balance")->fallback));
+}
+
 /// What something else in the scene makes meaningless.
 void warn_of_keys_without_effect(const SceneSection& root, const Scene& scene, ReadingContext& context) {
     const auto warn = [&](const SceneSection& section, std::string_view key, std::string_view why) {
@@ -244,6 +257,7 @@ void warn_of_implausible_values(const SceneSection& root, const Scene& scene, Re
     warn_of_loads(root, scene, context);
     warn_of_one_sided_pressure(root, scene, context);
     warn_of_symmetric_reduction(root, scene, context);
+    warn_of_loose_balance(root, scene, context);
     warn_of_keys_without_effect(root, scene, context);
 }
 

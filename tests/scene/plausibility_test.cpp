@@ -98,6 +98,16 @@ TEST(ImplausibleValues, PressureOnOneSideIsToldWhereNothingStandsAgainstIt) {
     EXPECT_THAT(warnings_of_block_with({"stages.0.pressure.left=0", "stages.0.pressure.right=0"}), IsEmpty());
 }
 
+TEST(ImplausibleValues, ABalanceThatLetsFallingBlocksStandIsTold) {
+    for (const char* share : {"0.02", "0.3", "0.99"})
+        EXPECT_THAT(warnings_of_block_with({std::string("solver.balance=") + share}),
+                    ElementsAre(AllOf(HasSubstr("solver.balance: blocks count as balanced with "),
+                                      HasSubstr("the default is 1e-3"))))
+            << share;
+    for (const char* share : {"1e-9", "1e-3", "0.01"})
+        EXPECT_THAT(warnings_of_block_with({std::string("solver.balance=") + share}), IsEmpty()) << share;
+}
+
 // A wall whose factor of safety is 4.579 by the friction of its top brick came to 4.25.
 TEST(ImplausibleValues, SymmetricTangentIsToldOfWhereStrengthsAreReduced) {
     const std::string reduction = "stages=[{pressure: {left: 1 MPa, right: 1 MPa, top: 1 MPa}}, "
