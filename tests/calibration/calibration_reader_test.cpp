@@ -152,7 +152,7 @@ TEST_F(CalibrationFiles, MistakesAreAnsweredWithPlaceAndNearestKey) {
                     HasSubstr("expected a curve with a differential_stress above zero"));
     }
     EXPECT_THAT(refusal(head + parameters + target + "replicas: 0\n"), HasSubstr("replicas"));
-    fs::create_directory(directory_ / "folder");
+    std::filesystem::create_directory(directory_ / "folder");
     EXPECT_THAT(refusal("kluft_calibration: 1\nscene: folder\n" + parameters + target),
                 HasSubstr("expected a file, found 'folder', which is a directory"));
     for (const char* const set : {"materials.rock.cohesion: 3 MPa", "materials.rock: {cohesion: 3 MPa}"})
