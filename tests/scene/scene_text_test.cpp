@@ -219,7 +219,7 @@ TEST(Overrides, ThatAreWrongSayWhichOne) {
     EXPECT_THAT(errors_with({"=3"}), ElementsAre("--set =3: expected key.path=value"));
     std::string deep = "a"; // recursion over keys filled the stack
     for (int i = 0; i < 100'000; ++i) deep += ".a";
-    EXPECT_THAT(errors_with({deep + "=1"}), ElementsAre(EndsWith(": expected a key of at most 32 levels")));
+    EXPECT_THAT(errors_with({deep + "=1"}), ElementsAre(::testing::EndsWith(": expected a key of at most 32 levels")));
     EXPECT_THAT(errors_with({"stages.9.steps=3"}),
                 ElementsAre("--set stages.9.steps=3: stages: expected an index from 0 to 4 (the last one appends), "
                             "found '9'"));

@@ -261,7 +261,8 @@ TEST(Comparison, OfARunThatWasStoppedBeforeItsPeakNeverAgreesWithOneThatEnded) {
         const auto comparison = compare_runs(ended, stopped, 0.06);
         EXPECT_FALSE(comparison.table.agree);
         EXPECT_EQ(quantity(comparison, "peak_stress").verdict, Verdict::missed);
-        EXPECT_THAT(comparison.table.notes, ::testing::Contains(HasSubstr("stopped was stopped before its stress fell")));
+        EXPECT_THAT(comparison.table.notes,
+                    ::testing::Contains(HasSubstr("stopped was stopped before its stress fell")));
         EXPECT_TRUE(compare_runs(stopped, stopped, 0.0).table.agree); // as far as they went
     }
 }
