@@ -455,18 +455,11 @@ std::vector<PlatenFace> faces_of(const BlockSystem& system, const Loads& loads, 
     std::vector<PlatenFace> faces;
     const double travel = platen_travel(loads, q);
     for (const Platen& platen : loads.platens) {
-        double low = std::numeric_limits<double>::infinity(), high = -low, plane = -low;
-        for (const PlatenPoint& point : loads.platen_points) {
-            if (point.boundary != platen.boundary || !point.is_laid) continue;
-            const Vec2& x = system.vertices[point.vertex];
-            low = std::min(low, platen.tangent().dot(x));
-            high = std::max(high, platen.tangent().dot(x));
-            plane = std::max(plane, platen.normal.dot(x));
-        }
-        if (high < low) continue;
-        const Vec2 middle = plane * platen.normal;
+        const LaidFace laid = laid_face(system, platen, loads.platen_points);
+        if (laid.high < laid.low) continue;
+        const Vec2 middle = laid.plane * platen.normal;
         const double outward = mean_reach(platen, loads.platen_points) + platen.moved + platen.rate * travel;
-        faces.push_back({middle + low * platen.tangent(), middle + high * platen.tangent(), platen.normal,
+        faces.push_back({middle + laid.low * platen.tangent(), middle + laid.high * platen.tangent(), platen.normal,
                          outward * platen.normal});
     }
     return faces;

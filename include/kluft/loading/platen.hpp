@@ -53,7 +53,7 @@ struct PlatenPoint {
 };
 
 /// The vertices of the platen's boundary, each of a block once, which touch it as they lie at displacements q, however uneven;
-/// and those beyond its ends.
+/// and those of parts of the body in its plane or before it that it is not laid on.
 [[nodiscard]] std::vector<PlatenPoint> laid_points(const BlockSystem& system, const Platen& platen,
                                                    const Eigen::VectorXd& q);
 
