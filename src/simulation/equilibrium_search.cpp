@@ -243,17 +243,23 @@ Equilibrium EquilibriumSearch::move_on(const EquilibriumProblem& problem, const 
         });
 }
 
+/// Where what is left over on a group of blocks adds up to more than may be left, within the tolerance for the body as a whole, a solve
+/// finds nothing to do: then a tenth of that is asked for.
 Equilibrium EquilibriumSearch::move_held(const EquilibriumProblem& problem, Eigen::VectorXd guess,
                                          const BlockGoal& balance, bool unloaded) {
     Equilibrium moved;
     moved.displacement = std::move(guess);
-    moved.summary = open_close_.solve(
-        problem, pattern_, moved.displacement,
-        {.aim = Aim::relaxation, .unloaded = unloaded, .block_tolerance = share_of_solve * balance.share});
-    moved.iterations = moved.summary.iterations;
+    IterationGoal goal{.aim = Aim::relaxation, .unloaded = unloaded, .block_tolerance = share_of_solve * balance.share};
+    for (;; goal.tolerance_share *= sharpening) {
+        moved.summary = open_close_.solve(problem, pattern_, moved.displacement, goal);
+        moved.iterations += moved.summary.iterations;
+        moved.blocks = block_balance(problem.body, moved.displacement);
+        const bool stays = moved.summary.converged() && moved.displacement == problem.start;
+        if (!stays || goal.tolerance_share <= sharpest || judge_blocks(moved.blocks, nullptr, balance).balanced())
+            break;
+    }
     moved.worst_block = moved.summary.worst_block;
     moved.viscous_share = viscous_share(problem, moved.displacement, moved.summary.force_scale);
-    moved.blocks = block_balance(problem.body, moved.displacement);
     return moved;
 }
 
