@@ -158,8 +158,10 @@ std::vector<BlockBox> bounding_boxes(const Surfaces& surfaces) {
 /// The narrow phase of one pair of blocks.
 class PairDetection {
 public:
-    PairDetection(const BlockSystem& system, const ContactSurfaces& surfaces, const Eigen::VectorXd& q, double reach)
-        : system_(system), surfaces_(surfaces), q_(q), reach_(reach) {}
+    /// `memory`: of what touched last, sorted by key.
+    PairDetection(const BlockSystem& system, const ContactSurfaces& surfaces, const Eigen::VectorXd& q, double reach,
+                  const std::vector<ContactMemory>& memory)
+        : system_(system), surfaces_(surfaces), q_(q), reach_(reach), memory_(memory) {}
 
     /// Makes room for the points of so many overlaps.
     void expect(std::size_t n_overlaps) { points_.reserve(least_overlap_points * n_overlaps); }
@@ -465,6 +467,26 @@ private:
         return std::ranges::any_of(edges, is_shared) && std::ranges::none_of(overlapping_, overlaps);
     }
 
+    /// Whether the two faces touched last, along an overlap or, where the first one leaves it, by that vertex.
+    [[nodiscard]] bool touched(int block_a, int edge_a, int block_b, int edge_b) const {
+        const ContactKey first{block_a, edge_a, block_b, edge_b, -1};
+        const auto found = std::ranges::lower_bound(memory_, first, {}, &ContactMemory::key);
+        if (found == memory_.end()) return false;
+        ContactKey key = found->key;
+        key.point = -1;
+        return key == first;
+    }
+
+    /// Whether a side of the vertex, or the vertex, touched the edge last: faces that have turned to less than 135 degrees overlap no
+    /// more, and the corner goes on holding what they held.
+    [[nodiscard]] bool held_it_last(int owner, const CurrentEdge& leaving, int target, const CurrentEdge& edge,
+                                    bool swapped) const {
+        if (touched(owner, leaving.edge, target, edge.edge)) return true;
+        return swapped ? touched(target, edge.edge, owner, leaving.edge) ||
+                             touched(target, edge.edge, owner, leaving.arriving)
+                       : touched(owner, leaving.arriving, target, edge.edge);
+    }
+
     /// Whether the vertex is an end of the target's edge in the body as cut.
     [[nodiscard]] bool have_common_vertex(int owner, const CurrentEdge& leaving, int target,
                                           const CurrentEdge& edge) const {
@@ -572,7 +594,9 @@ private:
         if (beyond > 0.0 && !below_end && (gap >= shallow_ || !is_in_notch(leaving.start, edge, s < 0.0, edges)))
             return;
         if (!points_at(leaving, outward)) return;
-        if (is_common && !beside_void && !faces_are_apart(owner, target, swapped)) return;
+        if (is_common && !beside_void && !faces_are_apart(owner, target, swapped) &&
+            (is_ground || !held_it_last(owner, leaving, target, edge, swapped)))
+            return;
         if (overlap_covers(leaving.edge, edge.edge, swapped) || overlap_covers(leaving.arriving, edge.edge, swapped))
             return;
         if (is_held_by_another_face(leaving, edge, gap, edges, swapped)) return;
@@ -589,6 +613,7 @@ private:
     const ContactSurfaces& surfaces_;
     const Eigen::VectorXd& q_;
     double reach_;
+    const std::vector<ContactMemory>& memory_;
     std::vector<UnheldTip> unheld_tips_;
     std::vector<ContactPoint> points_;           ///< with block_a the lower block of the pair
     std::vector<ContactPoint> points_of_higher_; ///< vertices of the higher block
@@ -692,7 +717,7 @@ DetectedContacts detect_contacts(const BlockSystem& system, const ContactSurface
     DetectedContacts result;
     const auto pairs = meeting_boxes(bounding_boxes(all), reach);
     result.near_pairs.reserve(pairs.size());
-    PairDetection pair_detection(system, surfaces, q, reach);
+    PairDetection pair_detection(system, surfaces, q, reach, memory);
     pair_detection.expect(all.edges.size() / 2);
     for (const auto& [a, b] : pairs) {
         const Surface& surface_a = all.all[all.of_block[a]];

@@ -122,6 +122,39 @@ TEST(ContactDetection, ATipThatTheFloorHasTooIsKeptAboveItWhereNoFacesFaceEachOt
     EXPECT_TRUE(body.points().empty());
 }
 
+std::vector<ContactMemory> memory_of(const std::vector<ContactPoint>& points) {
+    std::vector<ContactMemory> memory;
+    for (const ContactPoint& point : points) memory.push_back({point.key, point.history});
+    return memory;
+}
+
+// Four blocks meet in a point; of the two that are left a wedge of 60 degrees has slid past it onto the floor of the other one, with which it
+// had but that point in common. Where it has turned until its face does not face the floor any more, its tip goes on holding what
+// the face held; a tip that held nothing there is none (between five blocks in a point it would catch at their sides).
+TEST(ContactDetection, ATipGoesOnHoldingWhatItsFaceHeldWhereTheTwoBlocksHadButThatPointInCommon) {
+    const Vec2 along(-0.5, std::sqrt(0.75));
+    CutRectangle body(3.0, 2.0, {{{-1, 1}, {4, 1}}, {Vec2(2, 1) - 3.0 * along, Vec2(2, 1) + 3.0 * along}});
+    ASSERT_EQ(body.system.n_blocks(), 4);
+    int wedge = 0;
+    for (int b = 0; b < 4; ++b) {
+        const Vec2 from_point = body.system.blocks[b].centroid - Vec2(2, 1);
+        const bool above = from_point.y() > 0.0;
+        const bool left = cross(along, from_point) > 0.0;
+        if (above && left) wedge = b;
+        if (above != left) body.move(b, {above ? 100.0 : -100.0, 0.0});
+    }
+    body.move(wedge, {0.05, -0.02});
+    const auto overlap = memory_of(body.points());
+    ASSERT_EQ(overlap.size(), 3U);
+    body.move(wedge, {0.05, -0.02}, -std::numbers::pi / 3.0, {2, 1});
+    EXPECT_TRUE(body.points().empty());
+    const auto held = body.points(overlap);
+    ASSERT_EQ(held.size(), 1U);
+    EXPECT_NEAR(body.gap(held[0]), -0.02, 1e-12);
+    EXPECT_NEAR(std::abs(held[0].normal.y()), 1.0, 1e-12);
+    EXPECT_EQ(body.points(memory_of(held)).size(), 1U);
+}
+
 // The left block reaches into the right one with a tip that is 6 to 0 cm thick; 3 to 6 cm of the right block lie between it and the
 // floor. Pressed into the rock above it, the tip's upper face has the lower face of the right block behind it, not before it.
 TEST(ContactDetection, TheBackOfAThinPartIsNoFaceThatThePartBesideItTouches) {
