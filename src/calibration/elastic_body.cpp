@@ -52,16 +52,15 @@ Eigen::VectorXd lateral_extension(const Model& model, const Gauges& gauges) {
     const BlockSystem& system = model.system;
     Eigen::VectorXd row = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n_block_unknowns) * system.n_blocks());
     for (const Side& side : gauges.lateral) {
-        const double length = length_of(system, side);
-        for (const int i : side) {
-            const Vec2 normal = boundary_frame(system, i).normal;
-            for (const auto& [b, e] : system.boundaries[i].edges) {
+        for (const SidePart& part : side) {
+            const Vec2 normal = boundary_frame(system, part.boundary).normal;
+            for (std::size_t i = 0; i < part.edges.size(); ++i) {
+                const auto& [b, e] = part.edges[i];
                 const Edge& edge = system.blocks[b].edges[e];
-                const Vec2 extent = edge_end(system, edge) - edge_start(system, edge);
                 const Vec2 xi =
                     block_coordinates(system.blocks[b], 0.5 * (edge_start(system, edge) + edge_end(system, edge)));
-                const double share = extent.norm() / (length * gauges.width);
-                row.segment<n_block_unknowns>(n_block_unknowns * b) += share * displacement_row(normal, xi);
+                row.segment<n_block_unknowns>(n_block_unknowns * b) +=
+                    part.shares[i] / gauges.width * displacement_row(normal, xi);
             }
         }
     }

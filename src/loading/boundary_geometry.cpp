@@ -33,13 +33,6 @@ Vec2 mean_position(const BlockSystem& system, const Edges& edges) {
     return length > 0.0 ? Vec2(sum / length) : sum;
 }
 
-Edges edges_of(const BlockSystem& system, const Side& side) {
-    Edges edges;
-    for (const int i : side)
-        edges.insert(edges.end(), system.boundaries[i].edges.begin(), system.boundaries[i].edges.end());
-    return edges;
-}
-
 constexpr double same_plane = 1e-9;     ///< of the body's larger side
 constexpr double same_direction = 1e-6; ///< of the cosine between normals
 constexpr double faces_all_ways = 1e-9; ///< of the length: what is left of the sum of normals is round-off
@@ -58,6 +51,81 @@ bool meets_body(const BlockSystem& system, const Vec2& from, const Vec2& directi
         }
     }
     return false;
+}
+
+Vec2 middle_of(const BlockSystem& system, int block, int e) {
+    const Edge& edge = system.blocks[block].edges[e];
+    return 0.5 * (edge_start(system, edge) + edge_end(system, edge));
+}
+
+/// How far they reach along a direction (m).
+double outermost(const BlockSystem& system, const Edges& edges, const Vec2& direction) {
+    double farthest = -std::numeric_limits<double>::infinity();
+    for_each_edge(system, edges, [&](int, const Vec2& start, const Vec2& end) {
+        farthest = std::max({farthest, direction.dot(start), direction.dot(end)});
+    });
+    return farthest;
+}
+
+/// Those of the edges that no part of the body lies in front of, along a direction in which the body's side reaches as far as `farthest` (m).
+Edges outer_edges(const BlockSystem& system, const Edges& edges, const Vec2& direction, double farthest) {
+    const double near = same_plane * (system.upper - system.lower).maxCoeff();
+    Edges outer;
+    for (const auto& [b, e] : edges) {
+        const Vec2 middle = middle_of(system, b, e);
+        if (direction.dot(middle) >= farthest - near || !meets_body(system, middle, direction, near))
+            outer.push_back({b, e});
+    }
+    return outer;
+}
+
+/// Those whose normals are nearest to a direction, within 45 degrees of it.
+std::vector<int> boundaries_facing(const BlockSystem& system, const Vec2& direction) {
+    std::vector<int> facing;
+    double most = 0.7; // cosine
+    for (int i = 0; i < static_cast<int>(system.boundaries.size()); ++i) {
+        const double cosine = direction.dot(boundary_frame(system, i).normal);
+        if (cosine < most - same_direction) continue;
+        if (cosine > most + same_direction) facing.clear();
+        most = std::max(most, cosine);
+        facing.push_back(i);
+    }
+    return facing;
+}
+
+Side side_of(const BlockSystem& system, const std::vector<int>& boundaries, const Vec2& direction) {
+    double farthest = -std::numeric_limits<double>::infinity();
+    for (const int i : boundaries)
+        farthest = std::max(farthest, outermost(system, system.boundaries[i].edges, direction));
+    Side side;
+    double length = 0.0;
+    for (const int i : boundaries) {
+        SidePart part{.boundary = i};
+        for (const auto& [b, e] : outer_edges(system, system.boundaries[i].edges, direction, farthest)) {
+            const Edge& edge = system.blocks[b].edges[e];
+            const double facing = direction.dot(right_normal(edge_end(system, edge) - edge_start(system, edge)));
+            if (facing <= 0.0) continue;
+            part.edges.push_back({b, e});
+            part.shares.push_back(facing);
+            part.share += facing;
+        }
+        length += part.share;
+        if (!part.edges.empty()) side.push_back(std::move(part));
+    }
+    for (SidePart& part : side) {
+        for (double& share : part.shares) share /= length;
+        part.share /= length;
+    }
+    return side;
+}
+
+/// Along a direction (m).
+double mean_place(const BlockSystem& system, const Side& side, const Vec2& direction) {
+    double place = 0.0;
+    for (const SidePart& part : side)
+        for (std::size_t i = 0; i < part.edges.size(); ++i)
+            place += part.shares[i] * direction.dot(middle_of(system, part.edges[i].block, part.edges[i].edge));
+    return place;
 }
 
 } // namespace
@@ -123,40 +191,26 @@ std::array<Side, 2> lateral_sides(const BlockSystem& system, int boundary) {
     const Vec2 lateral(normal.y(), -normal.x());
     std::array<Side, 2> sides;
     for (int k = 0; k < 2; ++k) {
-        double most_lateral = 0.7;
-        for (int i = 0; i < static_cast<int>(system.boundaries.size()); ++i) {
-            const double cosine = (k == 0 ? 1.0 : -1.0) * lateral.dot(boundary_frame(system, i).normal);
-            if (cosine < most_lateral - same_direction) continue;
-            if (cosine > most_lateral + same_direction) sides[k].clear();
-            most_lateral = std::max(most_lateral, cosine);
-            sides[k].push_back(i);
-        }
+        const Vec2 direction = k == 0 ? lateral : Vec2(-lateral);
+        sides[k] = side_of(system, boundaries_facing(system, direction), direction);
     }
     if (sides[0].empty() || sides[1].empty()) return {};
     return sides;
 }
 
-double length_of(const BlockSystem& system, const Side& side) {
-    double length = 0.0;
-    for (const int i : side) length += boundary_frame(system, i).length;
-    return length;
+Vec2 mean_displacement(const BlockSystem& system, const Eigen::VectorXd& q, const SidePart& part) {
+    Vec2 sum = Vec2::Zero();
+    for (std::size_t i = 0; i < part.edges.size(); ++i) {
+        const auto& [b, e] = part.edges[i];
+        sum += part.shares[i] * displacement_at(q, b, block_coordinates(system.blocks[b], middle_of(system, b, e)));
+    }
+    return sum / part.share;
 }
 
 std::vector<BoundaryEdge> outer_edges(const BlockSystem& system, int boundary) {
+    const Edges& edges = system.boundaries[boundary].edges;
     const Vec2 normal = boundary_frame(system, boundary).normal;
-    double outermost = -std::numeric_limits<double>::infinity();
-    for_each_edge(system, boundary, [&](int, const Vec2& start, const Vec2& end) {
-        outermost = std::max({outermost, normal.dot(start), normal.dot(end)});
-    });
-    const double near = same_plane * (system.upper - system.lower).maxCoeff();
-    std::vector<BoundaryEdge> outer;
-    for (const auto& [b, e] : system.boundaries[boundary].edges) {
-        const Edge& edge = system.blocks[b].edges[e];
-        const Vec2 middle = 0.5 * (edge_start(system, edge) + edge_end(system, edge));
-        if (normal.dot(middle) >= outermost - near || !meets_body(system, middle, normal, near))
-            outer.push_back({b, e});
-    }
-    return outer;
+    return outer_edges(system, edges, normal, outermost(system, edges, normal));
 }
 
 double unevenness(const BlockSystem& system, int boundary) {
@@ -182,18 +236,19 @@ PlatenForce width_across(const BlockSystem& system, int boundary) {
                   [&](int, const Vec2& start, const Vec2& end) { force.width += std::abs(lateral.dot(end - start)); });
     const auto sides = lateral_sides(system, boundary);
     if (sides[0].empty()) return force;
-    const double apart = std::abs(lateral.dot(mean_position(system, edges_of(system, sides[0])) -
-                                              mean_position(system, edges_of(system, sides[1]))));
+    const double apart = std::abs(mean_place(system, sides[0], lateral) - mean_place(system, sides[1], lateral));
     force.width = std::max(force.width, apart);
     const double of_all_parts = force.width / apart; // columns side by side widen each
     for (int k = 0; k < 2; ++k) {
         const double sense = k == 0 ? of_all_parts : -of_all_parts;
-        const double length = length_of(system, sides[k]);
-        for_each_edge(system, edges_of(system, sides[k]), [&](int b, const Vec2& start, const Vec2& end) {
-            const Vec2 xi = block_coordinates(system.blocks[b], 0.5 * (start + end));
-            const double share = sense * (end - start).norm() / length;
-            force.widening.segment<n_block_unknowns>(n_block_unknowns * b) += share * displacement_row(lateral, xi);
-        });
+        for (const SidePart& part : sides[k]) {
+            for (std::size_t i = 0; i < part.edges.size(); ++i) {
+                const auto& [b, e] = part.edges[i];
+                const Vec2 xi = block_coordinates(system.blocks[b], middle_of(system, b, e));
+                force.widening.segment<n_block_unknowns>(n_block_unknowns * b) +=
+                    sense * part.shares[i] * displacement_row(lateral, xi);
+            }
+        }
     }
     return force;
 }

@@ -122,21 +122,21 @@ Strains measure_strains(const Model& model, const Gauges& gauges, const Loads& l
     const Eigen::VectorXd from = reference.size() == q.size() ? reference : Eigen::VectorXd::Zero(q.size());
     const Eigen::VectorXd change = q - from;
     const double travel = platen_travel(loads, q);
-    const auto outward = [&](int boundary) {
+    const auto outward = [&](int boundary, const Vec2& mean) {
         const auto platen = std::ranges::find(loads.platens, boundary, &Platen::boundary);
-        if (platen == loads.platens.end())
-            return boundary_frame(model.system, boundary).normal.dot(mean_displacement(model.system, change, boundary));
+        if (platen == loads.platens.end()) return boundary_frame(model.system, boundary).normal.dot(mean);
         const double until_stage =
             mean_reach(*platen, loads.platen_points) - mean_reach(*platen, laid_points(model.system, *platen, from));
         return until_stage + platen->moved + platen->rate * travel;
     };
-    const auto shortening = [&](int a, int b) { return -outward(a) - (b >= 0 ? outward(b) : 0.0); };
-    strains.axial = shortening(gauges.moved, gauges.opposite) / gauges.length;
+    for (const int i : {gauges.moved, gauges.opposite})
+        if (i >= 0) strains.axial -= outward(i, mean_displacement(model.system, change, i)) / gauges.length;
     if (gauges.lateral[0].empty()) return strains;
     for (const Side& side : gauges.lateral)
-        for (const int i : side)
-            strains.lateral -=
-                outward(i) * boundary_frame(model.system, i).length / (length_of(model.system, side) * gauges.width);
+        for (const SidePart& part : side) {
+            const Vec2 mean = mean_displacement(model.system, change, part);
+            strains.lateral -= part.share * outward(part.boundary, mean) / gauges.width;
+        }
     return strains;
 }
 
@@ -208,10 +208,8 @@ StepRecord measure_step(const Model& model, const Gauges& gauges, const State& s
     }
     const double height = gauges.length * (1.0 - total.axial);
     for (const Side& side : gauges.lateral) {
-        for (const int i : side) {
-            const double share = boundary_frame(model.system, i).length / length_of(model.system, side);
-            record.lateral_stress += 0.5 * share * stress_on(i, height * share, 1.0);
-        }
+        for (const SidePart& part : side)
+            record.lateral_stress += 0.5 * part.share * stress_on(part.boundary, height * part.share, 1.0);
     }
     record.differential_stress = record.axial_stress - record.lateral_stress;
     record.cracks_tension = static_cast<int>(std::ranges::count(state.body.interfaces, InterfaceStatus::tension_crack));

@@ -39,13 +39,22 @@ struct BoundaryFrame {
 /// of the body behind it (m).
 [[nodiscard]] double distance_across(const BlockSystem& system, int boundary);
 
-/// The boundaries on one side of a body.
-using Side = std::vector<int>;
+/// What a boundary has of one side of a body: its edges that face the side and that no part of the body lies in front of, as it does of the
+/// flanks of a notch in another side and of the walls of an opening. Each has a share of the side by its length across the side's
+/// direction, so that the mean distance of two sides of the same height is the area between them over that height.
+struct SidePart {
+    int boundary = -1;
+    std::vector<BoundaryEdge> edges;
+    std::vector<double> shares; ///< of the edges
+    double share = 0.0;         ///< of all of them
+};
+using Side = std::vector<SidePart>;
 /// The two sides across `boundary`, that of its normal turned clockwise first: on each all boundaries that face it most. Both are
 /// empty if there are not two.
 [[nodiscard]] std::array<Side, 2> lateral_sides(const BlockSystem& system, int boundary);
-/// Length of all boundaries of a side (m).
-[[nodiscard]] double length_of(const BlockSystem& system, const Side& side);
+
+/// Mean displacement of a part of a side, weighted by its shares (m).
+[[nodiscard]] Vec2 mean_displacement(const BlockSystem& system, const Eigen::VectorXd& q, const SidePart& part);
 
 /// Edges of a boundary that a platen on it can be laid on: no part of the body lies in front of them, as it does of the
 /// floor and the roof of an opening.
