@@ -4,8 +4,10 @@
 
 #include <fmt/format.h>
 
+#include "kluft/equilibrium/left_over.hpp"
 #include "kluft/simulation/breaking.hpp"
 #include "kluft/simulation/jump.hpp"
+#include "kluft/simulation/placement.hpp"
 
 namespace kluft {
 
@@ -23,6 +25,15 @@ bool rests_at(const StepInProgress& p, const PlacedState& placed, const Equilibr
 
 bool has_moved_far(const StepInProgress& p, const Eigen::VectorXd& since) {
     return relative_motion(p.bench.model.system, p.displacement() - since) > far;
+}
+
+/// Whether the body is balanced with its contacts detected anew where it is.
+bool is_balanced_anew(StepInProgress& p) {
+    if (p.step.in_place.placement.contacts.empty()) return true;
+    const PlacedState placed = place(p);
+    const LoadsAt at = p.loads_at(p.load_factor());
+    const BlockBalance blocks = block_balance(loaded_body(p.bench.model, placed.placement, at), p.displacement());
+    return judge_blocks(blocks, nullptr, p.goal.balance).balanced();
 }
 
 /// The block that moves farthest, beside its size.
@@ -63,7 +74,8 @@ Equilibrium find_again(StepInProgress& p) {
 void let_contacts_follow(StepInProgress& p, Eigen::VectorXd placed_at) {
     if (!p.goal.must_rest && !is_loaded_by_stress(p.bench.stage(p.from))) return;
     bool stands = !p.goal.must_rest; // else contacts detected anew tell, however little has moved
-    for (int round = 0; !p.failed() && p.step.balanced && (!stands || has_moved_far(p, placed_at)); ++round) {
+    for (int round = 0;
+         !p.failed() && p.step.balanced && (!stands || has_moved_far(p, placed_at) || !is_balanced_anew(p)); ++round) {
         stands = true;
         placed_at = p.displacement();
         const Equilibrium found = find_again(p);

@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include <fmt/format.h>
@@ -70,6 +71,37 @@ std::vector<double> acting_on_blocks(const LoadedBody& body, const Overlaps& ove
     return acting;
 }
 
+/// Whether it is one of the tip's block with the outline of the ground before it.
+bool is_with_ground(const BlockSystem& system, const Overlap& overlap, const UnheldTip& tip) {
+    const auto is_outline = [&](int edge) { return system.blocks[tip.ground].edges[edge].interface < 0; };
+    if (overlap.block_a == tip.block && overlap.block_b == tip.ground) return is_outline(overlap.edge_b);
+    if (overlap.block_a == tip.ground && overlap.block_b == tip.block) return is_outline(overlap.edge_a);
+    return false;
+}
+
+/// What carries most of the tips that lean on the ground before them, and of which strength reduction takes no count.
+std::optional<CornerContact> tip_on_ground(const Model& model, const State& state) {
+    std::optional<CornerContact> largest;
+    const auto tips = unheld_tips(model, state);
+    if (tips.empty()) return largest;
+    with_body_of_state(model, state, [&](const LoadedBody& body) {
+        const Overlaps overlaps = pressed_overlaps(body, state.body.displacement);
+        const std::vector<double> acting = acting_on_blocks(body, overlaps);
+        for (const UnheldTip& tip : tips) {
+            CornerContact contact{.block_a = tip.block, .block_b = tip.ground, .held = tip.block};
+            contact.place = model.system.origin + tip.place;
+            for (const auto& [overlap, touching] : overlaps) {
+                if (!is_with_ground(model.system, overlap, tip)) continue;
+                contact.length += touching.length;
+                contact.force += touching.pressing;
+            }
+            contact.share = contact.force / acting[tip.block];
+            if (contact.share >= large_share && (!largest || contact.force > largest->force)) largest = contact;
+        }
+    });
+    return largest;
+}
+
 } // namespace
 
 std::vector<CornerContact> corner_contacts(const Model& model, const State& state) {
@@ -117,7 +149,12 @@ std::string description(const Model& model, const CornerContact& corner) {
 }
 
 std::string corner_contact_warning(const Model& model, const State& state) {
-    if (model.has_potential_cracks || model.loads.stages[state.at.stage].strength_reduction) return {};
+    if (model.loads.stages[state.at.stage].strength_reduction) return {};
+    if (const auto tip = tip_on_ground(model, state))
+        return description(model, *tip) +
+               ": a tip leans there on the ground before it, on which rock would break or ride over; a stage of "
+               "`strength_reduction` takes no count of it, and tells whether the body stands without";
+    if (model.has_potential_cracks) return {};
     const auto corners = corner_contacts(model, state);
     if (corners.empty()) return {};
     return description(model, corners.front()) + ": blocks without potential cracks keep their corners, and where "

@@ -35,8 +35,8 @@ struct CornerContact {
 /// In words, what holds a block there.
 [[nodiscard]] std::string description(const Model& model, const CornerContact& corner);
 
-/// What is to be said of the largest one of blocks that cannot break; "" where there is none, and in a stage that reduces strengths,
-/// which knows when a corner has caught.
+/// What is to be said of the largest one of them on which a tip leans on the ground before it, or else of the largest one of blocks that cannot
+/// break; "" where there is none, and in a stage that reduces strengths, which knows when a corner has caught.
 [[nodiscard]] std::string corner_contact_warning(const Model& model, const State& state);
 
 } // namespace kluft
