@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <utility>
 
 #include "kluft/kinematics/affine.hpp"
 
@@ -35,6 +37,7 @@ Vec2 mean_position(const BlockSystem& system, const Edges& edges) {
 
 constexpr double same_plane = 1e-9;     ///< of the body's larger side
 constexpr double same_direction = 1e-6; ///< of the cosine between normals
+constexpr double same_length = 1e-9;    ///< of two sides: what lies between them is closed
 constexpr double faces_all_ways = 1e-9; ///< of the length: what is left of the sum of normals is round-off
 
 /// Whether a line from a point along a direction meets the body farther on than a distance.
@@ -58,27 +61,6 @@ Vec2 middle_of(const BlockSystem& system, int block, int e) {
     return 0.5 * (edge_start(system, edge) + edge_end(system, edge));
 }
 
-/// How far they reach along a direction (m).
-double outermost(const BlockSystem& system, const Edges& edges, const Vec2& direction) {
-    double farthest = -std::numeric_limits<double>::infinity();
-    for_each_edge(system, edges, [&](int, const Vec2& start, const Vec2& end) {
-        farthest = std::max({farthest, direction.dot(start), direction.dot(end)});
-    });
-    return farthest;
-}
-
-/// Those of the edges that no part of the body lies in front of, along a direction in which the body's side reaches as far as `farthest` (m).
-Edges outer_edges(const BlockSystem& system, const Edges& edges, const Vec2& direction, double farthest) {
-    const double near = same_plane * (system.upper - system.lower).maxCoeff();
-    Edges outer;
-    for (const auto& [b, e] : edges) {
-        const Vec2 middle = middle_of(system, b, e);
-        if (direction.dot(middle) >= farthest - near || !meets_body(system, middle, direction, near))
-            outer.push_back({b, e});
-    }
-    return outer;
-}
-
 /// Those whose normals are nearest to a direction, within 45 degrees of it.
 std::vector<int> boundaries_facing(const BlockSystem& system, const Vec2& direction) {
     std::vector<int> facing;
@@ -93,34 +75,46 @@ std::vector<int> boundaries_facing(const BlockSystem& system, const Vec2& direct
     return facing;
 }
 
-Side side_of(const BlockSystem& system, const std::vector<int>& boundaries, const Vec2& direction) {
-    double farthest = -std::numeric_limits<double>::infinity();
-    for (const int i : boundaries)
-        farthest = std::max(farthest, outermost(system, system.boundaries[i].edges, direction));
-    Side side;
-    double length = 0.0;
-    for (const int i : boundaries) {
-        SidePart part{.boundary = i};
-        for (const auto& [b, e] : outer_edges(system, system.boundaries[i].edges, direction, farthest)) {
-            const Edge& edge = system.blocks[b].edges[e];
-            const double facing = direction.dot(right_normal(edge_end(system, edge) - edge_start(system, edge)));
-            if (facing <= 0.0) continue;
-            part.edges.push_back({b, e});
-            part.shares.push_back(facing);
-            part.share += facing;
-        }
-        length += part.share;
-        if (!part.edges.empty()) side.push_back(std::move(part));
+/// Lengths that edges cover along an axis (m), a stretch that several of them cover once.
+double covered_length(const BlockSystem& system, const Side& side, const Vec2& axis) {
+    std::vector<std::pair<double, double>> stretches;
+    for (const SidePart& part : side) {
+        for_each_edge(system, part.edges, [&](int, const Vec2& start, const Vec2& end) {
+            stretches.push_back(std::minmax({axis.dot(start), axis.dot(end)}));
+        });
     }
-    for (SidePart& part : side) {
-        for (double& share : part.shares) share /= length;
-        part.share /= length;
+    std::ranges::sort(stretches);
+    double length = 0.0;
+    double reached = -std::numeric_limits<double>::infinity();
+    for (const auto& [from, to] : stretches) {
+        length += std::max(0.0, to - std::max(from, reached));
+        reached = std::max(reached, to);
+    }
+    return length;
+}
+
+/// All edges of some boundaries, with the lengths (m) that they have across a direction as their shares.
+Side side_of(const BlockSystem& system, const std::vector<int>& boundaries, const Vec2& direction) {
+    Side side;
+    for (const int i : boundaries) {
+        SidePart part{.boundary = i, .edges = system.boundaries[i].edges};
+        for_each_edge(system, i, [&](int, const Vec2& start, const Vec2& end) {
+            part.shares.push_back(direction.dot(right_normal(end - start)));
+            part.share += part.shares.back();
+        });
+        side.push_back(std::move(part));
     }
     return side;
 }
 
-/// Along a direction (m).
-double mean_place(const BlockSystem& system, const Side& side, const Vec2& direction) {
+double length_of(const Side& side) {
+    double length = 0.0;
+    for (const SidePart& part : side) length += part.share;
+    return length;
+}
+
+/// Sum of the places of the edges along a direction, times their shares.
+double place_of(const BlockSystem& system, const Side& side, const Vec2& direction) {
     double place = 0.0;
     for (const SidePart& part : side)
         for (std::size_t i = 0; i < part.edges.size(); ++i)
@@ -193,8 +187,18 @@ std::array<Side, 2> lateral_sides(const BlockSystem& system, int boundary) {
     for (int k = 0; k < 2; ++k) {
         const Vec2 direction = k == 0 ? lateral : Vec2(-lateral);
         sides[k] = side_of(system, boundaries_facing(system, direction), direction);
+        if (length_of(sides[k]) <= 0.0) return {};
     }
-    if (sides[0].empty() || sides[1].empty()) return {};
+    const std::array<double, 2> lengths{length_of(sides[0]), length_of(sides[1])};
+    const bool are_closed = std::abs(lengths[0] - lengths[1]) <= same_length * lengths[0];
+    const double height = std::max(covered_length(system, sides[0], normal), covered_length(system, sides[1], normal));
+    for (int k = 0; k < 2; ++k) {
+        for (SidePart& part : sides[k]) {
+            part.share /= lengths[k];
+            for (double& share : part.shares) share /= are_closed ? height : lengths[k];
+            part.weight = std::accumulate(part.shares.begin(), part.shares.end(), 0.0);
+        }
+    }
     return sides;
 }
 
@@ -204,13 +208,23 @@ Vec2 mean_displacement(const BlockSystem& system, const Eigen::VectorXd& q, cons
         const auto& [b, e] = part.edges[i];
         sum += part.shares[i] * displacement_at(q, b, block_coordinates(system.blocks[b], middle_of(system, b, e)));
     }
-    return sum / part.share;
+    return sum / part.weight;
 }
 
 std::vector<BoundaryEdge> outer_edges(const BlockSystem& system, int boundary) {
-    const Edges& edges = system.boundaries[boundary].edges;
     const Vec2 normal = boundary_frame(system, boundary).normal;
-    return outer_edges(system, edges, normal, outermost(system, edges, normal));
+    double outermost = -std::numeric_limits<double>::infinity();
+    for_each_edge(system, boundary, [&](int, const Vec2& start, const Vec2& end) {
+        outermost = std::max({outermost, normal.dot(start), normal.dot(end)});
+    });
+    const double near = same_plane * (system.upper - system.lower).maxCoeff();
+    std::vector<BoundaryEdge> outer;
+    for (const auto& [b, e] : system.boundaries[boundary].edges) {
+        const Vec2 middle = middle_of(system, b, e);
+        if (normal.dot(middle) >= outermost - near || !meets_body(system, middle, normal, near))
+            outer.push_back({b, e});
+    }
+    return outer;
 }
 
 double unevenness(const BlockSystem& system, int boundary) {
@@ -236,7 +250,7 @@ PlatenForce width_across(const BlockSystem& system, int boundary) {
                   [&](int, const Vec2& start, const Vec2& end) { force.width += std::abs(lateral.dot(end - start)); });
     const auto sides = lateral_sides(system, boundary);
     if (sides[0].empty()) return force;
-    const double apart = std::abs(mean_place(system, sides[0], lateral) - mean_place(system, sides[1], lateral));
+    const double apart = std::abs(place_of(system, sides[0], lateral) - place_of(system, sides[1], lateral));
     force.width = std::max(force.width, apart);
     const double of_all_parts = force.width / apart; // columns side by side widen each
     for (int k = 0; k < 2; ++k) {

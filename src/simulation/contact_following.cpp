@@ -7,7 +7,7 @@
 #include "kluft/equilibrium/left_over.hpp"
 #include "kluft/simulation/breaking.hpp"
 #include "kluft/simulation/jump.hpp"
-#include "kluft/simulation/placement.hpp"
+#include "kluft/simulation/state_fields.hpp"
 
 namespace kluft {
 
@@ -15,6 +15,7 @@ namespace {
 
 constexpr double far = 1e-3; ///< motion of a block after which its contacts are detected anew (motion_scale)
 constexpr int max_rounds_of_detection = 100;
+constexpr double large_imbalance = 0.1; ///< of what acts on a block
 
 /// Whether the body comes to rest in an equilibrium that was found beside it, without another potential crack that fails.
 bool rests_at(const StepInProgress& p, const PlacedState& placed, const Equilibrium& found) {
@@ -25,15 +26,6 @@ bool rests_at(const StepInProgress& p, const PlacedState& placed, const Equilibr
 
 bool has_moved_far(const StepInProgress& p, const Eigen::VectorXd& since) {
     return relative_motion(p.bench.model.system, p.displacement() - since) > far;
-}
-
-/// Whether the body is balanced with its contacts detected anew where it is.
-bool is_balanced_anew(StepInProgress& p) {
-    if (p.step.in_place.placement.contacts.empty()) return true;
-    const PlacedState placed = place(p);
-    const LoadsAt at = p.loads_at(p.load_factor());
-    const BlockBalance blocks = block_balance(loaded_body(p.bench.model, placed.placement, at), p.displacement());
-    return judge_blocks(blocks, nullptr, p.goal.balance).balanced();
 }
 
 /// The block that moves farthest, beside its size.
@@ -74,13 +66,28 @@ Equilibrium find_again(StepInProgress& p) {
 void let_contacts_follow(StepInProgress& p, Eigen::VectorXd placed_at) {
     if (!p.goal.must_rest && !is_loaded_by_stress(p.bench.stage(p.from))) return;
     bool stands = !p.goal.must_rest; // else contacts detected anew tell, however little has moved
-    for (int round = 0;
-         !p.failed() && p.step.balanced && (!stands || has_moved_far(p, placed_at) || !is_balanced_anew(p)); ++round) {
+    for (int round = 0; !p.failed() && p.step.balanced && (!stands || has_moved_far(p, placed_at)); ++round) {
         stands = true;
         placed_at = p.displacement();
         const Equilibrium found = find_again(p);
         if (!p.failed() && round == max_rounds_of_detection) fail_by_moving_on(p, found, p.displacement() - placed_at);
     }
+}
+
+std::string contacts_anew_warning(const Model& model, const State& state) {
+    const Stage& stage = model.loads.stages[state.at.stage];
+    if (stage.strength_reduction || !is_loaded_by_stress(stage)) return {};
+    std::string warning;
+    with_body_of_state(model, state, [&](const LoadedBody& body) {
+        if (body.placement->contacts.empty()) return;
+        const BlockBalance blocks = block_balance(body, state.body.displacement);
+        const BlockVerdict verdict = judge_blocks(blocks, nullptr, {.share = large_imbalance});
+        if (verdict.balanced()) return;
+        warning = fmt::format("where the body has come to, its contacts detected anew leave {:.3g} % of what acts on a "
+                              "block out of balance: {}. More load steps (stages.{}.steps) tell whether it stands",
+                              100.0 * verdict.error, description(model, verdict.moving), state.at.stage);
+    });
+    return warning;
 }
 
 } // namespace kluft

@@ -135,7 +135,7 @@ Strains measure_strains(const Model& model, const Gauges& gauges, const Loads& l
     for (const Side& side : gauges.lateral)
         for (const SidePart& part : side) {
             const Vec2 mean = mean_displacement(model.system, change, part);
-            strains.lateral -= part.share * outward(part.boundary, mean) / gauges.width;
+            strains.lateral -= part.weight * outward(part.boundary, mean) / gauges.width;
         }
     return strains;
 }

@@ -39,14 +39,15 @@ struct BoundaryFrame {
 /// of the body behind it (m).
 [[nodiscard]] double distance_across(const BlockSystem& system, int boundary);
 
-/// What a boundary has of one side of a body: its edges that face the side and that no part of the body lies in front of, as it does of the
-/// flanks of a notch in another side and of the walls of an opening. Each has a share of the side by its length across the side's
-/// direction, so that the mean distance of two sides of the same height is the area between them over that height.
+/// What a boundary has of one side of a body. The shares of its edges are their lengths across the side's direction over the height of the
+/// body between its two sides, so that the sum of their places, times their shares, differs between the sides by the area between
+/// them over that height: columns side by side, notches and openings included. Between sides of different lengths they are shares of the length.
 struct SidePart {
     int boundary = -1;
     std::vector<BoundaryEdge> edges;
     std::vector<double> shares; ///< of the edges
-    double share = 0.0;         ///< of all of them
+    double weight = 0.0;        ///< sum of the shares
+    double share = 0.0;         ///< of the side's length
 };
 using Side = std::vector<SidePart>;
 /// The two sides across `boundary`, that of its normal turned clockwise first: on each all boundaries that face it most. Both are
@@ -63,7 +64,7 @@ using Side = std::vector<SidePart>;
 /// How far these lie apart along the normal of the boundary (m).
 [[nodiscard]] double unevenness(const BlockSystem& system, int boundary);
 
-/// The mean width of the body under a platen on `boundary` (m): the mean distance of the lateral boundaries, or the width of
+/// The mean width of the body under a platen on `boundary` (m): the mean distance of the lateral sides, or the width of
 /// its outer edges where that is more, as with columns side by side; it grows in proportion to the former.
 [[nodiscard]] PlatenForce width_across(const BlockSystem& system, int boundary);
 

@@ -1,6 +1,8 @@
 // Contacts detected anew at a load that stays: what a body stands on may have moved away from under it within a solve.
 #pragma once
 
+#include <string>
+
 #include <Eigen/Core>
 
 #include "kluft/simulation/step_in_progress.hpp"
@@ -15,5 +17,9 @@ Equilibrium find_again(StepInProgress& in_progress);
 /// Under given loads a step therefore ends only where the blocks that have moved since `placed_at` (m), the displacements of
 /// the last detection, stand with contacts detected anew; else they fall.
 void let_contacts_follow(StepInProgress& in_progress, Eigen::VectorXd placed_at);
+
+/// What is to be said of a committed state under given loads in which contacts detected anew leave more than a tenth of what acts on a
+/// block out of balance: the next load step would not begin where it is. "" of any other state.
+[[nodiscard]] std::string contacts_anew_warning(const Model& model, const State& state);
 
 } // namespace kluft
