@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <set>
 #include <string>
@@ -18,6 +19,7 @@
 #include "kluft/core/memory.hpp"
 #include "kluft/core/place_text.hpp"
 #include "kluft/geometry/polygon.hpp"
+#include "kluft/geometry/predicates.hpp"
 #include "kluft/scene/coarse_places.hpp"
 #include "kluft/scene/net_check.hpp"
 #include "kluft/scene/scattered_sides.hpp"
@@ -170,6 +172,45 @@ std::vector<std::string> empty_regions(const GeometrySpec& geometry, const Block
         if (std::ranges::none_of(system.blocks, lies_in))
             warnings.push_back(fmt::format(
                 "geometry.regions.{}.polygon: the middle of no block lies in it: no block has its material", i));
+    }
+    return warnings;
+}
+
+double distance_to_outline(const Polygon& polygon, const Vec2& p) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < polygon.size(); ++i)
+        nearest = std::min(nearest, distance_to_segment(p, polygon[i], polygon[(i + 1) % polygon.size()]));
+    return nearest;
+}
+
+/// Where cells of a net belong to a polygon by their middles, it ends at their edges: cells of the rock beside it bridge a thin layer.
+std::vector<std::string> ragged_regions(const GeometrySpec& geometry, const BlockSystem& system) {
+    constexpr double far_off = 0.02; // of the spacing, on the average
+    std::vector<std::string> warnings;
+    if (!geometry.tessellation) return warnings;
+    for (std::size_t i = 0; i < geometry.regions.size(); ++i) {
+        const Polygon& polygon = geometry.regions[i].polygon;
+        const auto lies_in = [&](int b) { return contains(polygon, system.origin + system.blocks[b].centroid); };
+        double length = 0.0, off = 0.0, farthest = 0.0;
+        for (const Interface& interface : system.interfaces) {
+            if (lies_in(interface.block_a) == lies_in(interface.block_b)) continue;
+            const Edge& edge = system.blocks[interface.block_a].edges[interface.edge_a];
+            const Vec2 start = edge_start(system, edge), end = edge_end(system, edge);
+            for (const Vec2& at : {start, end}) {
+                const double distance = distance_to_outline(polygon, system.origin + at);
+                off += 0.5 * (end - start).norm() * distance;
+                farthest = std::max(farthest, distance);
+            }
+            length += (end - start).norm();
+        }
+        if (off <= far_off * system.spacing * length) continue;
+        warnings.push_back(
+            fmt::format("geometry.regions.{}.polygon: cells of the net belong to it by their middles, and its sides "
+                        "come out ragged, {:.2g} m off on "
+                        "the average and up to {:.2g} m: of a thin layer, cells of the rock beside it bridge it, so "
+                        "that it deforms less and slides less "
+                        "easily; `geometry.construction_lines` along it make a net of triangles follow it",
+                        i, off / length, farthest));
     }
     return warnings;
 }
@@ -381,8 +422,9 @@ SceneModel build_scene_model(const Scene& scene) {
           pruned_pieces(scene.geometry, built.cut), closed_outcrops(scene.geometry, built.cut),
           small_reference(scene.geometry, built.model.system), slivers(scene.geometry, built.model.system),
           necks(scene.geometry, built.model.system), bare_net(scene.geometry, built.model.system),
-          empty_regions(scene.geometry, built.model.system), scattered_sides(scene),
-          open_joints(scene.geometry, built.model.system, built.cut), warnings_of_cut_net(scene, built.model.system),
+          empty_regions(scene.geometry, built.model.system), ragged_regions(scene.geometry, built.model.system),
+          scattered_sides(scene), open_joints(scene.geometry, built.model.system, built.cut),
+          warnings_of_cut_net(scene, built.model.system),
           coarse_places(scene.geometry, built.cut, scene.interface_types)})
         built.model.warnings.insert(built.model.warnings.end(), warnings.begin(), warnings.end());
     require_memory();

@@ -545,7 +545,9 @@ std::vector<KeyRule> cut_rules() {
          .measure = Measure::length,
          .required = true,
          .least_items = 3,
-         .doc = "Blocks with their centroid inside belong to it."},
+         .doc = "Blocks with their centroid inside belong to it: a net of triangles follows it where "
+                "`construction_lines` lie along it, and else "
+                "its sides are ragged."},
         {.path = "geometry.regions.#.material", .type = KeyType::text, .required = true, .doc = "Its material."},
     };
 }
@@ -593,7 +595,9 @@ std::vector<KeyRule> block_rules() {
          .type = KeyType::points,
          .measure = Measure::length,
          .least_items = 3,
-         .doc = "Blocks with their centroid inside belong to it."},
+         .doc = "Blocks with their centroid inside belong to it: a net of triangles follows it where "
+                "`construction_lines` lie along it, and else "
+                "its sides are ragged."},
         {.path = "geometry.sets.*.blocks", .type = KeyType::texts, .least_items = 1, .doc = "Names of given blocks."},
         {.path = "geometry.sets.*.support",
          .type = KeyType::choice,

@@ -82,6 +82,7 @@ bool is_with_ground(const BlockSystem& system, const Overlap& overlap, const Unh
 /// What carries most of the tips that lean on the ground before them, and of which strength reduction takes no count.
 std::optional<CornerContact> tip_on_ground(const Model& model, const State& state) {
     std::optional<CornerContact> largest;
+    if (!has_gravity(model)) return largest;
     const auto tips = unheld_tips(model, state);
     if (tips.empty()) return largest;
     with_body_of_state(model, state, [&](const LoadedBody& body) {

@@ -15,6 +15,7 @@
 #include "kluft/output/state_file.hpp"
 #include "kluft/reference/explicit_simulation.hpp"
 #include "kluft/scene/scene_as_run.hpp"
+#include "kluft/simulation/cohesion_share.hpp"
 #include "kluft/simulation/contact_following.hpp"
 #include "kluft/simulation/contact_pressure.hpp"
 #include "kluft/simulation/corner_contact.hpp"
@@ -156,6 +157,7 @@ void warn_of_contacts(const Model& model, const State& state, const ContactWatch
              {contact_pressure_warning(model, state, watch.largest_stress()), corner_contact_warning(model, state),
               watch.corners().warning(), watch.bonds().warning(), watch.bending().warning(), watch.platens().warning(),
               rocking_joint_warning(model, state), pulling_support_warning(model, state),
+              cohesion_share_warning(model, state),
               report.status == RunStatus::done ? contacts_anew_warning(model, state) : "",
               report.status == RunStatus::done ? unstable_equilibrium_warning(model, state) : ""})
             add(warning);

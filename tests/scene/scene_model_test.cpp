@@ -69,6 +69,21 @@ TEST(SceneModel, WhatTheBodyShowsToBeWrongHasItsPlace) {
     }
 }
 
+// A layer half a cell thick, at whose sides no line of the net lies: 5 GPa of rock bridge it.
+TEST(SceneModel, WarnsOfARegionThatTheNetDoesNotFollow) {
+    const std::vector<std::string> layer{
+        "materials.weak={youngs_modulus: 0.5 GPa, poissons_ratio: 0.25, cohesion: 5 MPa, friction_angle: 40, "
+        "tensile_strength: 2 MPa}",
+        "geometry.material=rock",
+        "geometry.regions=[{polygon: [[0, 0.45], [1, 0.45], [1, 0.55], [0, 0.55]], material: weak}]"};
+    EXPECT_THAT(warnings_of(layer), Contains(AllOf(HasSubstr("geometry.regions.0.polygon"), HasSubstr("ragged"),
+                                                   HasSubstr("`geometry.construction_lines`"))));
+    std::vector<std::string> followed = layer;
+    followed.emplace_back(
+        "geometry.construction_lines=[{trace: [[0, 0.45], [1, 0.45]]}, {trace: [[0, 0.55], [1, 0.55]]}]");
+    EXPECT_THAT(warnings_of(followed), Not(Contains(HasSubstr("ragged"))));
+}
+
 // A cantilever of hexagons bent by 0.04 of what it should because of a material that no block has.
 TEST(SceneModel, OfUnusedMaterialsHasNoTrace) {
     const auto stiffness = [](const std::string& more) {
