@@ -74,4 +74,10 @@ InputError located(const InputError& error, const std::vector<KeyPlace>& places)
     return InputError(std::move(problems));
 }
 
+std::string located(const std::string& warning, const std::vector<KeyPlace>& places) {
+    const std::size_t end = warning.find(": ");
+    const KeyPlace* at = end == std::string::npos ? nullptr : find_place(places, warning.substr(0, end));
+    return at == nullptr ? warning : fmt::format("{}: {}", at->place, warning);
+}
+
 } // namespace kluft

@@ -416,6 +416,7 @@ SceneModel build_scene_model(const Scene& scene) {
         blame_coarse_net(scene.geometry, error);
         throw located(error, scene.places);
     }
+    for (std::string& warning : built.model.warnings) warning = located(warning, scene.places);
     built.cut = std::move(body.report);
     for (const auto& warnings :
          {lost_fractures(scene, built.cut), fine_details(scene.geometry, built.cut),

@@ -16,6 +16,7 @@
 #include "kluft/kinematics/material_point.hpp"
 #include "kluft/loading/boundary_geometry.hpp"
 #include "kluft/simulation/free_body.hpp"
+#include "kluft/simulation/idle_forces.hpp"
 #include "kluft/simulation/rock_constants.hpp"
 #include "kluft/simulation/stage_loads.hpp"
 #include "kluft/simulation/undeformable_blocks.hpp"
@@ -590,6 +591,7 @@ Model build_model(BlockSystem system, const ModelInput& input) {
     warn_of_bent_supports(model);
     warn_of_unmeasured_sides(model);
     refuse_contradicting_supports(model);
+    for (std::string& warning : idle_force_warnings(model)) model.warnings.push_back(std::move(warning));
     for (std::string& warning : std::array{undeformable_blocks_warning(model), free_body_warning(model)})
         if (!warning.empty()) model.warnings.push_back(std::move(warning));
     return model;

@@ -26,4 +26,7 @@ struct KeyPlace {
 /// the scene leaves to its default stands where what it is a key of does. Messages that begin otherwise stay as they are.
 [[nodiscard]] InputError located(const InputError& error, const std::vector<KeyPlace>& places);
 
+/// A warning with the place of the key that it begins with before it; as it is where it begins otherwise.
+[[nodiscard]] std::string located(const std::string& warning, const std::vector<KeyPlace>& places);
+
 } // namespace kluft
