@@ -14,8 +14,9 @@ namespace kluft {
 
 namespace {
 
-constexpr double no_resultant = 1e-6; ///< of the magnitudes of the loads
-constexpr double whole_body = 0.9;    ///< of the area of the blocks: if so much moves, the body does
+constexpr double no_resultant = 1e-6;    ///< of the magnitudes of the loads
+constexpr double clear_resultant = 0.01; ///< of these: more than what solver.balance leaves over
+constexpr double whole_body = 0.9;       ///< of the area of the blocks: if so much moves, the body does
 constexpr double suspicious_strain = 0.05;
 
 /// Forces and moment of the loads on the body before it moved.
@@ -28,6 +29,24 @@ Vec3 resultant(const Model& model, const WholeBody& body, const Eigen::VectorXd&
         sum(2) += block.size * (f[3] - f[4]) / body.extent;
     }
     return sum;
+}
+
+/// Of all loads on the body before it moved.
+struct WholeLoad {
+    Vec3 sum;               ///< forces and moment (N/m)
+    double magnitude = 0.0; ///< sum of the blocks' (N/m)
+};
+
+WholeLoad whole_load(const Model& model, const WholeBody& body, const LoadsAt& at) {
+    const Placement without_contacts;
+    const LoadedBody loaded = loaded_body(model, without_contacts, at);
+    const Eigen::VectorXd at_rest =
+        Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n_block_unknowns) * model.system.n_blocks());
+    Eigen::VectorXd forces;
+    external_forces(loaded, at_rest, forces);
+    WholeLoad load{.sum = resultant(model, body, forces)};
+    for (const double each : load_magnitudes(loaded, at_rest)) load.magnitude += each;
+    return load;
 }
 
 std::string pressures_in_words(const Model& model, const Loads& loads) {
@@ -44,7 +63,7 @@ std::string pressures_in_words(const Model& model, const Loads& loads) {
 bool is_turn(const Vec3& motion) { return std::abs(motion(2)) > motion.head<2>().norm(); }
 
 std::string direction_in_words(const Vec3& motion) {
-    const Vec2 direction = motion.head<2>().normalized();
+    const Vec2 direction = motion.head<2>().normalized() + Vec2::Zero(); // no -0
     return fmt::format("({:.2g}, {:.2g})", direction.x(), direction.y());
 }
 
@@ -101,16 +120,7 @@ std::optional<std::string> soft_body(const Model& model, const Loads& loads, con
 std::vector<std::string> likely_causes(const Model& model, const LoadsAt& at, const std::vector<MovingBlock>& moving) {
     const WholeBody body(model.system);
     const Loads& loads = at.loads;
-    const Placement without_contacts;
-    const LoadedBody loaded = loaded_body(model, without_contacts, at);
-    const Eigen::VectorXd at_rest =
-        Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n_block_unknowns) * model.system.n_blocks());
-    Eigen::VectorXd forces;
-    external_forces(loaded, at_rest, forces);
-    const Vec3 sum = resultant(model, body, forces);
-    double magnitude = 0.0;
-    for (const double each : load_magnitudes(loaded, at_rest)) magnitude += each;
-
+    const auto [sum, magnitude] = whole_load(model, body, at);
     std::vector<std::string> causes;
     const bool as_a_whole = !loads.constraints.rows().empty() && moves_as_a_whole(model.system, moving);
     for (const Vec3& motion : free_motions(resistance(model.system, loads.constraints))) {
@@ -123,6 +133,30 @@ std::vector<std::string> likely_causes(const Model& model, const LoadsAt& at, co
     }
     if (const auto soft = soft_body(model, loads, body)) causes.push_back(*soft);
     return causes;
+}
+
+std::string unheld_body_warning(const Model& model) {
+    const BlockSystem& system = model.system;
+    const WholeBody body(system);
+    StageStart start{Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n_block_unknowns) * system.n_blocks()),
+                     std::vector<double>(system.boundaries.size(), 0.0)};
+    for (int s = 0; s < static_cast<int>(model.loads.stages.size()); ++s) {
+        const StageLoads stage_loads(model, start, model.loads.stages[s]);
+        const PlatenHold hold{.points = {}, .constraints = stage_loads.constraints(), .friction = {}};
+        if (!hold.constraints.rows().empty()) return {}; // supports hold in all stages, and platens leave pressures
+        start.boundary_pressure = stage_loads.pressures(1.0);
+        const LoadsAt at = loads_at(model, stage_loads, hold, s, 1.0);
+        const auto [sum, magnitude] = whole_load(model, body, at);
+        const Vec3 push(sum.x(), sum.y(), 0.0);
+        const Vec3 motion = push.norm() > clear_resultant * magnitude ? push.normalized() : Vec3::UnitZ();
+        const double force = motion.dot(sum);
+        if (std::abs(force) > clear_resultant * magnitude)
+            return fmt::format(
+                "stages.{}: expected a support, a fixed block or a platen that holds the body, found none: "
+                "{}",
+                s, push_in_words(model, at.loads, motion, force));
+    }
+    return {};
 }
 
 } // namespace kluft

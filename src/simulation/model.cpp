@@ -15,6 +15,7 @@
 #include "kluft/core/units.hpp"
 #include "kluft/kinematics/material_point.hpp"
 #include "kluft/loading/boundary_geometry.hpp"
+#include "kluft/simulation/causes.hpp"
 #include "kluft/simulation/free_body.hpp"
 #include "kluft/simulation/idle_forces.hpp"
 #include "kluft/simulation/rock_constants.hpp"
@@ -592,7 +593,8 @@ Model build_model(BlockSystem system, const ModelInput& input) {
     warn_of_unmeasured_sides(model);
     refuse_contradicting_supports(model);
     for (std::string& warning : idle_force_warnings(model)) model.warnings.push_back(std::move(warning));
-    for (std::string& warning : std::array{undeformable_blocks_warning(model), free_body_warning(model)})
+    for (std::string& warning :
+         std::array{unheld_body_warning(model), undeformable_blocks_warning(model), free_body_warning(model)})
         if (!warning.empty()) model.warnings.push_back(std::move(warning));
     return model;
 }

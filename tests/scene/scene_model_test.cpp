@@ -32,6 +32,7 @@ geometry:
   fractures: [{name: main, trace: [[0, 1], [1, 1]], interface: joint}]
   tessellation: {triangles: {spacing: 0.2}, interface: bond}
 stages: [{pressure: {top: 1 MPa}}]
+boundaries: {bottom: {support: fixed}}
 )";
 
 std::vector<std::string> warnings_of(const std::vector<std::string>& overrides) {

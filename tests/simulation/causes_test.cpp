@@ -68,5 +68,49 @@ TEST(Causes, AModulusWithoutItsUnitIsSuspected) {
                 AllOf(HasSubstr("is a unit missing"), HasSubstr("0.01 MPa"), Not(HasSubstr("push the body"))));
 }
 
+/// Warnings of two blocks, one on the other, whose scene says this of boundaries, gravity and stages.
+std::vector<std::string> warnings_of_two_blocks(const std::string& boundaries, const std::string& gravity,
+                                                const std::string& stages) {
+    const std::string scene = R"(kluft: 1
+analysis: {gravity: )" + gravity +
+                              R"(}
+materials: {rock: {density: 2500, youngs_modulus: 10 GPa, poissons_ratio: 0.2}}
+interfaces: {joint: {kind: fracture, normal_stiffness: 1e10, shear_stiffness: 1e10, friction_angle: 30}}
+geometry: {domain: {rectangle: {width: 1, height: 2}}, fractures: [{trace: [[-0.1, 1], [1.1, 1]]}]}
+boundaries: )" + boundaries + R"(
+stages: )" + stages + "\n";
+    return build_scene_model(read_scene_text(scene, {}, "two.yaml")).model.warnings;
+}
+
+// By statics: what nothing holds stands only under loads whose sum and moment vanish.
+TEST(UnheldBody, UnderLoadsThatDoNotBalanceIsWarnedOfBeforeItIsRun) {
+    const auto told = [](const std::string& where, const std::string& how) {
+        return ::testing::Contains(AllOf(HasSubstr(where),
+                                         HasSubstr("expected a support, a fixed block or a platen that holds the body"),
+                                         HasSubstr(how)));
+    };
+    // 2500 kg/m3 x 2 m2 x 10 m/s2
+    EXPECT_THAT(warnings_of_two_blocks("{}", "10", "[{name: weight}]"),
+                told("two.yaml:7:10: stages.0: ", "towards (0, -1) with 50 kN/m"));
+    EXPECT_THAT(
+        warnings_of_two_blocks("{}", "0", "[{pressure: {left: 2 MPa, right: 2 MPa}}, {pressure: {left: 3 MPa}}]"),
+        told("stages.1: ", "towards (1, 0) with 2000 kN/m"));
+    EXPECT_THAT(warnings_of_two_blocks("{}", "0",
+                                       "[{forces: {up: {point: [0.9, 1.9], force: [0, 1e5]}, "
+                                       "down: {point: [0.1, 1.9], force: [0, -1e5]}}}]"),
+                told("stages.0: ", "the loads turn the body"));
+}
+
+TEST(UnheldBody, IsNoneWhereLoadsBalanceOrAnythingHoldsIt) {
+    const auto none = Not(::testing::Contains(HasSubstr("that holds the body, found none")));
+    const std::string all_around = "[{pressure: {left: 1 MPa, right: 1 MPa, top: 2 MPa, bottom: 2 MPa}}]";
+    EXPECT_THAT(warnings_of_two_blocks("{}", "0", all_around), none);
+    EXPECT_TRUE(stands(run_two_blocks("{}", all_around.substr(1, all_around.size() - 2))));
+    const std::string platen = "{strain: {boundary: top, value: 0.01 %}}";
+    EXPECT_THAT(warnings_of_two_blocks("{}", "0", "[" + platen + "]"), none);
+    EXPECT_THAT(warnings_of_two_blocks("{}", "10", "[" + platen + ", {pressure: {top: 1 MPa}}]"), none);
+    EXPECT_THAT(warnings_of_two_blocks("{bottom: {support: smooth}}", "10", "[{name: weight}]"), none);
+}
+
 } // namespace
 } // namespace kluft

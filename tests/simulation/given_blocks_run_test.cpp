@@ -338,7 +338,10 @@ stages:
     EXPECT_LT(run.history.back().load_factor, 0.43);
     EXPECT_THAT(run.model.warnings, testing::IsEmpty());
     const auto warnings_with = [&](const std::string& change) {
-        return build_scene_model(read_scene_text(scene, {"geometry.blocks.0.support=none", change})).model.warnings;
+        return build_scene_model(
+                   read_scene_text(scene, {"geometry.blocks.0.support=none",
+                                           "boundaries.floor={block: lower, facing: bottom, support: fixed}", change}))
+            .model.warnings;
     };
     EXPECT_THAT(warnings_with("stages.1.steps=1"),
                 testing::ElementsAre(testing::AllOf(testing::HasSubstr("stages.1.forces.push"),

@@ -16,4 +16,9 @@ namespace kluft {
 [[nodiscard]] std::vector<std::string> likely_causes(const Model& model, const LoadsAt& at,
                                                      const std::vector<MovingBlock>& moving);
 
+/// What is to be said of the first stage in which the body has neither a support, a fixed block nor a platen, and its loads do not
+/// balance: it cannot find an equilibrium. The message begins with the key of the stage. "" where there is none; what platens leave
+/// behind is not known before, so that stages after one with a platen are not judged.
+[[nodiscard]] std::string unheld_body_warning(const Model& model);
+
 } // namespace kluft
