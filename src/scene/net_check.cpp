@@ -13,6 +13,8 @@
 #include "kluft/constitutive/lattice_stiffness.hpp"
 #include "kluft/constitutive/net_kind.hpp"
 #include "kluft/core/units.hpp"
+#include "kluft/geometry/polygon.hpp"
+#include "kluft/scene/quantity.hpp"
 
 namespace kluft {
 
@@ -95,6 +97,34 @@ void warn_of_rigid_triangles(const SceneSection& root, const Scene& scene, Readi
         root.section("analysis"), "kinematics",
         "intact rock cut into rigid triangles fails at 72 to 81 % of its strength (docs/theory.md, section 5); take "
         "kinematics: affine for strength");
+}
+
+/// The units without which the number is meant in metres and makes cells that fit into the body: "cm or mm"; "" where there is none.
+std::string smaller_units(const std::string& number, double spacing, double extent) {
+    std::string units;
+    for (const auto& [unit, size] : {std::pair("cm", 1e-2), std::pair("mm", 1e-3)})
+        if (size * spacing < extent) units += fmt::format("{}'{} {}'", units.empty() ? "" : " or ", number, unit);
+    return units;
+}
+
+/// Cells that are larger than the body leave it nearly uncut.
+void warn_of_wide_cells(const SceneSection& root, const Scene& scene, ReadingContext& context) {
+    if (scene.geometry.domain.empty()) return;
+    const Box box = bounding_box(scene.geometry.domain);
+    const double extent = (box.upper - box.lower).minCoeff();
+    const SceneSection net = root.section("geometry").section("tessellation");
+    for (const auto* cells : {"triangles", "hexagons", "voronoi"}) {
+        const SceneSection section = net.section(cells);
+        const auto spacing = section.given_number("spacing");
+        if (!spacing || *spacing <= extent) continue;
+        const std::string& given = section.value("spacing")->text;
+        const std::string units = read_number(given) ? smaller_units(given, *spacing, extent) : "";
+        context.warn(
+            section, "spacing",
+            fmt::format("{:.4g} m is more than the smaller extent of the body, {:.4g} m: hardly an edge of the "
+                        "net lies in it{}",
+                        *spacing, extent, units.empty() ? "" : "; is its unit missing, as in " + units + "?"));
+    }
 }
 
 /// A ratio refers to the largest E of the body: beside a stiff part the cells of a soft one do not bend.
@@ -191,6 +221,7 @@ std::vector<std::string> warnings_of_cut_net(const Scene& scene, const BlockSyst
 void warn_of_net(const SceneSection& root, const Scene& scene, ReadingContext& context) {
     if (!scene.geometry.tessellation || scene.geometry.tessellation->interface_type < 0) return;
     const Tessellation& net = *scene.geometry.tessellation;
+    warn_of_wide_cells(root, scene, context);
     const auto interfaces = root.sections("interfaces");
     const auto index = static_cast<std::size_t>(net.interface_type);
     const InterfaceType& type = scene.interface_types[index];

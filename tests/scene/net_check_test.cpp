@@ -219,5 +219,22 @@ TEST(NetOfTriangles, DoesNotLockAndHasItsOwnRange) {
                 ElementsAre(HasSubstr("intact rock cut into rigid triangles fails at 72 to 81 % of its strength")));
 }
 
+// 3 cm and 3 mm without their units, in a body of 2 m by 4 m in which 3 m are no more than one cell.
+TEST(NetCheck, WarnsOfCellsLargerThanTheBody) {
+    const auto with = [](const std::string& cells, const std::string& spacing) {
+        return warnings_with({"interfaces.joint.friction_angle=20", "geometry.tessellation.hexagons=null",
+                              "geometry.tessellation." + cells + "={spacing: " + spacing + "}"});
+    };
+    for (const std::string cells : {"triangles", "hexagons", "voronoi"}) {
+        EXPECT_THAT(with(cells, "3"),
+                    Contains(AllOf(HasSubstr("geometry.tessellation." + cells +
+                                             ".spacing: 3 m is more than the smaller extent of the body, 2 m"),
+                                   EndsWith("is its unit missing, as in '3 cm' or '3 mm'?"))));
+        EXPECT_THAT(with(cells, "300"), Contains(EndsWith("is its unit missing, as in '300 mm'?")));
+        EXPECT_THAT(with(cells, "3 m"), Contains(EndsWith("hardly an edge of the net lies in it")));
+        EXPECT_THAT(with(cells, "1.9"), Not(Contains(HasSubstr("the smaller extent of the body"))));
+    }
+}
+
 } // namespace
 } // namespace kluft
