@@ -1,5 +1,6 @@
 #include "kluft/simulation/journal.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -37,6 +38,21 @@ std::string remark_on_drop(const Stage& stage, const State& state) {
                        state.at.stage, state.at.step,
                        100.0 * (1.0 - std::abs(state.stresses.axial) / state.stresses.largest_in_stage),
                        100.0 * *stage.stop_after_drop);
+}
+
+/// Of a body that does not stand with the strengths that a reduction begins with. Not where a platen of given travel may have moved it, and
+/// not where its loads are at fault.
+std::string remark_on_first_factor(const std::vector<Stage>& stages, int stage, const StageEnd& end) {
+    const auto until = stages.begin() + stage;
+    const auto reduced =
+        std::find_if(until, stages.end(), [](const Stage& s) { return s.strength_reduction.has_value(); });
+    if (reduced == stages.end() || end.factor_of_safety || !end.failure->may_be_collapse() || !end.causes.empty() ||
+        std::any_of(stages.begin(), until + 1, prescribes_strain))
+        return {};
+    return fmt::format(
+        "; its factor of safety is below stages.{}.strength_reduction.from, {:g}, with which the body was "
+        "loaded: a smaller `from` finds it, if the body stands with any",
+        reduced - stages.begin(), reduced->strength_reduction->from);
 }
 
 std::string listed(const std::vector<std::string>& causes) {
@@ -130,7 +146,8 @@ RunReport Journal::ended(const State& state, const StageEnd& end) const {
     const bool has_stood = state.at.stage > 0 || state.at.step_in_stage > 0; // through a whole load step
     const bool past_limit = end.failure->may_be_collapse() && is_platen_loaded_by_stress(stage) && has_stood;
     std::string why = fmt::format("no equilibrium in stage {} at load step {}: {}", state.at.stage, end.step,
-                                  description(model_, *end.failure) + listed(end.causes));
+                                  description(model_, *end.failure) + listed(end.causes)) +
+                      remark_on_first_factor(model_.loads.stages, state.at.stage, end);
     if (end.factor_of_safety) why = fmt::format("factor of safety {:.6g}; beyond it {}", *end.factor_of_safety, why);
     RunReport report = cut_short(end.factor_of_safety || past_limit ? RunStatus::collapsed : RunStatus::no_equilibrium,
                                  std::move(why));

@@ -47,7 +47,7 @@ std::optional<Failure> failure_before(const StepBench& bench, const State& state
                    .strength_factor = strength_factor(bench.model.loads, state.at.stage, 0.0),
                    .what =
                        fmt::format("the body has given way under its loads before strengths are reduced, and rests in "
-                                   "another place: {}. Its factor of safety is below `from`, with which it was loaded",
+                                   "another place: {}",
                                    fall)};
 }
 

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "kluft/core/diagnostics.hpp"
@@ -114,6 +115,21 @@ TEST(StrengthReduction, BodyThatDoesNotStandAtTheFirstFactorHasNone) {
     const auto run = run_scene(block_on_slope(40.0, "{to: 2}"));
     EXPECT_NE(run.report.status, RunStatus::done);
     EXPECT_FALSE(run.report.results.factor_of_safety);
+}
+
+// F = tan(30 deg)/tan(40 deg) = 0.69 is below 0.7 and 1, and above 0.65, with which the search goes on to it.
+TEST(StrengthReduction, AFactorBelowTheFirstIsSaidToBeSo) {
+    for (const char* from : {"0.7", "1"}) {
+        const auto run = run_scene(block_on_slope(40.0, fmt::format("{{from: {}, to: 2}}", from)));
+        EXPECT_EQ(run.report.status, RunStatus::no_equilibrium);
+        EXPECT_THAT(run.report.diagnosis, testing::HasSubstr(fmt::format(
+                                              "its factor of safety is below stages.1.strength_reduction.from, {}, "
+                                              "with which the body was loaded",
+                                              from)));
+    }
+    const auto run = run_scene(block_on_slope(40.0, "{from: 0.65, to: 2}"));
+    EXPECT_TRUE(run.report.results.factor_of_safety);
+    EXPECT_THAT(run.report.diagnosis, testing::Not(testing::HasSubstr("is below")));
 }
 
 TEST(StrengthReduction, InterfacesThatAreNotNamedKeepTheirStrength) {

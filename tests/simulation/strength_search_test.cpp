@@ -92,6 +92,10 @@ TEST(StrengthSearch, FailsWhereTheStateBeforeItDoesNotStand) {
     EXPECT_TRUE(end.failure.has_value());
     EXPECT_FALSE(end.factor_of_safety.has_value());
     EXPECT_EQ(work.state.at.step_in_stage, 0);
+    EXPECT_NE(work.journal.ended(work.state, end)
+                  .diagnosis.find("its factor of safety is below "
+                                  "stages.1.strength_reduction.from, 1.6"),
+              std::string::npos);
 }
 
 /// A block on a plane of 35 degrees with a friction angle of 40, 0.3 m above a ledge that it can come to rest on.
