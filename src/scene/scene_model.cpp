@@ -20,6 +20,7 @@
 #include "kluft/core/place_text.hpp"
 #include "kluft/geometry/polygon.hpp"
 #include "kluft/geometry/predicates.hpp"
+#include "kluft/scene/body_lines.hpp"
 #include "kluft/scene/coarse_places.hpp"
 #include "kluft/scene/net_check.hpp"
 #include "kluft/scene/scattered_sides.hpp"
@@ -43,6 +44,38 @@ std::string overlaid(const LostFracture& lost, const Scene& scene) {
                               name_of(own.interface_type));
 }
 
+double length_of(const std::vector<Vec2>& trace) {
+    double length = 0.0;
+    for (std::size_t i = 0; i + 1 < trace.size(); ++i) length += (trace[i + 1] - trace[i]).norm();
+    return length;
+}
+
+/// Without a net: "; plane ends at (11, 11.29), 0.03 m before the outline of the body" of the first of the fractures that nearly reaches
+/// another line; "" where none does.
+std::string short_gap(const Scene& scene, const CutReport& report, const std::vector<int>& fractures) {
+    constexpr double small = 0.05; // of the trace
+    if (scene.geometry.tessellation) return {};
+    std::vector<BodyLine> lines = body_lines(scene.geometry, report, scene.interface_types);
+    for (BodyLine& line : lines) line.is_open = true; // potential cracks part blocks, too
+    for (const LostFracture& lost : report.lost)      // for what they miss by
+        if (lost.cause == LostFracture::Cause::separates_nothing)
+            lines[static_cast<std::size_t>(lost.fracture)].points =
+                scene.geometry.fractures[static_cast<std::size_t>(lost.fracture)].points;
+    const LineSearch search(std::move(lines), report.resolution);
+    for (const int fracture : fractures) {
+        const BodyLine& trace = search.line(fracture);
+        if (trace.points.empty()) continue;
+        for (const Vec2& end : {trace.points.front(), trace.points.back()}) {
+            if (!is_in_body(end, scene.geometry)) continue;
+            const auto gap = search.bridge_at(end, fracture, small * length_of(trace.points));
+            if (!gap) continue;
+            return fmt::format("; {} ends at {}, {:.3g} m before {}", trace.name, place_text(end), gap->length,
+                               search.line(gap->line).name);
+        }
+    }
+    return {};
+}
+
 /// Why nothing is left of a fracture.
 std::string reason(const LostFracture& lost, const Scene& scene, const CutReport& report) {
     const double resolution = report.resolution;
@@ -63,7 +96,7 @@ std::string reason(const LostFracture& lost, const Scene& scene, const CutReport
                            "or at less than 14 degrees to it",
                            resolution);
     case LostFracture::Cause::separates_nothing:
-        return "it ends inside a block and separates nothing";
+        return "it ends inside a block and separates nothing" + short_gap(scene, report, {lost.fracture});
     case LostFracture::Cause::in_part:
         return fmt::format("{:.3g} m of it are nearer to another line than {:.3g} m, the smallest length that the net "
                            "resolves, or at less than 14 degrees to it",
@@ -104,30 +137,32 @@ bool is_told(const CutReport& report, int fracture) {
 }
 
 /// Without a net a joint that ends inside a block does not even weaken it.
-std::vector<std::string> pruned_pieces(const GeometrySpec& geometry, const CutReport& report) {
+std::vector<std::string> pruned_pieces(const Scene& scene, const CutReport& report) {
+    const GeometrySpec& geometry = scene.geometry;
     if (geometry.tessellation) return {};
     constexpr double large_part = 0.05; // of the trace: less is an end that was drawn too long
     const auto trace_of = [&](const LoosePiece& piece) -> const FractureTrace& {
         return geometry.fractures[static_cast<std::size_t>(piece.fracture)];
     };
     const auto is_worth_a_word = [&](const LoosePiece& piece) {
-        const std::vector<Vec2>& points = trace_of(piece).points;
-        double whole = 0.0;
-        for (std::size_t i = 0; i + 1 < points.size(); ++i) whole += (points[i + 1] - points[i]).norm();
-        return !is_told(report, piece.fracture) && piece.length > large_part * whole;
+        return !is_told(report, piece.fracture) && piece.length > large_part * length_of(trace_of(piece).points);
     };
     const auto longest = std::ranges::find_if(report.pruned, is_worth_a_word);
     if (longest == report.pruned.end()) return {};
+    std::vector<int> fractures; // that of the longest piece first
+    for (const LoosePiece& piece : report.pruned)
+        if (is_worth_a_word(piece)) fractures.push_back(piece.fracture);
     const FractureTrace& trace = trace_of(*longest);
     const std::size_t n_others = report.pruned.size() - 1;
     double all = 0.0;
     for (const LoosePiece& piece : report.pruned) all += piece.length;
     return {fmt::format("{}: {:.3g} m of {} end inside a block and are left out{}: without potential cracks "
-                        "(`geometry.tessellation`) a block is cut by what goes through it, and has no other weakness",
+                        "(`geometry.tessellation`) a block is cut by what goes through it, and has no other weakness{}",
                         trace.place, longest->length, trace.name,
                         n_others > 1    ? fmt::format(", as are {} other pieces, {:.3g} m in all", n_others, all)
                         : n_others == 1 ? ", as is another piece"
-                                        : "")};
+                                        : "",
+                        short_gap(scene, report, fractures))};
 }
 
 /// A fracture that no longer comes to the surface holds what rests on it.
@@ -419,11 +454,11 @@ SceneModel build_scene_model(const Scene& scene) {
     for (std::string& warning : built.model.warnings) warning = located(warning, scene.places);
     built.cut = std::move(body.report);
     for (const auto& warnings :
-         {lost_fractures(scene, built.cut), fine_details(scene.geometry, built.cut),
-          pruned_pieces(scene.geometry, built.cut), closed_outcrops(scene.geometry, built.cut),
-          small_reference(scene.geometry, built.model.system), slivers(scene.geometry, built.model.system),
-          necks(scene.geometry, built.model.system), bare_net(scene.geometry, built.model.system),
-          empty_regions(scene.geometry, built.model.system), ragged_regions(scene.geometry, built.model.system),
+         {lost_fractures(scene, built.cut), fine_details(scene.geometry, built.cut), pruned_pieces(scene, built.cut),
+          closed_outcrops(scene.geometry, built.cut), small_reference(scene.geometry, built.model.system),
+          slivers(scene.geometry, built.model.system), necks(scene.geometry, built.model.system),
+          bare_net(scene.geometry, built.model.system), empty_regions(scene.geometry, built.model.system),
+          ragged_regions(scene.geometry, built.model.system),
           scattered_sides(scene), open_joints(scene.geometry, built.model.system, built.cut),
           warnings_of_cut_net(scene, built.model.system),
           coarse_places(scene.geometry, built.cut, scene.interface_types)})

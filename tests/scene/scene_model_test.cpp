@@ -270,6 +270,23 @@ TEST(SceneModel, WarnsOfJointsThatEndInsideABlock) {
                                  HasSubstr("without potential cracks"))));
 }
 
+// A joint that would cut but for a little: 3 cm of 1.9 m. What misses by more than a twentieth of the joint is meant to end there, and one
+// that goes on beyond a line does not end before it.
+TEST(SceneModel, SaysByHowMuchAJointMissesWhatItWouldEndOn) {
+    const auto with = [](const std::string& fractures) {
+        return warnings_of({"geometry.tessellation=null", "geometry.fractures=[" + fractures + "]"});
+    };
+    const auto main = [](const std::string& trace) { return "{name: main, interface: joint, trace: " + trace + "}, "; };
+    const std::string bed = "{name: bed, trace: [[0, 1.97], [1, 1.97]], interface: joint}";
+    EXPECT_THAT(with(main("[[0.5, 0.03], [0.5, 1.97]]") + bed),
+                ElementsAre(EndsWith("; main ends at (0.5, 0.03), 0.03 m before the outline of the body")));
+    EXPECT_THAT(with(main("[[0.5, 0], [0.5, 1.94]]") + bed),
+                ElementsAre(EndsWith("; main ends at (0.5, 1.94), 0.03 m before bed")));
+    EXPECT_THAT(with(main("[[0.5, 0.2], [0.5, 1.97]]") + bed), ElementsAre(Not(HasSubstr("before"))));
+    EXPECT_THAT(with(main("[[0.5, 0.2], [0.5, 1.51]]") + "{name: bed, trace: [[0, 1.5], [1, 1.5]], interface: joint}"),
+                ElementsAre(Not(HasSubstr("before"))));
+}
+
 TEST(SceneModel, WarnsOfANetWithoutAnEdgeInTheBody) {
     EXPECT_THAT(warnings_of({"geometry.fractures=[]", "geometry.tessellation.triangles=null",
                              "geometry.tessellation.hexagons={spacing: 9}", "interfaces.joint.friction_angle=20",
