@@ -74,25 +74,6 @@ bool meets(const Polygon& polygon, const std::vector<Box>& sides, const Vec2& st
     return false;
 }
 
-/// Which traces have no point in the domain.
-std::vector<std::size_t> traces_outside(const Polygon& domain, const std::vector<FractureTrace>& traces) {
-    const Box window = bounding_box(domain);
-    std::vector<Box> sides;
-    for (std::size_t i = 0; i < domain.size(); ++i)
-        sides.push_back(bounding_box({domain[i], domain[(i + 1) % domain.size()]}));
-    const auto is_inside = [&](const Vec2& start, const Vec2& end) {
-        return boxes_meet(window, bounding_box({start, end})) && meets(domain, sides, start, end);
-    };
-    std::vector<std::size_t> outside;
-    for (std::size_t i = 0; i < traces.size(); ++i) {
-        const auto& points = traces[i].points;
-        bool inside = points.empty();
-        for (std::size_t k = 1; k < points.size() && !inside; ++k) inside = is_inside(points[k - 1], points[k]);
-        if (!inside) outside.push_back(i);
-    }
-    return outside;
-}
-
 std::string box_text(const std::vector<Vec2>& points) {
     const Box box = bounding_box(points);
     return fmt::format("from {} to {}", place_text(box.lower), place_text(box.upper));
@@ -814,6 +795,24 @@ private:
 };
 
 } // namespace
+
+std::vector<std::size_t> traces_outside(const Polygon& domain, const std::vector<FractureTrace>& traces) {
+    const Box window = bounding_box(domain);
+    std::vector<Box> sides;
+    for (std::size_t i = 0; i < domain.size(); ++i)
+        sides.push_back(bounding_box({domain[i], domain[(i + 1) % domain.size()]}));
+    const auto is_inside = [&](const Vec2& start, const Vec2& end) {
+        return boxes_meet(window, bounding_box({start, end})) && meets(domain, sides, start, end);
+    };
+    std::vector<std::size_t> outside;
+    for (std::size_t i = 0; i < traces.size(); ++i) {
+        const auto& points = traces[i].points;
+        bool inside = points.empty();
+        for (std::size_t k = 1; k < points.size() && !inside; ++k) inside = is_inside(points[k - 1], points[k]);
+        if (!inside) outside.push_back(i);
+    }
+    return outside;
+}
 
 std::vector<std::string> block_names(const GeometrySpec& spec) {
     std::vector<std::string> names = names_of(spec.sets);

@@ -22,6 +22,7 @@
 #include "kluft/geometry/predicates.hpp"
 #include "kluft/scene/body_lines.hpp"
 #include "kluft/scene/coarse_places.hpp"
+#include "kluft/scene/geometry_reader.hpp"
 #include "kluft/scene/net_check.hpp"
 #include "kluft/scene/scattered_sides.hpp"
 
@@ -380,9 +381,25 @@ bool is_loaded(const Stage& stage, bool has_weight) {
            std::ranges::any_of(stage.forces, is_force);
 }
 
+/// Why a body with fractures has no interface; "" without fractures. It begins with the place of the first that is to blame.
+std::string cause_of_no_interface(const Scene& scene, const CutReport& report) {
+    const std::vector<FractureTrace>& fractures = scene.geometry.fractures;
+    if (fractures.empty()) return {};
+    const auto outside = traces_outside(scene.geometry.domain, fractures);
+    if (!outside.empty()) {
+        const FractureTrace& first = fractures[outside.front()];
+        const std::string others = outside.size() > 1 ? fmt::format(", as are {} more", outside.size() - 1) : "";
+        return fmt::format("{}: expected a trace that cuts the domain, found {} outside it{}", first.place, first.name,
+                           others);
+    }
+    for (const auto& warnings : {lost_fractures(scene, report), pruned_pieces(scene, report)})
+        if (!warnings.empty()) return warnings.front();
+    return {};
+}
+
 /// Strengths of nothing, or of a body that carries nothing, have no factor of safety: any that is tried would be stood.
 /// Interfaces that are not in this body may be in another one of the same study: a warning. Throws InputError for the others.
-std::vector<std::string> strengths_of_nothing(const Scene& scene, const Model& model) {
+std::vector<std::string> strengths_of_nothing(const Scene& scene, const Model& model, const CutReport& report) {
     std::vector<std::string> warnings;
     const std::set<int> types = types_in(scene, model.system);
     const bool has_weight = has_gravity(model) && std::ranges::any_of(model.system.blocks, [&](const Block& block) {
@@ -394,9 +411,14 @@ std::vector<std::string> strengths_of_nothing(const Scene& scene, const Model& m
         loaded = loaded || is_loaded(stage, has_weight);
         if (!stage.strength_reduction) continue;
         const std::string key = fmt::format("stages.{}.strength_reduction", s);
-        if (types.empty())
-            throw InputError(key + ": expected a body with an interface whose strength can be divided, found one "
-                                   "without any");
+        if (types.empty()) {
+            const std::string cause = cause_of_no_interface(scene, report);
+            if (cause.empty())
+                throw InputError(key + ": expected a body with an interface whose strength can be divided, found one "
+                                       "without any");
+            throw InputError(
+                fmt::format("{}; so the body has no interface whose strength {} could divide", cause, key));
+        }
         const std::vector<int>& named = stage.strength_reduction->interface_types;
         std::vector<std::string> names;
         for (const int type : named) names.push_back(scene.interface_types[static_cast<std::size_t>(type)].name);
@@ -445,7 +467,7 @@ SceneModel build_scene_model(const Scene& scene) {
     SceneModel built;
     try {
         built.model = build_model(std::move(body.system), model_input(scene));
-        const std::vector<std::string> warnings = strengths_of_nothing(scene, built.model);
+        const std::vector<std::string> warnings = strengths_of_nothing(scene, built.model, body.report);
         built.model.warnings.insert(built.model.warnings.end(), warnings.begin(), warnings.end());
     } catch (const InputError& error) {
         blame_coarse_net(scene.geometry, error);

@@ -221,6 +221,15 @@ stages: [{name: weight}, {name: reduce, strength_reduction: {to: 3, interfaces: 
                     "stages.1.strength_reduction.interfaces: none of fault occurs in the body: no strength")));
     EXPECT_THAT(errors({"geometry.fractures=null"}),
                 ElementsAre(AllOf(HasSubstr("scene.yaml:12:"), HasSubstr("found one without any"))));
+    const auto told = [](const std::string& cause) {
+        return ElementsAre(AllOf(HasSubstr("scene.yaml:10:"), HasSubstr("geometry.fractures.0: " + cause),
+                                 EndsWith("; so the body has no interface whose strength stages.1.strength_reduction "
+                                          "could divide")));
+    };
+    EXPECT_THAT(errors({"geometry.fractures.0.name=plane", "geometry.fractures.0.trace=[[4, 1], [6, 1]]"}),
+                told("expected a trace that cuts the domain, found plane outside it"));
+    EXPECT_THAT(errors({"geometry.fractures.0.name=plane", "geometry.fractures.0.trace=[[0.2, 1], [0.8, 1]]"}),
+                told("plane is left out: it ends inside a block"));
     EXPECT_THAT(errors({"materials.rock.density=0"}),
                 ElementsAre(AllOf(HasSubstr("scene.yaml:12:"), HasSubstr("no block that can move has a density"))));
     EXPECT_THAT(errors({"materials.rock.density=0", "stages.0.pressure={top: 1 MPa}"}), IsEmpty());
