@@ -19,14 +19,15 @@ namespace kluft {
 
 namespace {
 
-/// A stress whose unit was forgotten, where the key is given.
-void warn_of_lost_unit(const SceneSection& section, std::string_view key, double stress, ReadingContext& context) {
+/// A stress whose unit was forgotten, where the key is given. `unit`: the one that such stresses are given in.
+void warn_of_lost_unit(const SceneSection& section, std::string_view key, double stress, ReadingContext& context,
+                       std::string_view unit = "MPa") {
     constexpr double next_to_nothing = 100.0; // Pa; a centimetre of water
     const double size = std::abs(stress);
     if (size > 0.0 && size < next_to_nothing && section.has(key))
         context.warn(
             section, key,
-            fmt::format("{:.4g} Pa is next to nothing; is its unit missing, as in {:.4g} MPa?", stress, stress));
+            fmt::format("{:.4g} Pa is next to nothing; is its unit missing, as in {:.4g} {}?", stress, stress, unit));
 }
 
 /// An angle in radians without its unit.
@@ -40,8 +41,9 @@ void warn_of_small_friction(const SceneSection& section, double friction_angle, 
                                  angle, angle));
 }
 
-void warn_of_strength(const SceneSection& section, const Strength& strength, ReadingContext& context) {
-    warn_of_lost_unit(section, "cohesion", strength.cohesion, context);
+void warn_of_strength(const SceneSection& section, const Strength& strength, ReadingContext& context,
+                      std::string_view unit_of_cohesion = "MPa") {
+    warn_of_lost_unit(section, "cohesion", strength.cohesion, context, unit_of_cohesion);
     warn_of_lost_unit(section, "tensile_strength", strength.tensile_strength, context);
     warn_of_small_friction(section, strength.friction_angle, context);
 }
@@ -78,9 +80,10 @@ void warn_of_joint(const SceneSection& section, const InterfaceType& type, Readi
         context.warn(section, "kind",
                      "a fracture without friction_angle and cohesion slides without resistance; friction_angle: 0 says "
                      "that this is meant");
+    const bool in_kilopascals = slides && type.cohesion >= 1.0; // joints have some kPa, and hardly as many MPa
     warn_of_strength(section,
                      type.strength.value_or(Strength{.cohesion = type.cohesion, .friction_angle = type.friction_angle}),
-                     context);
+                     context, in_kilopascals ? "kPa" : "MPa");
     if (type.normal_stiffness.value_or(0.0) > steel)
         context.warn(section, "normal_stiffness",
                      fmt::format("{:.3g} Pa/m is stiffer than a millimetre of steel, {:.2g} Pa/m; stiffer joints take "

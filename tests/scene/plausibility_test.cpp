@@ -63,6 +63,14 @@ TEST(ImplausibleValues, LostUnitsOfStrengthsAndLoadsAreTold) {
     EXPECT_THAT(warnings_of_block_with({"interfaces.joint.cohesion=0.5"}),
                 ElementsAre(HasSubstr(
                     "interfaces.joint.cohesion: 0.5 Pa is next to nothing; is its unit missing, as in 0.5 MPa?")));
+    for (const std::string cohesion : {"5", "40"}) // cohesions of joints: 0 to some 100 kPa, rough ones to some MPa
+        EXPECT_THAT(warnings_of_block_with({"interfaces.joint.cohesion=" + cohesion}),
+                    ElementsAre(HasSubstr("is its unit missing, as in " + cohesion + " kPa?")));
+    EXPECT_THAT(
+        warnings_of_block_with({"materials.rock.cohesion=40", "materials.rock.friction_angle=45 deg",
+                                "materials.rock.tensile_strength=6 MPa"}),
+        testing::Contains(HasSubstr("materials.rock.cohesion: 40 Pa is next to nothing; is its unit missing, as in "
+                                    "40 MPa?")));
     EXPECT_THAT(warnings_of_block_with({"materials.rock.cohesion=15 MPa", "materials.rock.friction_angle=45 deg",
                                         "materials.rock.tensile_strength=6"}),
                 ElementsAre(HasSubstr("materials.rock.tensile_strength: 6 Pa")));
