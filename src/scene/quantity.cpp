@@ -322,6 +322,8 @@ std::string number_flaw(std::string_view text) {
     if (text[first] == '0' && (text[first + 1] | 0x20) == 'x') return ", which is not decimal";
     const std::size_t end = digits_from(text, first);
     if (end > first && end < text.size() && text[end] == '_') return ", which has digit groups";
+    if (end > first && end + 1 < text.size() && text[end] == ',' && is_digit(text[end + 1]))
+        return ", which has a comma; decimals have a point, and digits no groups";
     return {};
 }
 

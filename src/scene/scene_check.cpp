@@ -86,6 +86,31 @@ bool is_name(std::string_view text) {
     });
 }
 
+/// Whether the key after the number on the same line is its decimals, "5 %" after 0.
+bool is_decimals(const SceneNode& mapping, std::size_t i) {
+    const SceneNode& number = mapping.items[i - 1];
+    const std::string& decimals = mapping.keys[i].text;
+    return mapping.items[i].kind == SceneNode::Kind::nothing && number.is_scalar() && !number.quoted &&
+           read_integer(number.text) && !decimals.empty() && decimals.front() >= '0' && decimals.front() <= '9' &&
+           mapping.keys[i].at.source == number.at.source && mapping.keys[i].at.line == number.at.line;
+}
+
+void refuse_decimal_commas_in(SceneNode& node, const std::string& path, SceneErrors& errors) {
+    for (std::size_t i = 1; i < node.keys.size(); ++i) {
+        if (!is_decimals(node, i)) continue;
+        SceneNode& number = node.items[i - 1];
+        const std::string found = in_quotes(number.text + "," + node.keys[i].text);
+        number.text += "." + node.keys[i].text;
+        errors.add(number.at, joined_path(path, node.keys[i - 1].text),
+                   fmt::format("expected a number with a decimal point, {}, found {}", in_quotes(number.text), found));
+        node.keys.erase(node.keys.begin() + static_cast<std::ptrdiff_t>(i));
+        node.items.erase(node.items.begin() + static_cast<std::ptrdiff_t>(i));
+    }
+    for (std::size_t i = 0; i < node.items.size(); ++i)
+        refuse_decimal_commas_in(node.items[i],
+                                 joined_path(path, node.is_mapping() ? node.keys[i].text : std::to_string(i)), errors);
+}
+
 /// Walks a scene along the table.
 class SchemaCheck {
 public:
@@ -274,6 +299,8 @@ std::string scalar_problem(const SceneNode& node, const KeyRule& rule) {
         return !node.quoted && (node.text == "true" || node.text == "false") ? std::string{} : found_text(node);
     return text_problem(node);
 }
+
+void refuse_decimal_commas(SceneNode& root, SceneErrors& errors) { refuse_decimal_commas_in(root, {}, errors); }
 
 void check_against_schema(const SceneNode& root, SceneErrors& errors) {
     SchemaCheck(scene_schema(), errors).check_mapping(root, {}, {}, "a mapping that begins with kluft: 1");

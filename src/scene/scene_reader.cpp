@@ -265,8 +265,9 @@ Scene read_scene_text(std::string_view text, const std::vector<std::string>& ove
                       const std::filesystem::path& file) {
     SceneSources sources;
     SceneErrors errors(sources);
-    const SceneNode root = build_scene_tree(text, file, overrides, sources, errors);
+    SceneNode root = build_scene_tree(text, file, overrides, sources, errors);
     if (root.kind == SceneNode::Kind::nothing) errors.throw_if_any();
+    refuse_decimal_commas(root, errors);
     check_against_schema(root, errors);
     ReadingContext context{errors};
     Scene scene = convert({&root, {}, {}}, context);

@@ -49,7 +49,7 @@ stages:
 Plain numbers are in SI units, angles in degrees. A number may carry its unit, `25 MPa`, `38 cm`, `200 MPa/m`,
 `2650 kg/m3`, `1.3 %`, `30 deg`; it is converted and its dimension is checked. Units combine with `/`, `*` and blanks and
 take powers (`m3`, `m^3`, `s-2`). Known units: UNITS.
-`nan`, `inf`, leading zeros (`012`), hexadecimal and digit groups are refused, and so is a number in quotes without a
+`nan`, `inf`, leading zeros (`012`), hexadecimal, decimal commas and digit groups are refused, and so is a number in quotes without a
 unit. Pressures, stresses of platens, strains and inward displacements are positive in compression; tensile strengths are
 positive.
 

@@ -180,8 +180,10 @@ void remove_refused(SceneNode& node, const std::string& path, SceneErrors& error
         const std::string name = node.is_mapping() ? node.keys[i].text : std::to_string(i);
         const std::string item_path = joined_path(path, name);
         if (node.is_mapping() && !seen.insert(name).second) {
+            const bool begins_with_digit = !name.empty() && name.front() >= '0' && name.front() <= '9';
             errors.add(node.keys[i].at, item_path,
-                       fmt::format("expected each key once, found {} again", in_quotes(name)));
+                       fmt::format("expected each key once, found {} again{}", in_quotes(name),
+                                   begins_with_digit ? "; decimals have a point, and a comma begins a key" : ""));
             continue;
         }
         if (node.is_mapping() && keys.size() == most_keys) {

@@ -90,6 +90,31 @@ TEST(SceneErrors, AMistypedRequiredKeyIsOneError) {
                                   HasSubstr("did you mean 'youngs_modulus'?"))));
 }
 
+// A comma between braces ends a value in YAML, and begins a key.
+TEST(SceneErrors, ADecimalCommaIsOneErrorThatSaysSo) {
+    const auto errors = [](const std::string& stage) {
+        return errors_in("kluft: 1\n"
+                         "materials: {rock: {youngs_modulus: 1 GPa, poissons_ratio: 0.25}}\n"
+                         "geometry: {domain: {rectangle: {width: 1, height: 2}}}\n"
+                         "stages: [" +
+                         stage + "]\n");
+    };
+    EXPECT_THAT(errors("{strain: {boundary: top, value: 0,5 %}}"),
+                ElementsAre("scene.yaml:4:42: stages.0.strain.value: expected a number with a decimal point, '0.5 %', "
+                            "found '0,5 %'\n  stages: [{strain: {boundary: top, value: 0,5 %}}]"));
+    EXPECT_THAT(errors("{strain: {value: 0,05, boundary: top}}"), ElementsAre(HasSubstr("'0.05', found '0,05'")));
+    EXPECT_THAT(errors("{pressure: {left: 1,5 MPa, right: 2,25 MPa}}"),
+                ElementsAre(HasSubstr("stages.0.pressure.left: expected a number with a decimal point, '1.5 MPa'"),
+                            HasSubstr("stages.0.pressure.right: expected a number with a decimal point, '2.25 MPa'")));
+    EXPECT_THAT(errors("{pressure: {left: 1,5 MPa, right: 1,5 MPa}}"),
+                ElementsAre(HasSubstr("stages.0.pressure.left: expected a number with a decimal point, '1.5 MPa'"),
+                            HasSubstr("found '5 MPa' again; decimals have a point")));
+    EXPECT_THAT(errors("{strain: {boundary: top, value: '0,5 %'}}"),
+                ElementsAre(HasSubstr("found '0,5 %', which has a comma; decimals have a point")));
+    EXPECT_THAT(errors_with({"stages.1.strain.value=1,5 %"}),
+                ElementsAre(HasSubstr("found '1,5 %', which has a comma; decimals have a point")));
+}
+
 TEST(SceneErrors, DuplicateKeysAreErrors) {
     std::string text = test::short_scene + "title: a\ntitle: b\n";
     EXPECT_THAT(errors_in(text),
