@@ -66,7 +66,7 @@ double largest_applied_stress(const Model& model, const State& state) {
 }
 
 std::string contact_pressure_warning(const Model& model, const State& state, double measured) {
-    const double applied = std::max(largest_applied_stress(model, state), measured);
+    const double applied = std::max({largest_applied_stress(model, state), measured, state.stresses.largest_axial});
     const PressedContact found = largest_contact_pressure(model, state);
     if (!(applied > 0.0) || !(found.value > plausible_ratio * applied)) return {};
     return fmt::format(

@@ -25,7 +25,8 @@ struct PressedContact {
 [[nodiscard]] double largest_applied_stress(const Model& model, const State& state);
 
 /// What is to be said of a contact that is pressed a hundred times more than the larger of what the loads apply and what
-/// the platens were `measured` to apply (Pa); "" where there is none.
+/// the platens were `measured` to apply (Pa), or have applied in an equilibrium within a load step: behind its peak a body may carry
+/// nothing. "" where there is none.
 [[nodiscard]] std::string contact_pressure_warning(const Model& model, const State& state, double measured);
 
 } // namespace kluft
