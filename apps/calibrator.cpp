@@ -21,7 +21,8 @@ void become_calibrator(std::vector<std::string> words) {
     std::error_code ignored;
     if (!std::filesystem::is_regular_file(calibrator, ignored))
         throw InputError(fmt::format("kluft calibrate: expected the program kluft-calibrate beside {}, found none; "
-                                     "scripts/build makes it where Ipopt is found (Debian: coinor-libipopt-dev)",
+                                     "scripts/build release kluft_calibrate makes it where Ipopt is found (Debian: "
+                                     "coinor-libipopt-dev)",
                                      program.string()));
     words.insert(words.begin(), calibrator);
     std::vector<char*> pointers;
