@@ -223,7 +223,10 @@ std::vector<KeyRule> interface_rules() {
          .fallback = "0",
          .doc =
              "Opening per slip of a fracture, as an angle; not above the friction angle. Slip that turns back opens it "
-             "further."},
+             "further. It adds no strength to that of `friction_angle`, which is the whole angle at the peak: the "
+             "shear "
+             "stress reaches the normal stress times tan(friction_angle) plus `cohesion` with any dilation. Only where "
+             "the opening is hindered the normal stress grows, and the strength with it."},
         {.path = "interfaces.*.fails_to",
          .type = KeyType::text,
          .fallback_note = "the only fracture among the interfaces",
