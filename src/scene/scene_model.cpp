@@ -480,9 +480,8 @@ SceneModel build_scene_model(const Scene& scene) {
           closed_outcrops(scene.geometry, built.cut), small_reference(scene.geometry, built.model.system),
           slivers(scene.geometry, built.model.system), necks(scene.geometry, built.model.system),
           bare_net(scene.geometry, built.model.system), empty_regions(scene.geometry, built.model.system),
-          ragged_regions(scene.geometry, built.model.system),
-          scattered_sides(scene), open_joints(scene.geometry, built.model.system, built.cut),
-          warnings_of_cut_net(scene, built.model.system),
+          ragged_regions(scene.geometry, built.model.system), scattered_sides(scene),
+          open_joints(scene.geometry, built.model.system, built.cut), warnings_of_cut_net(scene, built.model.system),
           coarse_places(scene.geometry, built.cut, scene.interface_types)})
         built.model.warnings.insert(built.model.warnings.end(), warnings.begin(), warnings.end());
     require_memory();
