@@ -138,8 +138,7 @@ std::vector<std::string> likely_causes(const Model& model, const LoadsAt& at, co
 std::string unheld_body_warning(const Model& model) {
     const BlockSystem& system = model.system;
     const WholeBody body(system);
-    StageStart start{Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n_block_unknowns) * system.n_blocks()),
-                     std::vector<double>(system.boundaries.size(), 0.0)};
+    StageStart start = start_at_rest(system);
     for (int s = 0; s < static_cast<int>(model.loads.stages.size()); ++s) {
         const StageLoads stage_loads(model, start, model.loads.stages[s]);
         const PlatenHold hold{.points = {}, .constraints = stage_loads.constraints(), .friction = {}};

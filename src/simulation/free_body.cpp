@@ -59,8 +59,7 @@ std::string rounded_direction(const Vec2& direction) {
 
 std::string free_body_warning(const Model& model) {
     const BlockSystem& system = model.system;
-    StageStart start{Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n_block_unknowns) * system.n_blocks()),
-                     std::vector<double>(system.boundaries.size(), 0.0)};
+    StageStart start = start_at_rest(system);
     for (int s = 0; s < static_cast<int>(model.loads.stages.size()); ++s) {
         const Stage& stage = model.loads.stages[s];
         const StageLoads loads(model, start, stage);

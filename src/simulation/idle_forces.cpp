@@ -17,8 +17,7 @@ constexpr double motion_left = 1e-6; ///< of what the rows leave free, unknowns 
 /// Blocks that the supports of a stage hold so that no motion is left; not those that its platen moves.
 std::set<int> wholly_held_blocks(const Model& model, const Stage& stage) {
     const BlockSystem& system = model.system;
-    const StageStart rest{Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n_block_unknowns) * system.n_blocks()),
-                          std::vector<double>(system.boundaries.size(), 0.0)};
+    const StageStart rest = start_at_rest(system);
     const StageLoads loads(model, rest, stage);
     const auto is_of_platen = [&](int row) {
         return stage.motion && loads.constraints().rows()[row].boundary == stage.motion->boundary;

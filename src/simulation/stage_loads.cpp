@@ -159,6 +159,11 @@ Constraints constraints_of(const Model& model, std::vector<PrescribedDisplacemen
 
 } // namespace
 
+StageStart start_at_rest(const BlockSystem& system) {
+    return {Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n_block_unknowns) * system.n_blocks()),
+            std::vector<double>(system.boundaries.size(), 0.0)};
+}
+
 StageLoads::StageLoads(const Model& model, const StageStart& start, const Stage& stage)
     : start_pressure_(start.boundary_pressure), end_pressure_(start.boundary_pressure) {
     const BlockSystem& system = model.system;
@@ -244,8 +249,7 @@ std::string shared_block_message(const Model& model, const Stage& stage, int opp
 
 void refuse_contradicting_supports(const Model& model) {
     const BlockSystem& system = model.system;
-    const StageStart rest{Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n_block_unknowns) * system.n_blocks()),
-                          std::vector<double>(system.boundaries.size(), 0.0)};
+    const StageStart rest = start_at_rest(system);
     for (const Stage& stage : model.loads.stages) {
         if (!stage.motion) continue;
         const StageLoads loads(model, rest, stage);

@@ -29,8 +29,7 @@ bool prevents_strain(const ConstrainedBlock& held) {
 std::vector<int> undeformable_blocks(const Model& model) {
     if (model.kinematics == Kinematics::rigid) return {};
     const BlockSystem& system = model.system;
-    const StageStart rest{Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n_block_unknowns) * system.n_blocks()),
-                          std::vector<double>(system.boundaries.size(), 0.0)};
+    const StageStart rest = start_at_rest(system);
     std::set<int> found;
     for (const Stage& stage : model.loads.stages) {
         const StageLoads loads(model, rest, stage);

@@ -12,6 +12,9 @@
 
 namespace kluft {
 
+/// Of the body as it was cut, without pressures.
+[[nodiscard]] StageStart start_at_rest(const BlockSystem& system);
+
 /// The loads of one stage as functions of the load factor.
 class StageLoads {
 public:
