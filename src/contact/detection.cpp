@@ -174,6 +174,7 @@ public:
         doubtful_ = -doubtful_penetration * smaller;
         shallow_ = -least_penetration * smaller;
         overlapping_.clear();
+        sunk_beside_.clear();
         for (const auto& edge_a : edges_a) {
             for (const auto& edge_b : edges_b) append_overlap(a, edge_a, edges_a, b, edge_b, edges_b);
         }
@@ -312,8 +313,10 @@ private:
         if (!own && leave_common_vertex(side_a, reference(b, edge_b.edge)) && 0.5 * (gap_low + gap_high) > reach_)
             return; // a wide void, at whose tip a corner touches and not a face
         if (std::min(gap_low, gap_high) < (own ? deepest_own_ : deepest_)) return;
-        if (!own && -std::min(gap_low, gap_high) > overlap)
-            return; // a corner that has sunk into a face beside this one
+        if (!own && -std::min(gap_low, gap_high) > overlap) {
+            sunk_beside_.emplace_back(edge_a.edge, edge_b.edge);
+            return;
+        }
         if (slides_onto_ground(a, edge_a, edges_a, b, edge_b) || slides_onto_ground(b, edge_b, edges_b, a, edge_a))
             return;
 
@@ -400,9 +403,15 @@ private:
         return is_in_both(0.75 * x + 0.25 * y) && is_in_both(0.25 * x + 0.75 * y);
     }
 
-    [[nodiscard]] bool overlap_covers(int edge_of_vertex, int edge, bool swapped) const {
-        const auto pair = swapped ? std::pair(edge, edge_of_vertex) : std::pair(edge_of_vertex, edge);
-        return std::ranges::find(overlapping_, pair) != overlapping_.end();
+    using EdgePair = std::pair<int, int>; ///< an edge of a and one of b
+
+    /// Whether one of the two edges that meet in a vertex is in `pairs` with an edge of the other block.
+    [[nodiscard]] static bool has_side_in(const std::vector<EdgePair>& pairs, const CurrentEdge& leaving, int edge,
+                                          bool swapped) {
+        return std::ranges::any_of(pairs, [&](const EdgePair& pair) {
+            const auto [of_vertex, of_other] = swapped ? std::pair(pair.second, pair.first) : pair;
+            return of_other == edge && (of_vertex == leaving.edge || of_vertex == leaving.arriving);
+        });
     }
 
     /// Whether another face of the target than the given one holds the vertex, which lies `gap` before this one. A face next to it around a
@@ -416,14 +425,14 @@ private:
             const bool is_beside = face.arriving == edge.edge || edge.arriving == face.edge;
             if (!is_beside && gap >= 0.0) return false;
             if (is_beside && (are_notch(face, edge) || are_notch(edge, face))) return false;
-            const bool overlaps = overlap_covers(leaving.edge, face.edge, swapped) ||
-                                  overlap_covers(leaving.arriving, face.edge, swapped);
+            const bool overlaps = has_side_in(overlapping_, leaving, face.edge, swapped);
             if (overlaps && is_beside) return true;
             const Vec2 outward = right_normal(face.direction);
             const Vec2 from_face = leaving.start - face.start;
             const double gap_there = outward.dot(from_face);
             const double along = face.direction.dot(from_face);
-            if (gap >= 0.0 || gap_there > -shallow_ || gap_there <= gap || along < 0.0 || along > face.length)
+            if (gap >= 0.0 || gap_there > -shallow_ || gap_there <= gap) return false;
+            if ((along < 0.0 || along > face.length) && !is_in_notch(leaving.start, face, along < 0.0, edges))
                 return false;
             return overlaps || points_at(leaving, outward);
         });
@@ -597,9 +606,9 @@ private:
         if (is_common && !beside_void && !faces_are_apart(owner, target, swapped) &&
             (is_ground || !held_it_last(owner, leaving, target, edge, swapped)))
             return;
-        if (overlap_covers(leaving.edge, edge.edge, swapped) || overlap_covers(leaving.arriving, edge.edge, swapped))
-            return;
-        if (is_held_by_another_face(leaving, edge, gap, edges, swapped)) return;
+        if (has_side_in(overlapping_, leaving, edge.edge, swapped)) return;
+        if (has_side_in(sunk_beside_, leaving, edge.edge, swapped)) return;
+        if (!below_end && is_held_by_another_face(leaving, edge, gap, edges, swapped)) return;
         if (gap < shallow_ && !below_end && !is_inside(target, leaving.start)) return; // what takes longest comes last
         ContactPoint point = point_between(owner, leaving, target, edge);
         lay(point, CutEdge(system_, reference(owner, leaving.edge)).at(0.0),
@@ -622,7 +631,10 @@ private:
     double deepest_own_ = 0.0; ///< of the two faces of an interface
     double doubtful_ = 0.0;
     double shallow_ = 0.0;
-    std::vector<std::pair<int, int>> overlapping_; ///< (edge of a, edge of b) of the present pair
+    std::vector<EdgePair> overlapping_; ///< of the present pair
+    /// Of the present pair: deeper in each other than they overlap, as where a corner has come into a face beside the other edge.
+    /// Its overlap would press with a force that begins at zero, so its vertex does not press on that edge either.
+    std::vector<EdgePair> sunk_beside_;
 };
 
 /// (block, edge)

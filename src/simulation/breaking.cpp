@@ -44,7 +44,9 @@ void break_bonds(StepInProgress& p) {
         if (broken.empty()) return;
         p.step.smooth = false;
         weaken_together(p.bench.model, broken, p.step.row.axial_strain, p.step);
+        Eigen::VectorXd placed_at = p.displacement();
         find_again(p);
+        let_contacts_follow(p, std::move(placed_at));
     }
 }
 

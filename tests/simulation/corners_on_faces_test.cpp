@@ -176,11 +176,9 @@ TEST(BesideVoids, AToeIsHeldByTheRiserBehindIt) {
         EXPECT_TRUE(stands(one)) << lean << one.report.diagnosis;
         EXPECT_TRUE(stands(two)) << lean << two.report.diagnosis;
         EXPECT_LT(motion_of(one, "dam"), 4e-5) << lean; // the joints' closure
+        EXPECT_LT(motion_of(two, "dam"), 4e-5) << lean;
         if (lean < 45.0) {
             EXPECT_NEAR(motion_of(two, "dam"), motion_of(one, "dam"), 1e-3 * motion_of(one, "dam")) << lean;
-        } else {
-            EXPECT_LT(motion_of(two, "dam"), 0.01)
-                << lean; // its toe, which faces the bottom of the riser, is pressed a little below it
         }
     }
 }
@@ -281,6 +279,38 @@ TEST(BesideVoids, ASlotAboveAHingeCloses) {
             EXPECT_TRUE(stands(run)) << half_width << " " << steps << run.report.diagnosis;
         }
     }
+}
+
+// A dam on a joint that a net of triangles meets in vertices: where one of them has slid off its own face, its edge is an overlap a tenth of a
+// millimetre long, or a corner, by turns, 2 um apart. The dam stands: friction alone, tan 45, holds as much as its weight of 94 MN/m, and the water
+// pushes with 49, a third of the way up.
+TEST(SlowDamOnTriangles, StandsWhereContactsTakeTurns) {
+    const SceneRun run = run_scene(R"(kluft: 1
+analysis: {gravity: 9.81}
+materials:
+  concrete: {density: 2400 kg/m3, youngs_modulus: 25 GPa, poissons_ratio: 0.2, cohesion: 3 MPa, friction_angle: 50 deg, tensile_strength: 2 MPa}
+  rock: {density: 2700 kg/m3, youngs_modulus: 15 GPa, poissons_ratio: 0.25, cohesion: 5 MPa, friction_angle: 45 deg, tensile_strength: 3 MPa}
+interfaces:
+  contact: {kind: fracture, normal_stiffness: 10 GPa/m, shear_stiffness: 5 GPa/m, friction_angle: 45 deg, cohesion: 0.5 MPa}
+  bond: {kind: potential_crack, fails_to: crack}
+  crack: {kind: fracture, friction_angle: 35 deg}
+geometry:
+  domain: {polygon: [[-100, -100], [200, -100], [200, 0], [80, 0], [0, 100], [0, 0], [-100, 0]]}
+  material: rock
+  regions:
+    - {polygon: [[0, 0], [80, 0], [0, 100]], material: concrete}
+  fractures:
+    - {name: contact, trace: [[0, 0], [80, 0]], interface: contact}
+  tessellation: {triangles: {spacing: 12}, interface: bond}
+boundaries:
+  bottom: {sides: [0], support: fixed}
+  right: {sides: [1], support: smooth}
+  left: {sides: [6], support: smooth}
+stages:
+  - {name: weight}
+  - {name: water, forces: {water: {point: [0.5, 33.333333333333336], force: [49050000.0, 0]}}, steps: 10}
+)");
+    EXPECT_TRUE(stands(run)) << run.report.diagnosis;
 }
 
 } // namespace

@@ -15,11 +15,12 @@ Equilibrium find_again(StepInProgress& in_progress);
 
 /// Frames of contacts stay during a solve, so that a block which slides far in it may be held by a face that it has passed.
 /// Under given loads a step therefore ends only where the blocks that have moved since `placed_at` (m), the displacements of
-/// the last detection, stand with contacts detected anew; else they fall.
+/// the last detection, stand with contacts detected anew, which leave no block or group out of balance by more than a tenth of what acts
+/// on it; else they fall. Where two sets of contacts take turns in one place, the body stands with either.
 void let_contacts_follow(StepInProgress& in_progress, Eigen::VectorXd placed_at);
 
 /// What is to be said of a committed state under given loads in which contacts detected anew leave more than a tenth of what acts on a
-/// block out of balance: the next load step would not begin where it is. "" of any other state.
+/// block out of balance. "" of any other state.
 [[nodiscard]] std::string contacts_anew_warning(const Model& model, const State& state);
 
 } // namespace kluft
