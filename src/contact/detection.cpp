@@ -324,7 +324,11 @@ private:
         if (gap_at(at) < (own ? doubtful_ : shallow_)) {
             const Vec2 on_a = edge_a.start + (at / extent_a) * (edge_a.end - edge_a.start);
             const Vec2 on_b = edge_b.end + ((at - start_b) / extent_b) * (edge_b.start - edge_b.end);
-            if (own ? !is_inside(a, on_b) && !is_inside(b, on_a) : !are_in_both(a, b, on_a, on_b)) return;
+            if (own && !is_inside(a, on_b) && !is_inside(b, on_a)) return;
+            if (!own && !are_in_both(a, b, on_a, on_b)) {
+                sunk_beside_.emplace_back(edge_a.edge, edge_b.edge);
+                return;
+            }
         }
 
         overlapping_.emplace_back(edge_a.edge, edge_b.edge);
@@ -632,8 +636,8 @@ private:
     double doubtful_ = 0.0;
     double shallow_ = 0.0;
     std::vector<EdgePair> overlapping_; ///< of the present pair
-    /// Of the present pair: deeper in each other than they overlap, as where a corner has come into a face beside the other edge.
-    /// Its overlap would press with a force that begins at zero, so its vertex does not press on that edge either.
+    /// Of the present pair: deeper in each other than they overlap, or with what is in neither block between them, as where a corner has come
+    /// into a face beside the other edge. Their overlap presses with a force that begins at zero, and so the corner does not press there either.
     std::vector<EdgePair> sunk_beside_;
 };
 

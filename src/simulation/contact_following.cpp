@@ -1,5 +1,6 @@
 #include "kluft/simulation/contact_following.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
@@ -18,6 +19,7 @@ constexpr double far = 1e-3; ///< motion of a block after which its contacts are
 constexpr int max_rounds_of_detection = 100;
 constexpr double large_imbalance = 0.1; ///< of what acts on a block
 constexpr double same_place = 0.01;     ///< of the motion between two detections
+constexpr double in_place = 1e-6;       ///< of a block: all rounds of detection would not take it far
 
 /// Whether the body comes to rest in an equilibrium that was found beside it, without another potential crack that fails.
 bool rests_at(const StepInProgress& p, const PlacedState& placed, const Equilibrium& found) {
@@ -47,12 +49,13 @@ bool is_held_anew(const StepInProgress& p) {
     return verdict_anew(loaded_body(model, placement, at), body.displacement).balanced();
 }
 
-/// Whether two sets of contacts take turns, each of them detected where the other one has brought the body: it stands, and not far
-/// from either place.
-bool goes_back_and_forth(const StepInProgress& p, const Eigen::VectorXd& before, const Eigen::VectorXd& two_before) {
+/// Whether the body stands though contacts detected anew do not hold it: two sets of them take turns, each detected where the other one has
+/// brought it, or it comes back to where it was.
+bool stays_in_place(const StepInProgress& p, const Eigen::VectorXd& before, const Eigen::VectorXd& two_before) {
     const BlockSystem& system = p.bench.model.system;
     const double back = relative_motion(system, p.displacement() - two_before);
-    return !has_moved_far(p, before) && back <= same_place * relative_motion(system, p.displacement() - before);
+    const double moved = relative_motion(system, p.displacement() - before);
+    return moved <= far && back <= std::max(in_place, same_place * moved);
 }
 
 /// The block that moves farthest, beside its size.
@@ -97,12 +100,15 @@ void let_contacts_follow(StepInProgress& p, Eigen::VectorXd placed_at) {
         if (p.failed() || !p.step.balanced) return false;
         return !stands || has_moved_far(p, placed_at) || (!p.goal.must_rest && !is_held_anew(p));
     };
+    const Eigen::VectorXd began = p.displacement();
     for (int round = 0; goes_on(); ++round) {
         stands = true;
         const Eigen::VectorXd before = std::exchange(placed_at, p.displacement());
         const Equilibrium found = find_again(p);
-        if (!p.goal.must_rest && goes_back_and_forth(p, placed_at, before)) return;
-        if (!p.failed() && round == max_rounds_of_detection) fail_by_moving_on(p, found, p.displacement() - placed_at);
+        if (!p.goal.must_rest && stays_in_place(p, placed_at, before)) return;
+        if (p.failed() || round < max_rounds_of_detection) continue;
+        if (!has_moved_far(p, placed_at) && !has_moved_far(p, began)) return;
+        fail_by_moving_on(p, found, p.displacement() - placed_at);
     }
 }
 

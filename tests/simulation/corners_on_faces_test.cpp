@@ -281,10 +281,10 @@ TEST(BesideVoids, ASlotAboveAHingeCloses) {
     }
 }
 
-// A dam on a joint that a net of triangles meets in vertices: where one of them has slid off its own face, its edge is an overlap a tenth of a
+// A dam on a joint that a net of triangles meets in vertices: where one of them had slid off its own face, its edge was an overlap a tenth of a
 // millimetre long, or a corner, by turns, 2 um apart. The dam stands: friction alone, tan 45, holds as much as its weight of 94 MN/m, and the water
 // pushes with 49, a third of the way up.
-TEST(SlowDamOnTriangles, StandsWhereContactsTakeTurns) {
+TEST(SlowDamOnTriangles, StandsWhereVerticesOfTheNetHaveSlidOffTheirFaces) {
     const SceneRun run = run_scene(R"(kluft: 1
 analysis: {gravity: 9.81}
 materials:
