@@ -37,7 +37,6 @@ Vec2 mean_position(const BlockSystem& system, const Edges& edges) {
 
 constexpr double same_plane = 1e-9;     ///< of the body's larger side
 constexpr double same_direction = 1e-6; ///< of the cosine between normals
-constexpr double same_length = 1e-9;    ///< of two sides: what lies between them is closed
 constexpr double faces_all_ways = 1e-9; ///< of the length: what is left of the sum of normals is round-off
 
 /// Whether a line from a point along a direction meets the body farther on than a distance.
@@ -190,12 +189,12 @@ std::array<Side, 2> lateral_sides(const BlockSystem& system, int boundary) {
         if (length_of(sides[k]) <= 0.0) return {};
     }
     const std::array<double, 2> lengths{length_of(sides[0]), length_of(sides[1])};
-    const bool are_closed = std::abs(lengths[0] - lengths[1]) <= same_length * lengths[0];
     const double height = std::max(covered_length(system, sides[0], normal), covered_length(system, sides[1], normal));
+    const double weight = std::max(lengths[0], lengths[1]) / height; // of both: their places have no common origin
     for (int k = 0; k < 2; ++k) {
         for (SidePart& part : sides[k]) {
             part.share /= lengths[k];
-            for (double& share : part.shares) share /= are_closed ? height : lengths[k];
+            for (double& share : part.shares) share *= weight / lengths[k];
             part.weight = std::accumulate(part.shares.begin(), part.shares.end(), 0.0);
         }
     }
@@ -213,10 +212,7 @@ Vec2 mean_displacement(const BlockSystem& system, const Eigen::VectorXd& q, cons
 
 std::vector<BoundaryEdge> outer_edges(const BlockSystem& system, int boundary) {
     const Vec2 normal = boundary_frame(system, boundary).normal;
-    double outermost = -std::numeric_limits<double>::infinity();
-    for_each_edge(system, boundary, [&](int, const Vec2& start, const Vec2& end) {
-        outermost = std::max({outermost, normal.dot(start), normal.dot(end)});
-    });
+    const double outermost = outermost_place(system, system.boundaries[boundary].edges, normal);
     const double near = same_plane * (system.upper - system.lower).maxCoeff();
     std::vector<BoundaryEdge> outer;
     for (const auto& [b, e] : system.boundaries[boundary].edges) {
@@ -241,13 +237,35 @@ double unevenness(const BlockSystem& system, int boundary) {
     return std::max(0.0, most - least);
 }
 
+double outer_width(const BlockSystem& system, int boundary, const Vec2& lateral) {
+    double width = 0.0;
+    for_each_edge(system, outer_edges(system, boundary),
+                  [&](int, const Vec2& start, const Vec2& end) { width += std::abs(lateral.dot(end - start)); });
+    return width;
+}
+
+double outermost_place(const BlockSystem& system, const std::vector<BoundaryEdge>& edges, const Vec2& direction) {
+    double outermost = -std::numeric_limits<double>::infinity();
+    for_each_edge(system, edges, [&](int, const Vec2& start, const Vec2& end) {
+        outermost = std::max({outermost, direction.dot(start), direction.dot(end)});
+    });
+    return outermost;
+}
+
+Vec2 mean_normal(const BlockSystem& system, const Side& side) {
+    Vec2 sum = Vec2::Zero();
+    for (const SidePart& part : side)
+        for_each_edge(system, part.edges,
+                      [&](int, const Vec2& start, const Vec2& end) { sum += right_normal(end - start); });
+    return sum.normalized();
+}
+
 PlatenForce width_across(const BlockSystem& system, int boundary) {
     PlatenForce force;
     force.widening.setZero(n_block_unknowns * system.n_blocks());
     const Vec2 normal = boundary_frame(system, boundary).normal;
     const Vec2 lateral(normal.y(), -normal.x());
-    for_each_edge(system, outer_edges(system, boundary),
-                  [&](int, const Vec2& start, const Vec2& end) { force.width += std::abs(lateral.dot(end - start)); });
+    force.width = outer_width(system, boundary, lateral);
     const auto sides = lateral_sides(system, boundary);
     if (sides[0].empty()) return force;
     const double apart = std::abs(place_of(system, sides[0], lateral) - place_of(system, sides[1], lateral));

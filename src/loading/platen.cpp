@@ -194,8 +194,8 @@ LaidFace laid_face(const BlockSystem& system, const Platen& platen, const std::v
     return face;
 }
 
-/// Vertices between the ends at which the platen is not laid on the body, as cut: of blocks that reach in front of its plane, and of
-/// faces in it that are none of its boundary.
+/// Vertices between the ends at which the platen is not laid on the body, as cut: of blocks that reach in front of its plane by more than
+/// what is one point with it, and of faces in it that are none of its boundary.
 std::set<int> uncovered_vertices(const BlockSystem& system, const Platen& platen, const LaidFace& face) {
     std::set<std::pair<int, int>> laid;
     for (const auto& [b, e] : outer_edges(system, platen.boundary)) laid.emplace(b, e);
@@ -203,8 +203,8 @@ std::set<int> uncovered_vertices(const BlockSystem& system, const Platen& platen
     std::set<int> uncovered;
     for (int b = 0; b < system.n_blocks(); ++b) {
         const auto& edges = system.blocks[b].edges;
-        const bool in_front = std::ranges::any_of(
-            edges, [&](const Edge& edge) { return place(edge.start) > face.plane + face.distance; });
+        const double front = face.plane + std::max(face.distance, one_point_of(system.blocks[b]));
+        const bool in_front = std::ranges::any_of(edges, [&](const Edge& edge) { return place(edge.start) > front; });
         for (int e = 0; e < static_cast<int>(edges.size()); ++e) {
             const bool is_face = std::min(place(edges[e].start), place(edges[e].end)) >= face.plane - face.distance;
             if (in_front) uncovered.insert(edges[e].start);
@@ -338,7 +338,9 @@ void add_near_points(const BlockSystem& system, const Eigen::VectorXd& q, double
                 if (platen.normal.dot(x) >= laid.plane - laid.distance &&
                     has_near(system, loads.platen_points, platen.boundary, b, edge.start))
                     continue;
-                if (corner != laid_reach.end()) point.reach = std::max(point.reach, moved - went); // touches as it lies
+                const bool is_before = platen.normal.dot(x) > laid.plane; // by little, or it would stand out
+                if (corner != laid_reach.end() || is_before)
+                    point.reach = std::max(point.reach, moved - went); // touches as it lies
                 loads.platen_points.push_back(point);
             }
         }

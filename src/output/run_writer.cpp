@@ -334,6 +334,7 @@ RunSummary RunWriter::summary_of(const RunOutcome& outcome, const Rows& history,
     const bool is_said =
         std::ranges::find(summary.warnings, doubt) != summary.warnings.end(); // by an earlier part of the run
     if (summary.numbers.youngs_modulus && !doubt.empty() && !is_said) summary.warnings.push_back(doubt);
+    if (!options_.has_elastic_constants) clear_elastic_constants(summary.numbers);
     summary.falling = outcome.report.falling;
     summary.motion = outcome.report.motion;
     return summary;

@@ -503,6 +503,11 @@ void clear_round_off(double modulus, CurveNumbers& numbers) {
         constant->reset();
 }
 
+void clear_elastic_constants(CurveNumbers& numbers) {
+    numbers.youngs_modulus.reset();
+    numbers.poissons_ratio.reset();
+}
+
 bool is_strength(const CurveNumbers& numbers) { return numbers.peak_reached || numbers.levelled_off; }
 
 std::string peak_remark(const CurveNumbers& numbers) {

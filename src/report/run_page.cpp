@@ -23,6 +23,7 @@
 #include "kluft/scene/scene_as_run.hpp"
 #include "kluft/scene/scene_model.hpp"
 #include "kluft/simulation/measurements.hpp"
+#include "kluft/simulation/rock_constants.hpp"
 #include "kluft/simulation/strength_reduction.hpp"
 #include "page_files.hpp"
 #include "run_arrays.hpp"
@@ -247,6 +248,7 @@ RunFacts facts_of(const fs::path& directory, const Rows& history, const Rows& eq
     facts.numbers = curve_numbers(equilibria, history, facts.platen_stage, scene.plane);
     if (fs::exists(directory / "summary.json")) facts.summary = read_summary(directory / "summary.json");
     clear_round_off(largest_modulus(scene.materials), facts.numbers);
+    if (!has_elastic_constants(model)) clear_elastic_constants(facts.numbers);
     if (facts.summary) clear_round_off(largest_modulus(scene.materials), facts.summary->numbers);
     if (facts.summary && !facts.summary->numbers.residual_stress) facts.numbers.residual_stress.reset();
     facts.sense = platen_sense(history, facts.platen_stage);

@@ -433,7 +433,7 @@ void warn_of_fixed_platen(const PlatenMotion& motion, Model& model) {
 /// The axial stress counts from side to side of the body, also where a platen presses a part of it.
 void warn_of_narrow_platen(int moved, Model& model) {
     if (!is_pressed_in_part(model.system, moved)) return;
-    const double own = boundary_frame(model.system, moved).length;
+    const double own = outer_width(model.system, moved, right_normal(boundary_frame(model.system, moved).normal));
     const double width = width_across(model.system, moved).width;
     model.warnings.push_back(fmt::format(
         "the axial stress of the platen on '{}' is its force over the width of the body, {:.4g} m, and not over "

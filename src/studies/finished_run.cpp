@@ -15,6 +15,7 @@
 #include "kluft/scene/scene_model.hpp"
 #include "kluft/scene/scene_reader.hpp"
 #include "kluft/simulation/measurements.hpp"
+#include "kluft/simulation/rock_constants.hpp"
 
 namespace kluft {
 
@@ -125,6 +126,7 @@ FinishedRun read_finished_run(const fs::path& directory, const std::string& name
     // of a body that is not known its tables are taken for those of a platen
     const std::optional<int> of_platen = run.model ? run.platen_stage : 0;
     run.numbers = curve_numbers(run.equilibria, run.history, of_platen, plane);
+    if (run.model && !has_elastic_constants(*run.model)) clear_elastic_constants(run.numbers);
     if (!run.model) { // of which stage is not known
         CurveNumbers& numbers = run.numbers;
         for (std::optional<double>* const constant :

@@ -75,6 +75,7 @@ RunWriterOptions run_writer_options(const Scene& scene, const Model& model) {
     if (platen_stage >= 0) options.platen_stage = platen_stage;
     options.plane = scene.plane;
     options.modulus = largest_modulus(scene.materials);
+    options.has_elastic_constants = has_elastic_constants(model);
     options.elastic_constants_warning = elastic_constants_warning(model);
     options.strength_factor = reduction_of(model.loads, 0) != nullptr;
     options.motion = scene.integrator == Integrator::explicit_motion;

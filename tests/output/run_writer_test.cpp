@@ -189,6 +189,22 @@ TEST(RunWriter, WarnsOfElasticConstantsWhereItHasSome) {
     }
 }
 
+// The body's own modulus and ratio stay.
+TEST(RunWriter, HasNoElasticConstantsOfABodyThatIsNoSpecimen) {
+    RunWriterOptions options;
+    options.pictures = false;
+    options.platen_stage = 1;
+    options.has_elastic_constants = false;
+    options.elastic_constants_warning = "its shape";
+    const TemporaryDirectory directory;
+    SmallRun run(directory.path(), options);
+    run.go_to(9);
+    const RunSummary summary = run.finish();
+    EXPECT_FALSE(summary.numbers.youngs_modulus || summary.numbers.poissons_ratio);
+    EXPECT_TRUE(summary.numbers.axial_modulus && summary.numbers.lateral_ratio);
+    EXPECT_THAT(summary.warnings, ::testing::Contains("its shape"));
+}
+
 TEST(RunWriter, WritesNeitherFieldsNorPicturesWhenNotAsked) {
     const TemporaryDirectory directory;
     RunWriterOptions options;

@@ -338,6 +338,51 @@ TEST(Platens, PressNothingBetweenTheirParts) {
     }
 }
 
+/// A triangle between two columns of 0.1 m x 0.2 m, E = 10 GPa, under a strain of 0.1 %: its tip stands before the plane of the
+/// platen that is moved, or of the one that rests.
+SceneRun press_a_triangle(double before, bool upright, const char* of_stage) {
+    return run_scene(fmt::format(R"(
+kluft: 1
+analysis: {{plane: stress}}
+materials: {{rock: {{youngs_modulus: 10 GPa, poissons_ratio: 0.25, density: 2500}}}}
+interfaces: {{joint: {{kind: fracture, friction_angle: 30, normal_stiffness: 1e11, shear_stiffness: 5e10}}}}
+geometry:
+  blocks:
+    - {{name: a, polygon: [[0, 0], [0.1, 0], [0.1, 0.2], [0, 0.2]]}}
+    - {{name: b, polygon: [[0.3, 0], [0.4, 0], [0.4, 0.2], [0.3, 0.2]]}}
+    - {{name: c, polygon: {}}}
+  blocks_interface: joint
+  reference_spacing: 0.1
+stages: [{{strain: {{boundary: top, value: 0.1 %}}, steps: 4, {}}}]
+)",
+                                 upright ? fmt::format("[[0.12, 0], [0.28, 0], [0.2, {:.17g}]]", 0.2 + before)
+                                         : fmt::format("[[0.12, 0.2], [0.2, {:.17g}], [0.28, 0.2]]", -before),
+                                 of_stage));
+}
+
+double force_of_platen(const SceneRun& run, double width) {
+    const StepRecord& last = run.history.back();
+    return last.axial_stress * width * (1.0 - last.lateral_strain);
+}
+
+// A tip that a rounding of its coordinates puts before the plane of the platen touches it as it lies. E times the strain is 10 MPa, on 0.2 m of
+// columns and on 0.08 m of the triangle, its mean width: 2.8 MN/m. It went through the platen, without a word: 2.0 MN/m.
+TEST(Platens, StopATipThatStandsBeforeThemByARounding) {
+    for (const bool upright : {true, false}) {
+        const double width = upright ? 0.28 : 0.36; // the mean one, or the faces under the moved platen
+        for (const char* platens : {"platens: smooth", "platens: rough", "platens: {friction_angle: 20}"}) {
+            const double in_plane = force_of_platen(press_a_triangle(0.0, upright, platens), width);
+            for (const double before : {1e-9, 1e-7, 1e-5}) {
+                const SceneRun run = press_a_triangle(before, upright, platens);
+                ASSERT_EQ(run.report.status, RunStatus::done) << run.report.diagnosis;
+                EXPECT_NEAR(force_of_platen(run, width), in_plane, 1e-3 * in_plane) << platens << before;
+            }
+        }
+        const SceneRun smooth = press_a_triangle(1e-9, upright, "platens: smooth");
+        EXPECT_NEAR(force_of_platen(smooth, width), 2.8e6, 1e-3 * 2.8e6);
+    }
+}
+
 // Direct shear: the body goes on in the plane of the fixed platen beyond its end, and passes there.
 TEST(Platens, EndWhereTheBodyGoesOnInTheirPlane) {
     const SceneRun run = run_scene(R"(

@@ -267,6 +267,58 @@ stages: [{{strain: {{boundary: top, value: 1 %}}}}]
                 0.2125, 1e-12);
 }
 
+/// Two columns of 0.1 m x 0.2 m, 0.05 m apart, with corners off by little, and without the upper half of one side.
+Model two_columns(double off, const char* boundaries = "{}") {
+    return build_scene_model(read_scene_text(fmt::format(R"(
+kluft: 1
+analysis: {{plane: stress}}
+materials: {{rock: {{youngs_modulus: 10 GPa, poissons_ratio: 0.25, density: 2600}}}}
+interfaces: {{joint: {{kind: fracture, normal_stiffness: 1e11, shear_stiffness: 1e11, friction_angle: 30}}}}
+geometry:
+  blocks:
+    - {{name: a, polygon: [[0, 0], [0.1, 0], [0.1, 0.2], [0, 0.2]]}}
+    - {{name: b, polygon: [[0.15, 0], [0.25, {0}], [0.25, 0.1], [0.25, 0.2], [0.15, 0.2]]}}
+  blocks_interface: joint
+boundaries: {1}
+stages: [{{strain: {{boundary: top, value: 0.1 %}}, steps: 2}}]
+)",
+                                                         off, boundaries)))
+        .model;
+}
+
+// Each column counts as one, whether or not their sides are of the same length to the last digit: half of Poisson's ratio was found.
+TEST(StageLoads, ColumnsBesideEachOtherWidenEach) {
+    const auto expect_two = [](const Model& model, double tolerance) {
+        const int moved = model.loads.stages[0].motion->boundary;
+        for (const Side& side : lateral_sides(model.system, moved)) {
+            double weight = 0.0;
+            for (const SidePart& part : side) weight += part.weight;
+            EXPECT_NEAR(weight, 2.0, tolerance);
+        }
+        EXPECT_NEAR(width_across(model.system, moved).width, 0.2, tolerance);
+    };
+    for (const double off : {0.0, 1e-9, 1e-6, 1e-5}) expect_two(two_columns(off), 10.0 * off + 1e-12);
+    expect_two(two_columns(0.0, "{top: {facing: top}, bottom: {facing: bottom}, left: {facing: left}, plate: {block: "
+                                "b, sides: [2]}, right: {facing: right}}"),
+               1e-12);
+}
+
+// The area over the height, to what the corner is off by: E was 11.4 for 9.9 GPa.
+TEST(StageLoads, TheWidthOfANotchedBodyChangesByNoMoreThanItsCorners) {
+    for (const double off : {0.0, 1e-9, 1e-6, 1e-5}) {
+        const Model model = build_scene_model(read_scene_text(fmt::format(R"(
+kluft: 1
+materials: {{rock: {{youngs_modulus: 1 GPa, poissons_ratio: 0.2, density: 2600}}}}
+geometry: {{domain: {{polygon: [[0, 0], [0.1, {}], [0.1, 0.2], [0.06, 0.2], [0.05, 0.17], [0.04, 0.2], [0, 0.2]]}}}}
+stages: [{{strain: {{boundary: top, value: 1 %}}}}]
+)",
+                                                                          off)))
+                                .model;
+        const double width = width_across(model.system, model.loads.stages[0].motion->boundary).width;
+        EXPECT_NEAR(width, (0.02 - 0.0003) / 0.2, off + 1e-12);
+    }
+}
+
 // The floor reaches 0.65 m behind the side that is pushed, whichever way it faces.
 TEST(StageLoads, ABodyWithoutABoundaryAcrossIsAsLongAsItReachesBehindThePlaten) {
     for (const double turned : {0.0, 30.0, 90.0, 180.0, 270.0}) {

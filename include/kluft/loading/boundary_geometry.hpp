@@ -41,7 +41,8 @@ struct BoundaryFrame {
 
 /// What a boundary has of one side of a body. The shares of its edges are their lengths across the side's direction over the height of the
 /// body between its two sides, so that the sum of their places, times their shares, differs between the sides by the area between
-/// them over that height: columns side by side, notches and openings included. Between sides of different lengths they are shares of the length.
+/// them over that height: columns side by side, notches and openings included. Of two sides of different lengths the shorter counts as much as the
+/// longer, by its mean place.
 struct SidePart {
     int boundary = -1;
     std::vector<BoundaryEdge> edges;
@@ -61,7 +62,17 @@ using Side = std::vector<SidePart>;
 /// floor and the roof of an opening.
 [[nodiscard]] std::vector<BoundaryEdge> outer_edges(const BlockSystem& system, int boundary);
 
-/// How far these lie apart along the normal of the boundary (m).
+/// The width of these across the direction in which a platen presses (m).
+[[nodiscard]] double outer_width(const BlockSystem& system, int boundary, const Vec2& lateral);
+
+/// The place of edges that lies farthest along a direction (m).
+[[nodiscard]] double outermost_place(const BlockSystem& system, const std::vector<BoundaryEdge>& edges,
+                                     const Vec2& direction);
+
+/// Mean outward normal of a side of a body (unit).
+[[nodiscard]] Vec2 mean_normal(const BlockSystem& system, const Side& side);
+
+/// How far the outer edges lie apart along the normal of the boundary (m).
 [[nodiscard]] double unevenness(const BlockSystem& system, int boundary);
 
 /// The mean width of the body under a platen on `boundary` (m): the mean distance of the lateral sides, or the width of

@@ -82,6 +82,9 @@ struct CurveNumbers {
 /// pulled; it has no elastic constants then. `modulus`: E of the stiffest material (Pa).
 void clear_round_off(double modulus, CurveNumbers& numbers);
 
+/// Leaves no constants of the rock where the body is none to have them from (rock_constants.hpp); its own modulus and ratio stay.
+void clear_elastic_constants(CurveNumbers& numbers);
+
 /// Whether the largest axial stress is a strength: it falls behind it, or has levelled off.
 [[nodiscard]] bool is_strength(const CurveNumbers& numbers);
 
