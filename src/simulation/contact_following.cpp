@@ -42,9 +42,7 @@ bool is_held_anew(const StepInProgress& p) {
     const Model& model = p.bench.model;
     const BodyState& body = p.step.end.body;
     if (body.contacts.empty()) return true;
-    Placement placement;
-    placement.bonds = placed_bonds(model, body);
-    placement.contacts = detected_contacts(model, body, ground_holds_tips(model, p.from.at.stage)).points;
+    const Placement placement = placed_anew(model, body, p.from.at.stage);
     const LoadsAt at = p.loads_at(p.load_factor());
     return verdict_anew(loaded_body(model, placement, at), body.displacement).balanced();
 }

@@ -56,6 +56,13 @@ DetectedContacts detected_contacts(const Model& model, const BodyState& body, bo
     return detect_contacts(model.system, surfaces, body.displacement, reach, body.contacts);
 }
 
+Placement placed_anew(const Model& model, const BodyState& body, int stage) {
+    Placement placement;
+    placement.bonds = placed_bonds(model, body);
+    placement.contacts = detected_contacts(model, body, ground_holds_tips(model, stage)).points;
+    return placement;
+}
+
 std::vector<ContactPoint> renewed_contacts(const BodyState& body, std::vector<ContactPoint> points) {
     for (ContactPoint& point : points) {
         const auto memory = std::ranges::lower_bound(body.contacts, point.key, {}, &ContactMemory::key);

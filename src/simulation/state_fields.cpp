@@ -110,9 +110,7 @@ FieldRecord field_record(const Model& model, const State& state, const LoadedBod
 }
 
 void with_body_of_state(const Model& model, const State& state, const std::function<void(const LoadedBody&)>& use) {
-    Placement placement;
-    placement.bonds = placed_bonds(model, state.body);
-    placement.contacts = detected_contacts(model, state.body, ground_holds_tips(model, state.at.stage)).points;
+    const Placement placement = placed_anew(model, state.body, state.at.stage);
     State copy = state;
     const StageLoads loads = enter_stage(model, copy);
     const LoadsAt at = loads_at(model, loads, hold_of(model, loads, copy.body), state.at.stage, state.at.load_factor);

@@ -33,6 +33,9 @@ inline constexpr double contact_reach = 0.1;
 /// Contacts of the unbonded surfaces, with the histories of the state.
 [[nodiscard]] DetectedContacts detected_contacts(const Model& model, const BodyState& body, bool ground_holds_tips);
 
+/// Bonds and contacts of the state where it stands, as a load step of that stage would begin with.
+[[nodiscard]] Placement placed_anew(const Model& model, const BodyState& body, int stage);
+
 /// The same contact points and frames once more, with the histories of the state and slip counted from its
 /// displacements.
 [[nodiscard]] std::vector<ContactPoint> renewed_contacts(const BodyState& body, std::vector<ContactPoint> points);
