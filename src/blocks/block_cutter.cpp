@@ -104,9 +104,9 @@ void check_spec(const GeometrySpec& spec) {
     if (spec.tessellation && spec.tessellation->region) {
         check_polygon(*spec.tessellation->region, "geometry.tessellation.region");
     }
-    if (!(spec.minimum_area >= 0.0 && spec.minimum_area < 1.0)) {
+    if (!(minimum_area_share(spec) >= 0.0 && minimum_area_share(spec) < 1.0)) {
         throw InputError(
-            fmt::format("geometry.minimum_area: expected a fraction 0 <= f < 1, got {}", spec.minimum_area));
+            fmt::format("geometry.minimum_area: expected a fraction 0 <= f < 1, got {}", minimum_area_share(spec)));
     }
     if (!(spec.reference_spacing >= 0.0) || !std::isfinite(spec.reference_spacing)) {
         throw InputError(fmt::format("geometry.reference_spacing: expected a length, got {}", spec.reference_spacing));
@@ -444,7 +444,7 @@ std::vector<LoosePiece> pruned_pieces(const PlanarMap& map, const SourceNumbers&
 double least_area(const GeometrySpec& spec) {
     constexpr double rounding_area = 1e-12; // of the domain, where no spacing is given
     const double domain_area = std::abs(signed_area(spec.domain));
-    return std::max(rounding_area * domain_area, spec.minimum_area * std::min(mean_cell_area(spec), domain_area));
+    return std::max(rounding_area * domain_area, minimum_area_share(spec) * std::min(mean_cell_area(spec), domain_area));
 }
 
 /// A face that is narrower is no block of its own (m).
@@ -463,6 +463,8 @@ MendLimits mend_limits(const GeometrySpec& spec, const LocalFrame& frame, const 
     limits.rounding = 4.0 * std::numeric_limits<double>::epsilon() * frame.box.upper.norm();
     limits.first_fracture = numbers.first_fracture;
     limits.tessellation = numbers.tessellation;
+    for (const int boundary : boundary_of_sides(spec)) limits.is_free.push_back(static_cast<char>(boundary < 0));
+    limits.loose_perimeter = lattice_spacing(spec); // about half of it wide
     return limits;
 }
 
@@ -654,6 +656,12 @@ double lattice_spacing(const GeometrySpec& spec) {
     const Tessellation& net = *spec.tessellation;
     if (net.triangles) return net.triangles->spacing;
     return net.voronoi ? net.voronoi->spacing : net.hexagons.spacing;
+}
+
+double minimum_area_share(const GeometrySpec& spec) {
+    constexpr double of_cells = 0.05;
+    constexpr double of_traces = 0.002; // smaller than what matters to a slope of blocks
+    return spec.minimum_area.value_or(spec.tessellation ? of_cells : of_traces);
 }
 
 double mean_cell_area(const GeometrySpec& spec) {
@@ -893,6 +901,8 @@ CutBody cut(const GeometrySpec& spec, ExactCells exact) {
         body.report.merged.push_back({frame.origin + piece.at, piece.area,
                                       std::max(-1, piece.source - numbers.first_fracture), piece.length,
                                       piece.at_outline});
+    for (const auto& piece : mended.taken_off)
+        body.report.taken_off.push_back({frame.origin + piece.at, piece.area, -1, piece.length, true});
 
     body.system = SystemBuilder(spec, frame, numbers, map).build();
     if (has_triangles(spec)) grade(body.system, side_of_triangles(spec, frame, numbers));

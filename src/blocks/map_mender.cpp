@@ -257,6 +257,44 @@ private:
         return length;
     }
 
+    /// The piece of the outline that a face ends at, if it is one, along sides that no boundary names, and the face meets the outline nowhere else.
+    [[nodiscard]] std::vector<int> free_surface(int face) {
+        const std::vector<int>& list = map_.half_edges_of(face);
+        const auto at_surface = [&](int h) { return map_.face(map_.twin(h)) == outside; };
+        const auto is_free = [&](int h) {
+            const int side = map_.source(h);
+            return side < static_cast<int>(limits_.is_free.size()) && limits_.is_free[side] != 0;
+        };
+        std::vector<int> surface;
+        int n_ends = 0;
+        for (const int h : list) {
+            if (at_surface(h)) {
+                if (!is_free(h)) return {};
+                surface.push_back(h);
+            } else {
+                n_ends += at_surface(map_.next(h)) ? 1 : 0;
+                const bool begins = at_surface(map_.previous(h));
+                if (!begins && is_on_outline(map_.start(h))) return {};
+            }
+        }
+        if (n_ends != 1) return {};
+        return surface;
+    }
+
+    /// What lies at a free surface between fractures that go on beyond it would lock what slides along one of them, whichever neighbour
+    /// it went into: a small piece is taken off.
+    bool take_off(int face, int exit) {
+        if (is_tessellation(exit) || !goes_on_beyond(exit, map_.half_edges_of(face))) return false;
+        if (perimeter(face) > limits_.loose_perimeter) return false;
+        const std::vector<int> surface = free_surface(face);
+        if (surface.empty()) return false;
+        MendReport::Merged piece{.at = face_centroid(map_, face), .area = std::max(0.0, map_.area(face))};
+        for (const int h : surface) piece.length += map_.length(h);
+        report_.taken_off.push_back(piece);
+        map_.take_away(face, map_.source(surface.front()));
+        return true;
+    }
+
     bool merge_slivers() {
         using Entry = std::pair<double, int>;
         std::priority_queue<Entry, std::vector<Entry>, std::greater<>> slivers;
@@ -274,7 +312,7 @@ private:
             const int exit = way_out(map_.half_edges_of(face));
             if (exit < 0) continue;
             merged = true;
-            judge(merge_across(exit));
+            if (!take_off(face, exit)) judge(merge_across(exit));
         }
         return merged;
     }
@@ -289,15 +327,23 @@ private:
         return merged;
     }
 
+    [[nodiscard]] bool is_straight(int v, int before, int after) const {
+        const Vec2& a = map_.positions[before];
+        const Vec2& b = map_.positions[after];
+        return distance_to_segment(map_.positions[v], a, b) <= limits_.rounding;
+    }
+
     /// Corners of the domain must stay, vertices on its outline must stay on it, and a fracture should stay straight.
     [[nodiscard]] int worth(int v) const {
         int n_fracture = 0;
         int side = -1;
+        int along = -1; // the vertex that the outline comes from
         bool corner = false;
         for (const int h : map_.star(v)) {
             if (is_outline(h)) {
-                corner = corner || (side >= 0 && side != map_.source(h));
+                corner = corner || (side >= 0 && (side != map_.source(h) || !is_straight(v, along, map_.end(h))));
                 side = map_.source(h);
+                along = map_.end(h);
             } else if (!is_tessellation(h)) {
                 ++n_fracture;
             }

@@ -119,6 +119,18 @@ void PlanarMap::merge_faces(int kept, int lost) {
     for (const int e : shared) remove_edge(e);
 }
 
+void PlanarMap::take_away(int f, int source) {
+    const std::vector<int> half_edges_there = half_edges_of(f);
+    faces[f] = {};
+    for (const int h : half_edges_there) half_edges[h].face = outside;
+    for (const int h : half_edges_there) {
+        if (face(twin(h)) == outside)
+            remove_edge(edge_of(h));
+        else
+            sources[edge_of(h)] = source;
+    }
+}
+
 int PlanarMap::dissolve_vertex(int v) {
     const int leaving = outgoing[v];        // v -> b
     const int arriving = previous(leaving); // a -> v

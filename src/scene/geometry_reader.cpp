@@ -116,7 +116,7 @@ public:
         if (geometry.has("tessellation")) read_tessellation(geometry.section("tessellation"));
         read_construction_lines(geometry);
         read_reference_spacing(geometry);
-        spec_.minimum_area = geometry.number("minimum_area");
+        spec_.minimum_area = geometry.given_number("minimum_area");
         if (!materials_.empty() && geometry.node() != nullptr)
             spec_.material = context_.reference(geometry, "material", materials_, "a material").value_or(-1);
         for (const auto& section : geometry.sections("regions")) read_region(section);
@@ -141,7 +141,7 @@ private:
                     geometry, key,
                     fmt::format("expected nothing beside blocks, found {}", found_text(*geometry.value(key))));
         read_reference_spacing(geometry);
-        spec_.minimum_area = geometry.number("minimum_area");
+        spec_.minimum_area = geometry.given_number("minimum_area");
         spec_.places.blocks = context_.place(geometry, "blocks");
         const auto sections = geometry.sections("blocks");
         for (const auto& section : sections) read_block(geometry, section);

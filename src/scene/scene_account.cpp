@@ -55,6 +55,12 @@ void say_cut(const CutReport& cut, const GeometrySpec& geometry, Lines& lines) {
     }
     if (cut.merged.size() > most_listed)
         lines.push_back({{}, fmt::format("  and {} more", cut.merged.size() - most_listed)});
+    for (std::size_t i = 0; i < std::min(most_listed, cut.taken_off.size()); ++i)
+        lines.push_back({{},
+                         fmt::format("  taken off the surface {:.3g} m2 at {}, which would lock a fracture",
+                                     cut.taken_off[i].area, place_text(cut.taken_off[i].at))});
+    if (cut.taken_off.size() > most_listed)
+        lines.push_back({{}, fmt::format("  and {} more", cut.taken_off.size() - most_listed)});
 }
 
 void say_stiffness(const Scene& scene, const Model& model, Lines& lines) {

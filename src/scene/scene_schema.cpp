@@ -531,11 +531,12 @@ std::vector<KeyRule> cut_rules() {
         {.path = "geometry.minimum_area",
          .type = KeyType::number,
          .range = {.least = 0.0, .most = 0.5},
-         .fallback = "0.05",
+         .fallback_note = "0.05 with a tessellation, else 0.002",
          .doc =
              "Pieces smaller than this fraction of a hexagon, of a mean Voronoi cell or triangle, or of the body "
              "where that is "
-             "smaller, are merged with a neighbour. Between fractures a net of triangles also merges what is narrower "
+             "smaller, are merged with a neighbour; those that would lock a fracture which comes out at a free side (one of no "
+             "boundary) are taken off. Between fractures a net of triangles also merges what is narrower "
              "than 0.05 of its smallest side, whatever this is."},
         {.path = "geometry.material",
          .type = KeyType::text,

@@ -207,6 +207,65 @@ TEST(BlockCutter, APlaneComesOutWhereThePieceBesideItIsTooSmall) {
     }
 }
 
+// Two traces cross 0.1 m behind a side of 2 m: what is left there is a triangle of 0.01 m2, 0.2 m wide. Whichever neighbour it went
+// into, one of the two fractures would end at X and lock what slides along it.
+TEST(BlockCutter, APieceAtAFreeSideIsTakenOffWhereItWouldLockAFracture) {
+    for (const bool has_net : {false, true}) {
+        GeometrySpec spec;
+        spec.domain = {{0, 0}, {2, 0}, {2, 2}, {0, 2}};
+        add_trace(spec, {{0.3, 0.2}, {2.1, 2.0}});
+        add_trace(spec, {{0.3, 2.2}, {2.1, 0.4}});
+        for (FractureTrace& fracture : spec.fractures)
+            for (Vec2& p : fracture.points) p += Vec2(0.6, -0.2); // they cross at (1.9, 1.0)
+        spec.boundaries = {{"base", {0}}};
+        if (has_net) {
+            spec.tessellation = Tessellation{};
+            spec.tessellation->triangles = TriangleNet{.spacing = 1.5, .grading = {}};
+            spec.minimum_area = 0.02;
+        } else {
+            spec.reference_spacing = 1.0;
+            spec.minimum_area = 0.02;
+        }
+        const CutBody free = sound_cut(spec);
+        EXPECT_EQ(free.report.merged.size(), 0U) << has_net;
+        ASSERT_EQ(free.report.taken_off.size(), 1U) << has_net;
+        EXPECT_NEAR(free.report.taken_off[0].area, 0.01, 1e-12);
+        EXPECT_NEAR(free.report.taken_off[0].length, 0.2, 1e-12);
+        EXPECT_LT((free.report.taken_off[0].at - Vec2(2.0 - 0.1 / 3.0, 1.0)).norm(), 1e-12);
+
+        spec.boundaries.push_back({"face", {1}}); // which may be pressed or held
+        const CutBody named = sound_cut(spec);
+        EXPECT_EQ(named.report.taken_off.size(), 0U) << has_net;
+        ASSERT_EQ(named.report.merged.size(), 1U) << has_net;
+        EXPECT_NEAR(boundary_length(named.system, named.system.boundaries[1]), 2.0, 1e-12);
+        const auto fractures = [](const CutBody& body) {
+            return interface_length(body.system, EdgeOrigin::fracture, 0) +
+                   interface_length(body.system, EdgeOrigin::fracture, 1);
+        };
+        EXPECT_NEAR(fractures(named) - fractures(free), 0.1 * std::numbers::sqrt2, 1e-9) << has_net;
+    }
+}
+
+TEST(BlockCutter, ASlitBehindAFreeSideStaysClosed) {
+    GeometrySpec spec; // traces at 0.2 degrees to each other: between them and the side a piece 1 m long
+    spec.domain = {{0, 0}, {3, 0}, {3, 2}, {0, 2}};
+    add_trace(spec, {{-1, 1.01}, {4, 0.99}});
+    add_trace(spec, {{-1, 0.99}, {4, 1.01}});
+    spec.reference_spacing = 1.0;
+    const CutBody body = sound_cut(spec);
+    EXPECT_EQ(body.report.taken_off.size(), 0U);
+}
+
+TEST(BlockCutter, TheSmallestBlockIsSmallerWhereTracesAloneMakeTheBlocks) {
+    GeometrySpec spec = rectangle(2, 2);
+    spec.reference_spacing = 1.0;
+    EXPECT_EQ(minimum_area_share(spec), 0.002);
+    spec.tessellation = Tessellation{};
+    EXPECT_EQ(minimum_area_share(spec), 0.05);
+    spec.minimum_area = 0.01;
+    EXPECT_EQ(minimum_area_share(spec), 0.01);
+}
+
 TEST(BlockCutter, TracesBeyondTheDomainAreClipped) {
     GeometrySpec spec = rectangle(1, 1);
     add_trace(spec, {{-3, 0.5}, {-2, 0.7}, {5, 0.7}});

@@ -131,8 +131,7 @@ struct GeometrySpec {
     std::vector<std::vector<Vec2>> construction_lines; ///< polylines that a net of triangles follows; no fractures
     int material = 0;
     std::vector<MaterialRegion> regions;
-    double minimum_area =
-        0.05; ///< smallest block as a fraction of mean_cell_area, or of the domain where a cell is larger
+    std::optional<double> minimum_area; ///< of the smallest block, see minimum_area_share
     double reference_spacing = 0.0; ///< d where there is no tessellation (m); 0 = none given
     std::vector<GivenBlock> blocks; ///< instead of domain, holes, fractures, tessellation and regions
     int blocks_interface = 0;       ///< index into the scene's interface types: of the interfaces between them
@@ -140,6 +139,10 @@ struct GeometrySpec {
     std::string crs{}; ///< coordinate system of the scene's coordinates, "EPSG:25832"; empty where it is not known
     GeometryPlaces places{};
 };
+
+/// Smallest block as a fraction of mean_cell_area, or of the domain where a cell is larger: `minimum_area`, else 0.05 of the cells
+/// of a net, and 0.002 where traces alone make the blocks.
+[[nodiscard]] double minimum_area_share(const GeometrySpec& spec);
 
 /// Mean area of a cell of the net, or of a hexagon of lattice_spacing where there is none (m2).
 [[nodiscard]] double mean_cell_area(const GeometrySpec& spec);

@@ -18,6 +18,8 @@ struct MendLimits {
     double rounding = 0.0; ///< distance below which positions differ by rounding only (m)
     int first_fracture = 0;
     int tessellation = 0;
+    std::vector<char> is_free; ///< of each side of the outline, whether no boundary names it; none is where empty
+    double loose_perimeter = 0.0; ///< of the largest piece that may be taken off a free side (m)
 };
 
 struct MendReport {
@@ -29,6 +31,7 @@ struct MendReport {
         bool at_outline = false; ///< that piece ends at the outline
     };
     std::vector<Merged> merged;
+    std::vector<Merged> taken_off; ///< with the outline's piece; no source
     std::map<int, double> cut_off;    ///< of fractures, by their source, the largest merged face that they cut off (m2)
     std::vector<SourceSegment> freed; ///< sides of merged faces that went with the side across which these were merged
     int collapsed_edges = 0;
@@ -38,7 +41,8 @@ struct MendReport {
 /// 1. each face below `limits.area` or `limits.width`, smallest first, is merged with the neighbour across its longest tessellation edge,
 ///    otherwise across its longest interior edge of a fracture that does not go on beyond the face, otherwise of one that does; all edges between the two disappear. A face that is merged away
 ///    has one side less: the edges that go on from that edge up to a sharp turn, or two turns within 2 `limits.edge`.
-///    Where its other sides lie in the same neighbour they separate nothing any more, and are `freed`;
+///    Where its other sides lie in the same neighbour they separate nothing any more, and are `freed`.
+///    A small piece at a free side of the outline all of whose fractures go on beyond it would lock one of them: it is taken off;
 /// 2. each edge below `limits.edge`, shortest first, is collapsed to the end that is worth more (corner of the domain,
 ///    then its outline, then more fracture edges), otherwise to the other, if every face around stays simple and positively oriented, the
 ///    outline keeps its shape and corners, and no two vertices get joined twice;

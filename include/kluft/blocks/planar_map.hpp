@@ -62,6 +62,9 @@ public:
     /// Gives what is `lost` to `kept` and removes every edge between them.
     void merge_faces(int kept, int lost);
 
+    /// Gives a face to `outside`: its edges towards that disappear, its others get `source`.
+    void take_away(int f, int source);
+
     /// Makes the two edges at a vertex of degree 2 one; the edge of `outgoing[v]` disappears. Both loops must keep at
     /// least three edges. Returns the half-edge that remains and ended at v.
     int dissolve_vertex(int v);
