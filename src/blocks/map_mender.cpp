@@ -257,7 +257,7 @@ private:
         return length;
     }
 
-    /// The piece of the outline that a face ends at, if it is one, along sides that no boundary names, and the face meets the outline nowhere else.
+    /// The piece of the outline that a face ends at, if it is one, along a side that no boundary names, and the face meets the outline nowhere else.
     [[nodiscard]] std::vector<int> free_surface(int face) {
         const std::vector<int>& list = map_.half_edges_of(face);
         const auto at_surface = [&](int h) { return map_.face(map_.twin(h)) == outside; };
@@ -269,7 +269,7 @@ private:
         int n_ends = 0;
         for (const int h : list) {
             if (at_surface(h)) {
-                if (!is_free(h)) return {};
+                if (!is_free(h) || (!surface.empty() && map_.source(surface.front()) != map_.source(h))) return {};
                 surface.push_back(h);
             } else {
                 n_ends += at_surface(map_.next(h)) ? 1 : 0;

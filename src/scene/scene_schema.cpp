@@ -532,12 +532,12 @@ std::vector<KeyRule> cut_rules() {
          .type = KeyType::number,
          .range = {.least = 0.0, .most = 0.5},
          .fallback_note = "0.05 with a tessellation, else 0.002",
-         .doc =
-             "Pieces smaller than this fraction of a hexagon, of a mean Voronoi cell or triangle, or of the body "
-             "where that is "
-             "smaller, are merged with a neighbour; those that would lock a fracture which comes out at a free side (one of no "
-             "boundary) are taken off. Between fractures a net of triangles also merges what is narrower "
-             "than 0.05 of its smallest side, whatever this is."},
+         .doc = "Pieces smaller than this fraction of a hexagon, of a mean Voronoi cell or triangle, or of the body "
+                "where that is "
+                "smaller, are merged with a neighbour; those that would lock a fracture which comes out at a free side "
+                "(one of no "
+                "boundary) are taken off. Between fractures a net of triangles also merges what is narrower "
+                "than 0.05 of its smallest side, whatever this is."},
         {.path = "geometry.material",
          .type = KeyType::text,
          .fallback_note = "the only material",
@@ -791,7 +791,9 @@ std::vector<KeyRule> loading_rules() {
          .type = KeyType::mapping,
          .doc = "Seeks the factor of safety. Loads stay; tan(phi) and cohesion of fractures, and of the strength of "
                 "potential cracks, are divided by a factor that grows over the steps of the stage. Where a step finds "
-                "no equilibrium, or one to which a block has moved by more than a hundredth of its size, the factor "
+                "no equilibrium, or one to which a block has moved at once by more than a hundredth of its size or by "
+                "more than five times as far as "
+                "all before, the factor "
                 "between the last one that stands and the first one that does not is found "
                 "by halving, and the run ends (`collapsed`, exit 0) with `factor_of_safety` in summary.json: null, "
                 "with a warning, if the body stands at `to`; a stage after it has the full strengths again. Tensile "

@@ -11,6 +11,7 @@
 #include "kluft/core/units.hpp"
 #include "kluft/kinematics/affine.hpp"
 #include "kluft/kinematics/rigid.hpp"
+#include "kluft/simulation/over_damped_motion.hpp"
 
 namespace kluft {
 
@@ -89,6 +90,23 @@ std::string description_of_fall(const Model& model, const Eigen::VectorXd& befor
     return fmt::format("block {} at {} has turned by {:.3g} degrees and moved by {:.3g} m{}",
                        block_label(system, most.block), place_text(system.origin + system.blocks[most.block].centroid),
                        most.turn * degrees, most.motion, beside);
+}
+
+std::string description_of_small_jump(const Model& model, const Eigen::VectorXd& before, const State& state) {
+    if (state.jumps == 0 || !description_of_fall(model, before, state).empty()) return {};
+    const BlockSystem& system = model.system;
+    const Eigen::VectorXd moved = state.body.displacement - before;
+    int farthest = -1;
+    double most = jump_motion;
+    for (int b = 0; b < system.n_blocks(); ++b) {
+        const double share = moved.segment<2>(n_block_unknowns * b).norm() / motion_scale(system, system.blocks[b]);
+        if (share <= most) continue;
+        most = share;
+        farthest = b;
+    }
+    if (farthest < 0) return {};
+    return fmt::format("block {} has moved by {:.3g} m in all", block_label(system, farthest),
+                       moved.segment<2>(n_block_unknowns * farthest).norm());
 }
 
 } // namespace kluft

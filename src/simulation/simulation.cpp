@@ -81,12 +81,27 @@ std::vector<std::string> causes_of(const StepBench& bench, const State& state, c
     return likely_causes(bench.model, at, end.failure ? end.failure->moving : state.imbalance.moving);
 }
 
+/// Blocks that give way by little may hold each other where they come to rest, as a row of columns does that topples. A reduction of strengths says
+/// so itself.
+void warn_of_small_jump(const StepBench& bench, const State& state) {
+    const std::vector<Stage>& stages = bench.model.loads.stages;
+    const int next = state.at.stage + 1;
+    if (next < static_cast<int>(stages.size()) && stages[next].strength_reduction) return;
+    const std::string jump = description_of_small_jump(bench.model, state.stage_start.displacement, state);
+    if (jump.empty()) return;
+    bench.journal.report().warnings.push_back(
+        fmt::format("under the loads of stage {} the body has jumped (jumps.csv), and {}: it gave way as it was cut, "
+                    "and stands where it has come to. A "
+                    "stage of `strength_reduction` with `from` well below 1 finds the strength of the body as cut",
+                    state.at.stage, jump));
+}
+
 /// A body that has given way under given loads, and stands elsewhere, is balanced like any other.
 void warn_of_fall(const StepBench& bench, const State& state) {
     const Stage& stage = bench.stage(state);
     if (stage.motion || stage.strength_reduction) return;
     const std::string fall = description_of_fall(bench.model, state.stage_start.displacement, state);
-    if (fall.empty()) return;
+    if (fall.empty()) return warn_of_small_jump(bench, state);
     bench.journal.report().warnings.push_back(fmt::format(
         "the body gave way under the loads of stage {} and came to rest elsewhere (a jump): {}. What is found of "
         "it then is not the strength of the body as cut",

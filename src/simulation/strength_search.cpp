@@ -25,6 +25,10 @@ constexpr double reduction_balance = 0.1;   ///< of the tolerance of a factor of
 constexpr double reduction_residual = 0.01; ///< of it: largest `tolerance`
 constexpr double less_strength = 1.002; ///< growth of the factor with which a body that does not slide stands as well
 constexpr double share_of_jump = 0.05;  ///< between factors within the tolerance: what goes farther slides
+constexpr double no_deformation =
+    20.0;                           ///< times what loads have displaced: more than joints give way before they slide
+constexpr double least_snap = 5e-5; ///< that it is asked of, of a block
+constexpr double sudden = 5.0;      ///< times the motion before: what goes farther at once may have snapped over
 
 StepGoal goal_with_strengths_of(const StepBench& bench, const State& state, double load_factor) {
     const double tolerance = bench.stage(state).strength_reduction->tolerance;
@@ -154,6 +158,14 @@ struct TrialGoal {
     StepKind kind;
 };
 
+/// How far a body may move from one factor to the next before it is asked whether it has given way on the way: (32b), or some times as
+/// far as it has moved so far, under its loads and since strengths are reduced. Stiff blocks that topple snap over by much less than
+/// (32b), and hold each other again by their lower corners.
+double farthest_at_once(const Model& model, const State& state, double displaced_by_loads) {
+    const double since = relative_motion(model.system, state.body.displacement - state.stage_start.displacement);
+    return std::clamp(sudden * (displaced_by_loads + since), least_snap, jump_motion);
+}
+
 /// What a body moves by that still stands where it did: (32b), or as far as the loads have displaced it.
 double near_by(double displaced_by_loads) { return std::max(jump_motion, displaced_by_loads); }
 
@@ -237,16 +249,14 @@ void warn_of_earlier_jump(const StepBench& bench, const State& state) {
     const auto first = stages.begin();
     if (state.at.load_factor > 0.0 || state.jumps == 0) return;
     if (std::any_of(first, first + state.at.stage, prescribes_strain)) return;
-    if (!description_of_fall(bench.model, Eigen::VectorXd::Zero(state.body.displacement.size()), state).empty()) return;
-    const BlockSystem& system = bench.model.system;
-    const auto moved = moved_blocks(system, state.body.displacement, jump_motion);
-    if (moved.empty()) return;
-    const int block = moved.front().block;
-    bench.journal.report().warnings.push_back(fmt::format(
-        "under its loads, before strengths are reduced, the body has jumped (jumps.csv), and block {} has moved by "
-        "{:.3g} m in "
-        "all: the factor of safety is that of the place where it has come to rest, and not of the body as cut",
-        block_label(system, block), state.body.displacement.segment<2>(n_block_unknowns * block).norm()));
+    const std::string jump =
+        description_of_small_jump(bench.model, Eigen::VectorXd::Zero(state.body.displacement.size()), state);
+    if (jump.empty()) return;
+    bench.journal.report().warnings.push_back(
+        fmt::format("under its loads, before strengths are reduced, the body has jumped (jumps.csv), and {}: the "
+                    "factor of safety is "
+                    "that of the place where it has come to rest, and not of the body as cut",
+                    jump));
 }
 
 /// What lies against a factor that is found: it may be that of a body which has moved into another place, as cut it has a lower
@@ -255,7 +265,8 @@ class Doubts {
 public:
     Doubts(const Model& model, const State& start, double displaced_by_loads)
         : model_(model), start_(start.stage_start.displacement), corners_(corner_contacts(model, start)),
-          far_(near_by(displaced_by_loads)) {}
+          displaced_by_loads_(displaced_by_loads),
+          far_(std::max(displaced_by_loads, std::min(jump_motion, no_deformation * displaced_by_loads))) {}
 
     /// `row`: of the state.
     void look_at(const State& state, const StepRecord& row, double factor) {
@@ -286,7 +297,7 @@ private:
         return corner ? description(model_, *corner) : "";
     }
 
-    /// More than (32b) in all, and more than the loads have displaced them.
+    /// More than (32b) in all, or many times as far as the loads have displaced them.
     [[nodiscard]] std::string of_motion(const State& state) const {
         const BlockSystem& system = model_.system;
         const Eigen::VectorXd moved = state.body.displacement - start_;
@@ -294,13 +305,17 @@ private:
         const auto blocks = moved_blocks(system, moved, far_);
         if (blocks.empty()) return "blocks have turned since strengths are reduced";
         const int block = blocks.front().block;
-        return fmt::format("block {} has moved by {:.3g} m since strengths are reduced", block_label(system, block),
-                           moved.segment<2>(n_block_unknowns * block).norm());
+        return fmt::format(
+            "block {} has moved by {:.3g} m since strengths are reduced, {:.0f} times as far as the loads have "
+            "displaced any before",
+            block_label(system, block), moved.segment<2>(n_block_unknowns * block).norm(),
+            relative_motion(system, moved) / std::max(displaced_by_loads_, 1e-300));
     }
 
     const Model& model_;
     Eigen::VectorXd start_;
     std::vector<CornerContact> corners_;
+    double displaced_by_loads_ = 0.0;
     double far_ = 0.0;
     std::string said_;
     double without_ = 0.0;
@@ -354,8 +369,9 @@ StageEnd find_strength_limit(const StepBench& bench, State& state) {
         if (is_enclosed && (tried_from == none || tried_from == from)) break;
         const double at = is_enclosed ? failing : std::min({next, from + size, middle});
         const bool last = at == next && state.at.step_in_stage + 1 == n_steps;
+        const double at_once = farthest_at_once(bench.model, state, displaced);
         const TrialGoal goal{.load_factor = at,
-                             .farthest = is_enclosed ? share_of_jump * jump_motion : jump_motion,
+                             .farthest = is_enclosed ? std::min(share_of_jump * jump_motion, at_once) : at_once,
                              .displaced_by_loads = displaced,
                              .kind = {.regular = at == next, .last_of_stage = last}};
         const Trial trial = try_factor(bench, goal, state, before);

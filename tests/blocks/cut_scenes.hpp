@@ -67,10 +67,10 @@ inline std::string faults(const GeometrySpec& spec, const CutBody& body) {
     expected.domain_area = domain_area(spec);
     for (const auto& piece : body.report.taken_off) expected.domain_area -= piece.area;
     const bool triangles = spec.tessellation && spec.tessellation->triangles; // which have no smallest area
-    expected.minimum_area =
-        body.system.n_blocks() > 1 && !triangles
-            ? minimum_area_share(spec) * std::min(hexagon_area(lattice_spacing(spec)), std::abs(signed_area(spec.domain)))
-            : 0.0;
+    expected.minimum_area = body.system.n_blocks() > 1 && !triangles
+                                ? minimum_area_share(spec) *
+                                      std::min(hexagon_area(lattice_spacing(spec)), std::abs(signed_area(spec.domain)))
+                                : 0.0;
     std::string text;
     for (const std::string& sentence : check_block_system(body.system, expected)) text += sentence + '\n';
     const auto expect_corners = [&](const Polygon& polygon) {

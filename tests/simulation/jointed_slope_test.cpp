@@ -243,23 +243,28 @@ TEST(SlowJointedSlope, APieceAtTheFaceBetweenTwoJointsDoesNotHoldTheWedgeBehindI
         const auto trace = [](const Vec2& a, const Vec2& b) {
             return fmt::format("{{trace: [[{}, {}], [{}, {}]], interface: j}}", a.x(), a.y(), b.x(), b.y());
         };
-        for (const std::string& net :
-             {std::string(), std::string("  reference_spacing: 3\n"), std::string("  minimum_area: 0.05\n  reference_spacing: 3\n"),
-              std::string("  tessellation: {triangles: {spacing: 1.5}, interface: bond}\n")}) {
-            const SceneRun run = run_scene(
-                "kluft: 1\nanalysis: {gravity: 9.81}\n"
-                "materials: {rock: {density: 2500, youngs_modulus: 20 GPa, poissons_ratio: 0.2, cohesion: 5 MPa, friction_angle: 45, tensile_strength: 2 MPa}}\n"
-                "interfaces:\n"
-                "  j: {kind: fracture, friction_angle: 35, cohesion: 0, normal_stiffness: 10 GPa/m, shear_stiffness: 5 GPa/m}\n" +
-                std::string(net.find("bond") == std::string::npos
-                                ? ""
-                                : "  bond: {kind: potential_crack, normal_stiffness: 100 GPa/m, shear_stiffness: 50 GPa/m, fails_to: j}\n") +
-                "geometry:\n  domain: {polygon: [[0, 0], [20, 0], [20, 15], [10, 15], [5, 5], [0, 5]]}\n" + net +
-                "  fractures: [" + trace(outlet - along, outlet + 20.0 * along) + ", " +
-                trace(crossing - 2.0 * joint, crossing + 2.0 * joint) +
-                "]\n"
-                "boundaries: {base: {sides: [0], support: fixed}, back: {sides: [1], support: smooth}, front: {sides: [5], support: smooth}}\n"
-                "stages: [{name: weight, steps: 2}, {name: reduction, strength_reduction: {from: 1, to: 4}, steps: 12}]\n");
+        for (const std::string& net : {std::string(), std::string("  reference_spacing: 3\n"),
+                                       std::string("  minimum_area: 0.05\n  reference_spacing: 3\n"),
+                                       std::string("  tessellation: {triangles: {spacing: 1.5}, interface: bond}\n")}) {
+            const SceneRun run =
+                run_scene("kluft: 1\nanalysis: {gravity: 9.81}\n"
+                          "materials: {rock: {density: 2500, youngs_modulus: 20 GPa, poissons_ratio: 0.2, cohesion: 5 "
+                          "MPa, friction_angle: 45, tensile_strength: 2 MPa}}\n"
+                          "interfaces:\n"
+                          "  j: {kind: fracture, friction_angle: 35, cohesion: 0, normal_stiffness: 10 GPa/m, "
+                          "shear_stiffness: 5 GPa/m}\n" +
+                          std::string(net.find("bond") == std::string::npos
+                                          ? ""
+                                          : "  bond: {kind: potential_crack, normal_stiffness: 100 GPa/m, "
+                                            "shear_stiffness: 50 GPa/m, fails_to: j}\n") +
+                          "geometry:\n  domain: {polygon: [[0, 0], [20, 0], [20, 15], [10, 15], [5, 5], [0, 5]]}\n" +
+                          net + "  fractures: [" + trace(outlet - along, outlet + 20.0 * along) + ", " +
+                          trace(crossing - 2.0 * joint, crossing + 2.0 * joint) +
+                          "]\n"
+                          "boundaries: {base: {sides: [0], support: fixed}, back: {sides: [1], support: smooth}, "
+                          "front: {sides: [5], support: smooth}}\n"
+                          "stages: [{name: weight, steps: 2}, {name: reduction, strength_reduction: {from: 1, to: 4}, "
+                          "steps: 12}]\n");
             ASSERT_TRUE(run.report.results.factor_of_safety.has_value()) << behind << net;
             const double expected = std::tan(35.0 * std::numbers::pi / 180.0) / std::tan(dip);
             EXPECT_NEAR(*run.report.results.factor_of_safety, expected, 5e-3 * expected) << behind << net;

@@ -62,10 +62,10 @@ struct CutReport {
         double length = 0.0;    ///< of that piece (m)
         bool daylights = false; ///< that piece ends at the outline
     };
-    std::vector<Merged> merged; ///< pieces below the minimum area that went into a neighbour
+    std::vector<Merged> merged;    ///< pieces below the minimum area that went into a neighbour
     std::vector<Merged> taken_off; ///< pieces below it that were taken off a free surface; `length` is the outline's
-    int collapsed_edges = 0;    ///< short edges collapsed to a point
-    int joined_ends = 0;        ///< ends of traces that were carried on to what they nearly met
+    int collapsed_edges = 0;       ///< short edges collapsed to a point
+    int joined_ends = 0;           ///< ends of traces that were carried on to what they nearly met
     std::vector<LoosePiece>
         pruned; ///< pieces of traces that separate nothing (dangling ends, isolated traces), the longest first
     std::vector<LostFracture> lost;

@@ -132,9 +132,9 @@ struct GeometrySpec {
     int material = 0;
     std::vector<MaterialRegion> regions;
     std::optional<double> minimum_area; ///< of the smallest block, see minimum_area_share
-    double reference_spacing = 0.0; ///< d where there is no tessellation (m); 0 = none given
-    std::vector<GivenBlock> blocks; ///< instead of domain, holes, fractures, tessellation and regions
-    int blocks_interface = 0;       ///< index into the scene's interface types: of the interfaces between them
+    double reference_spacing = 0.0;     ///< d where there is no tessellation (m); 0 = none given
+    std::vector<GivenBlock> blocks;     ///< instead of domain, holes, fractures, tessellation and regions
+    int blocks_interface = 0;           ///< index into the scene's interface types: of the interfaces between them
     std::vector<BlockSetSpec> sets;
     std::string crs{}; ///< coordinate system of the scene's coordinates, "EPSG:25832"; empty where it is not known
     GeometryPlaces places{};

@@ -18,7 +18,7 @@ struct MendLimits {
     double rounding = 0.0; ///< distance below which positions differ by rounding only (m)
     int first_fracture = 0;
     int tessellation = 0;
-    std::vector<char> is_free; ///< of each side of the outline, whether no boundary names it; none is where empty
+    std::vector<char> is_free;    ///< of each side of the outline, whether no boundary names it; none is where empty
     double loose_perimeter = 0.0; ///< of the largest piece that may be taken off a free side (m)
 };
 
@@ -31,7 +31,7 @@ struct MendReport {
         bool at_outline = false; ///< that piece ends at the outline
     };
     std::vector<Merged> merged;
-    std::vector<Merged> taken_off; ///< with the outline's piece; no source
+    std::vector<Merged> taken_off;    ///< with the outline's piece; no source
     std::map<int, double> cut_off;    ///< of fractures, by their source, the largest merged face that they cut off (m2)
     std::vector<SourceSegment> freed; ///< sides of merged faces that went with the side across which these were merged
     int collapsed_edges = 0;

@@ -16,4 +16,9 @@ namespace kluft {
 /// degrees and moved by 0.2 m beside block 3"; "" where none has, or the body has not jumped.
 [[nodiscard]] std::string description_of_fall(const Model& model, const Eigen::VectorXd& before, const State& state);
 
+/// In words the block that has moved farthest beside its size since `before`, in a body that has jumped by less than a fall: "block 5 has moved by 0.03 m
+/// in all"; "" where none has moved by more than jump_motion, the body has not jumped, or has fallen.
+[[nodiscard]] std::string description_of_small_jump(const Model& model, const Eigen::VectorXd& before,
+                                                    const State& state);
+
 } // namespace kluft
