@@ -19,6 +19,7 @@ namespace {
 constexpr double least_progress = 0.7; ///< of what is left over, from one solve to the next: else the block is moving
 constexpr double least_turn = 0.1; ///< moment over sqrt(area) and force: a block turns too, as one that topples does
 constexpr double much_more = 3.0;
+constexpr double most_roundoff = 0.01; ///< of the loads on a part and of its contact forces: with fewer digits nothing tells whether it stands
 constexpr double balanced_loads =
     1e-3; ///< resultant of the loads on a block over the sum of their magnitudes: less is none
 constexpr double touch_of_a_load = 0.1; ///< of (27c): less does not join a piece to what carries
@@ -110,6 +111,7 @@ Part part_of(const BlockBalance& balance, const Vec2& drift, std::span<const int
     centre /= area;
     double of_loads = 0.0;
     double of_contacts = 0.0;
+    double contacts = 0.0; // of all of its blocks
     for (const int b : blocks) {
         const Vec2 force = balance.left[b].head<2>() - balance.area[b] * drift;
         part.left.head<2>() += force;
@@ -117,11 +119,15 @@ Part part_of(const BlockBalance& balance, const Vec2& drift, std::span<const int
                         cross(balance.position[b] - centre, force) / std::sqrt(area);
         part.loaded = part.loaded || balance.forces.loaded[b];
         (balance.forces.loaded[b] ? of_loads : of_contacts) += balance.forces.own[b];
+        contacts += balance.forces.of_contacts[b];
         part.around = std::max(part.around, balance.forces.around[b]);
         part.roundoff += balance.forces.roundoff[b];
     }
     part.own = part.loaded ? of_loads : of_contacts;
-    if (part.loaded) part.around = part.own;
+    if (part.loaded) {
+        part.around = part.own;
+        part.roundoff = std::min(part.roundoff, most_roundoff * std::max(part.own, contacts));
+    }
     return part;
 }
 

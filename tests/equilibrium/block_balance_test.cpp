@@ -74,7 +74,7 @@ TEST(BlockBalance, OfABlockThatSlidesIsWhatFrictionCannotHold) {
 /// Two blocks side by side that touch nothing, or each other.
 BlockBalance two_blocks(double left_a, double left_b, double own, bool loaded, bool together) {
     BlockBalance balance;
-    balance.forces = {{own, own}, {own, own}, {0.0, 0.0}, {loaded, loaded}};
+    balance.forces = {{own, own}, {own, own}, {0.0, 0.0}, {loaded, loaded}, false, {}, {own, own}};
     balance.left = {Vec3(left_a, 0, 0), Vec3(left_b, 0, 0)};
     balance.position = {Vec2(0, 0), Vec2(0, 1)};
     balance.area = {1.0, 1.0};

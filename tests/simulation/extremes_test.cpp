@@ -279,5 +279,26 @@ geometry: {{domain: {{rectangle: {{width: 10, height: 10}}}}, tessellation: {{he
     EXPECT_THAT(pushed.report.diagnosis, HasSubstr("nothing holds the body"));
 }
 
+// On a plane of 26.6 degrees without friction nothing holds the block, whatever is lost of its weight beside its stiffness: 64 units of round-off of that
+// are more than the weight.
+TEST(Extremes, StiffnessInWhichTheWeightIsLostHoldsNoBlock) {
+    const std::string text = R"(kluft: 1
+analysis: {gravity: 9.81}
+materials: {rock: {density: 2500, youngs_modulus: 10 GPa, poissons_ratio: 0.2}}
+interfaces: {joint: {kind: fracture, normal_stiffness: 10 GPa/m, shear_stiffness: 5 GPa/m, friction_angle: 0}}
+geometry:
+  reference_spacing: 1
+  blocks:
+    - {name: base, polygon: [[0, -1], [4, -1], [4, 2], [0, 0]], support: fixed}
+    - {name: top, polygon: [[1, 0.5], [3, 1.5], [3, 3], [1, 2]]}
+stages: [{name: weight}]
+)";
+    using Overrides = std::vector<std::string>;
+    for (const Overrides& overrides : {Overrides{}, Overrides{"materials.rock.poissons_ratio=0.49999999999"},
+                                       Overrides{"interfaces.joint.normal_stiffness=1e18",
+                                                 "interfaces.joint.shear_stiffness=1e18", "analysis.gravity=1e-3"}})
+        EXPECT_NE(run_scene(text, overrides).report.status, RunStatus::done) << overrides.size();
+}
+
 } // namespace
 } // namespace kluft
