@@ -181,6 +181,7 @@ private:
 
     void take_step(double to) {
         begin_step();
+        if (has_moved_since_detection()) motion_.add_detection_energy(detect());
         const double from = static_cast<double>(state_.at.step_in_stage) / stage().steps;
         const bool steady = has_platen_velocity();
         const double duration = steady ? platen_time() : load_time();
@@ -386,6 +387,10 @@ private:
         work().body.platen_points = motion_.loads().platen_points;
         keep_histories(motion_.body(), work().body.displacement, work().body);
     }
+
+    /// Even by less than detection_motion, which is centimetres of large blocks: a corner that has gone from a face presses on
+    /// it until contacts are detected.
+    [[nodiscard]] bool has_moved_since_detection() const { return motion_.displacement() != detected_at_; }
 
     /// Contacts and frames of the work state. Returns the elastic energy that the springs lost by that (J/m).
     double detect() {

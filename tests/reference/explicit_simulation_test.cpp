@@ -316,6 +316,39 @@ stages:
     }
 }
 
+// Rock of two blocks of some 27 m at a crest, where a footing pushes the upper one down its plane: 20 mm are a thousandth of their size,
+// and a corner that has gone from the face below it would press as it lay, 50 times as much as there is.
+TEST(ExplicitSimulation, CornerOfALargeBlockThatHasGonePressesNoMore) {
+    const char* const crest = R"(
+kluft: 1
+analysis: {gravity: 9.81}
+materials: {rock: {density: 2600, youngs_modulus: 20 GPa, poissons_ratio: 0.25}}
+interfaces:
+  plane: {kind: fracture, normal_stiffness: 10 GPa/m, shear_stiffness: 5 GPa/m, friction_angle: 28, cohesion: 60 kPa}
+  release: {kind: fracture, normal_stiffness: 10 GPa/m, shear_stiffness: 5 GPa/m, friction_angle: 0}
+geometry:
+  domain: {polygon: [[0, 0], [60, 0], [60, 30], [36, 30], [32, 30], [30, 30], [20, 10], [0, 10]]}
+  fractures:
+    - {trace: [[20, 10], [45, 27.5]], interface: plane}
+    - {trace: [[40, 23.9], [40, 30.2]], interface: release}
+boundaries:
+  bottom: {sides: [0], support: fixed}
+  footing: {sides: [3]}
+stages:
+  - {name: weight}
+  - {name: load, displacement: {boundary: footing, value: 20 mm, against: none}, steps: 40}
+)";
+    const auto reference = run_scene(crest);
+    const auto run = run_scene(crest, {by_steps});
+    ASSERT_EQ(run.report.status, RunStatus::done) << run.report.diagnosis;
+    ASSERT_EQ(run.history.size(), reference.history.size());
+    for (std::size_t i = 2; i < run.history.size(); ++i)
+        EXPECT_NEAR(run.history[i].axial_stress, reference.history[i].axial_stress,
+                    0.02 * reference.history[i].axial_stress)
+            << i;
+    expect_closed_energy(run);
+}
+
 TEST(ExplicitSimulation, PlatenVelocityIsWhatTheSceneSays) {
     const std::string platen = "strain: {boundary: top, value: 1e-4}";
     const auto run_at = [&](const char* rate) {
