@@ -233,6 +233,24 @@ void warn_of_loose_balance(const SceneSection& root, const Scene& scene, Reading
                         100.0 * balance, scene_schema().find("solver.balance")->fallback));
 }
 
+/// The strength of a material is that of the potential cracks in it that have none of their own. Interfaces that are not in the body
+/// count: a file with all variants of a body says what each of them needs.
+void warn_of_idle_strengths(const SceneSection& root, const Scene& scene, ReadingContext& context) {
+    const auto is_crack = [](const InterfaceType& type) { return type.kind == InterfaceKind::potential_crack; };
+    const auto takes_from_rock = [&](const InterfaceType& type) { return is_crack(type) && !type.strength; };
+    if (std::ranges::any_of(scene.interface_types, takes_from_rock)) return;
+    const std::string why =
+        std::ranges::any_of(scene.interface_types, is_crack)
+            ? "each potential crack has a strength of its own"
+            : "no interface is a potential crack, so that the blocks never break and only joints fail; a "
+              "`geometry.tessellation` with an interface of kind potential_crack lets rock break";
+    const auto materials = root.sections("materials");
+    for (std::size_t m = 0; m < std::min(materials.size(), scene.materials.size()); ++m)
+        if (scene.materials[m].strength)
+            context.warn(materials[m], "cohesion",
+                         fmt::format("has no effect, nor have friction_angle and tensile_strength: {}", why));
+}
+
 /// What something else in the scene makes meaningless.
 void warn_of_keys_without_effect(const SceneSection& root, const Scene& scene, ReadingContext& context) {
     const auto warn = [&](const SceneSection& section, std::string_view key, std::string_view why) {
@@ -257,6 +275,7 @@ void warn_of_implausible_values(const SceneSection& root, const Scene& scene, Re
     for (std::size_t i = 0; i < std::min(interfaces.size(), scene.interface_types.size()); ++i)
         warn_of_joint(interfaces[i], scene.interface_types[i], context);
     warn_of_tensile_strengths(root, scene, context);
+    warn_of_idle_strengths(root, scene, context);
     warn_of_loads(root, scene, context);
     warn_of_one_sided_pressure(root, scene, context);
     warn_of_symmetric_reduction(root, scene, context);

@@ -72,7 +72,8 @@ TEST(ImplausibleValues, LostUnitsOfStrengthsAndLoadsAreTold) {
         testing::Contains(HasSubstr("materials.rock.cohesion: 40 Pa is next to nothing; is its unit missing, as in "
                                     "40 MPa?")));
     EXPECT_THAT(warnings_of_block_with({"materials.rock.cohesion=15 MPa", "materials.rock.friction_angle=45 deg",
-                                        "materials.rock.tensile_strength=6"}),
+                                        "materials.rock.tensile_strength=6", "interfaces.bond.kind=potential_crack",
+                                        "interfaces.bond.fails_to=joint"}),
                 ElementsAre(HasSubstr("materials.rock.tensile_strength: 6 Pa")));
     EXPECT_THAT(warnings_of_block_with({"interfaces.joint.friction_angle=0.61"}),
                 ElementsAre(HasSubstr("'0.61 rad'?")));
@@ -144,6 +145,27 @@ TEST(ImplausibleValues, TensileStrengthsThatDecideNothingOrAllAreTold) {
     EXPECT_THAT(warnings("1.1 MPa", "interface_traction"), IsEmpty());
     EXPECT_THAT(warnings("0", "principal_stress"),
                 ElementsAre(HasSubstr("0 Pa lets the net's bonds fail as soon as the body is loaded")));
+}
+
+// A slope without a net came out with a factor of safety "above 8" in place of 1.532.
+TEST(ImplausibleValues, StrengthsOfAMaterialThatNoPotentialCrackTakesAreTold) {
+    const auto warnings = [](std::vector<std::string> changes) {
+        changes.insert(changes.end(), {"materials.rock.cohesion=100 kPa", "materials.rock.friction_angle=40",
+                                       "materials.rock.tensile_strength=20 kPa"});
+        return warnings_of_block_with(changes);
+    };
+    EXPECT_THAT(warnings({}), ElementsAre(AllOf(HasSubstr("materials.rock.cohesion: has no effect, nor have "
+                                                          "friction_angle and tensile_strength: no interface is a "
+                                                          "potential crack"),
+                                                HasSubstr("`geometry.tessellation`"))));
+    EXPECT_THAT(warnings({"interfaces.bond={kind: potential_crack, fails_to: joint}",
+                          "geometry.tessellation={triangles: {spacing: 0.2}, interface: bond}"}),
+                IsEmpty());
+    EXPECT_THAT(warnings({"interfaces.bond={kind: potential_crack, fails_to: joint}"}), IsEmpty())
+        << "what all variants of a body have in common may be in one file";
+    EXPECT_THAT(warnings({"interfaces.bond={kind: potential_crack, fails_to: joint, cohesion: 1 MPa, friction_angle: "
+                          "30, tensile_strength: 1 MPa}"}),
+                ElementsAre(HasSubstr("tensile_strength: each potential crack has a strength of its own")));
 }
 
 TEST(PlatenThatGoesOut, IsWarnedOfWhereNothingPressesItsBoundary) {
