@@ -276,7 +276,7 @@ RunPage run_page(const fs::path& directory, const Scene& scene, const Model& mod
     const auto peak = step_of_peak(history, facts.platen_stage);
     const PackedStates states = pack_states(directory, system, peak, options);
     const auto peak_state = nearest_place(states.steps, peak);
-    const std::string title = scene.title.empty() ? scene.name : scene.title;
+    const std::string& title = heading_of(scene);
     const std::string run = fmt::format(
         R"({{"platen_stage":{},"sense":{},"peak_state":{},"rows":{},"fine":{},"histories":{},"states":{},"names":{}}})",
         facts.platen_stage ? std::to_string(*facts.platen_stage) : "null", facts.sense,

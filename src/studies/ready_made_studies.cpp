@@ -61,7 +61,6 @@ bool is_ready_made(const fs::path& file) { return read_file(file).starts_with(st
 std::string step_size_study(const fs::path& scene, const std::vector<std::string>& overrides) {
     const Scene read = read_scene(scene, overrides);
     const std::size_t stage = studied_stage(read);
-    const std::string title = read.title.empty() ? read.name : read.title;
     return fmt::format(
         R"(# How the results depend on the number of load steps.
 title: {}
@@ -70,7 +69,7 @@ vary:
   stages.{}.steps: [25, 50, 100, 200, 400, 800]
 quantities: [{}]
 )",
-        quoted("Load steps: " + title), quoted(fs::absolute(scene).lexically_normal().string()), stage,
+        quoted("Load steps: " + heading_of(read)), quoted(fs::absolute(scene).lexically_normal().string()), stage,
         quantities_of(read.loads.stages[stage]));
 }
 

@@ -68,7 +68,7 @@ RunWriterOptions run_writer_options(const Scene& scene, const Model& model) {
     options.pictures = scene.output.pictures;
     options.checkpoint_every = scene.output.checkpoint_every;
     options.checkpoint_seconds = scene.output.checkpoint_seconds;
-    options.title = scene.title.empty() ? scene.name : scene.title;
+    options.title = heading_of(scene);
     options.fingerprint = fingerprint(model);
     options.scene_text = scene.text;
     const int platen_stage = make_gauges(model).first_platen_stage;

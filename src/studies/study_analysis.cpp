@@ -659,7 +659,8 @@ std::string setting_words(const std::string& key, const std::string& setting) {
     if (setting == "null") return "without " + key;
     if (!is_step_count(key)) return key + " " + setting;
     const std::string stage = key.substr(std::string_view("stages.").size());
-    return fmt::format("{} steps of stage {}", setting, stage.substr(0, stage.find('.')));
+    return fmt::format("{} {} of stage {}", setting, setting == "1" ? "step" : "steps",
+                       stage.substr(0, stage.find('.')));
 }
 
 bool is_own_setting(const StudyTable& table, std::size_t parameter, const std::string& setting) {

@@ -324,7 +324,7 @@ std::string trade_study(const std::filesystem::path& path, const Scene& scene, c
     const TradeStudy study(scene, tree);
     std::string text =
         fmt::format("title: {}\nscene: {}\ncombine: product\nvariants:\n",
-                    quoted_line("Trade of accuracy against time: " + scene.title), quoted_line(path.string()));
+                    quoted_line("Trade of accuracy against time: " + heading_of(scene)), quoted_line(path.string()));
     for (const Variant& variant : study.variants()) {
         text += fmt::format("  - name: {}\n    vary:\n", variant.name);
         for (const Variation& each : variant.vary)

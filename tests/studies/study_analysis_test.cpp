@@ -306,6 +306,13 @@ TEST(GroupLabel, NamesWhatIsUnusual) {
     EXPECT_EQ(advised_settings(table, groups, 0), "25 steps of stage 0, cracks.update event");
 }
 
+TEST(SettingWords, CountStepsAsOneSays) {
+    EXPECT_EQ(setting_words("stages.1.steps", "1"), "1 step of stage 1");
+    EXPECT_EQ(setting_words("stages.10.steps", "25"), "25 steps of stage 10");
+    EXPECT_EQ(setting_words("cracks.update", "all"), "cracks.update all");
+    EXPECT_EQ(setting_words("solver.accuracy", "null"), "without solver.accuracy");
+}
+
 TEST(GroupLabel, NamesParametersByAsMuchOfTheirPathAsTellsThemApart) {
     StudyTable table = made_table({"a.hexagons.spacing", "a.voronoi.spacing"}, std::nullopt);
     table.cases = {done_case({"0.1", ""}, 1.0, 0.0, 1.0), done_case({"null", "0.1"}, 1.0, 0.0, 1.0)};

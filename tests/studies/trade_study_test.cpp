@@ -163,5 +163,11 @@ TEST(TradeStudy, IsYamlWhateverTheTitleHolds) {
     EXPECT_EQ(study_of(scene)["title"].as<std::string>(), "Trade of accuracy against time: " + scene.title);
 }
 
+TEST(TradeStudy, OfASceneWithoutATitleHasItsName) {
+    Scene scene = triaxial_scene("case-3-all");
+    scene.title.clear();
+    EXPECT_EQ(study_of(scene)["title"].as<std::string>(), "Trade of accuracy against time: case-3-all");
+}
+
 } // namespace
 } // namespace kluft

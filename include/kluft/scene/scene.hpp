@@ -47,4 +47,9 @@ struct Scene {
     std::string text; ///< YAML with all overrides and extended scenes in it; reading it gives the same scene
 };
 
+/// What a heading calls the scene: its title, its name where it has none.
+[[nodiscard]] inline const std::string& heading_of(const Scene& scene) {
+    return scene.title.empty() ? scene.name : scene.title;
+}
+
 } // namespace kluft
