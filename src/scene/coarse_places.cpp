@@ -6,14 +6,17 @@
 #include <iterator>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "kluft/blocks/block_search.hpp"
 #include "kluft/core/place_text.hpp"
 #include "kluft/geometry/polygon.hpp"
+#include "kluft/geometry/predicates.hpp"
 #include "kluft/scene/body_lines.hpp"
 
 namespace kluft {
@@ -58,6 +61,53 @@ std::vector<std::string> coarse_openings(const GeometrySpec& geometry) {
             geometry.places.domain, k, spacing, spacing / radius));
     }
     return warnings;
+}
+
+/// Whether a point of the body's outline lies on that hole, `off` of the sides at most.
+bool is_on_hole(const Polygon& hole, const Box& box, const Vec2& p, double off) {
+    if ((p.array() < box.lower.array() - off).any() || (p.array() > box.upper.array() + off).any()) return false;
+    for (std::size_t i = 0; i < hole.size(); ++i)
+        if (distance_to_segment(p, hole[i], hole[(i + 1) % hole.size()]) <= off) return true;
+    return false;
+}
+
+/// Of the hole's edge that each block has (m).
+std::vector<double> lengths_on_hole(const Polygon& hole, const BlockSystem& system, double resolution) {
+    const Box box = bounding_box(hole);
+    const double off = resolution + rounding * (box.upper - box.lower).norm();
+    std::vector<double> lengths;
+    for (const Block& block : system.blocks) {
+        double length = 0.0;
+        for (const Edge& edge : block.edges) {
+            if (edge.interface >= 0) continue;
+            const Vec2 start = edge_start(system, edge), end = edge_end(system, edge);
+            if (is_on_hole(hole, box, system.origin + 0.5 * (start + end), off)) length += (end - start).norm();
+        }
+        lengths.push_back(length);
+    }
+    return lengths;
+}
+
+struct LargestAtHole {
+    int block =
+        -1; ///< that has the most of the hole's edge among those with one strain for all that happens around it; -1: none
+    double share = 0.0; ///< of the hole's edge
+};
+
+LargestAtHole largest_at(const Polygon& hole, const BlockSystem& system, double resolution) {
+    constexpr double much_of_edge = 1.0 / 3.0;
+    constexpr double little_of_edge = 0.1; // of a block that is larger than the hole
+    const std::vector<double> lengths = lengths_on_hole(hole, system, resolution);
+    const double all = std::accumulate(lengths.begin(), lengths.end(), 0.0);
+    const double area = std::abs(signed_area(hole));
+    LargestAtHole largest;
+    for (int b = 0; b < system.n_blocks(); ++b) {
+        const Block& block = system.blocks[static_cast<std::size_t>(b)];
+        const double share = all > 0.0 ? lengths[static_cast<std::size_t>(b)] / all : 0.0;
+        const bool is_large = share > much_of_edge || (share > little_of_edge && block.area > area);
+        if (is_large && !block.fixed && share > largest.share) largest = {b, share};
+    }
+    return largest;
 }
 
 bool is_in_net(const Vec2& p, const GeometrySpec& geometry) {
@@ -128,6 +178,29 @@ std::vector<std::string> coarse_places(const GeometrySpec& geometry, const CutRe
     if (!geometry.tessellation) return {};
     std::vector<std::string> warnings = coarse_openings(geometry);
     std::ranges::move(coarse_bridges(geometry, report, types), std::back_inserter(warnings));
+    return warnings;
+}
+
+std::vector<std::string> openings_in_large_blocks(const GeometrySpec& geometry, const BlockSystem& system,
+                                                  double resolution, Kinematics kinematics) {
+    std::vector<std::string> warnings;
+    if (geometry.tessellation || kinematics == Kinematics::rigid) return warnings;
+    for (std::size_t k = 0; k < geometry.holes.size(); ++k) {
+        const auto [block, share] = largest_at(geometry.holes[k], system, resolution);
+        if (block < 0) continue;
+        if (warnings.size() == most_holes_told) {
+            warnings.push_back(fmt::format("{}: and more holes like this", geometry.places.domain));
+            break;
+        }
+        const double times =
+            system.blocks[static_cast<std::size_t>(block)].area / std::abs(signed_area(geometry.holes[k]));
+        warnings.push_back(fmt::format(
+            "{}: block {} has {:.0f} % of the edge of hole {} and {:.2g} times its area: a block has one uniform "
+            "strain, so that neither the stress around the opening nor its closure is resolved (a tunnel of 4 m in a "
+            "block of 30 m closed by 0.02 mm in place of 2.4 mm); a net of triangles "
+            "(`geometry.tessellation.triangles`, with grading.openings) resolves both",
+            geometry.places.domain, block_label(system, block), 100.0 * share, k, times));
+    }
     return warnings;
 }
 

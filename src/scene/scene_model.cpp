@@ -482,7 +482,8 @@ SceneModel build_scene_model(const Scene& scene) {
           bare_net(scene.geometry, built.model.system), empty_regions(scene.geometry, built.model.system),
           ragged_regions(scene.geometry, built.model.system), scattered_sides(scene),
           open_joints(scene.geometry, built.model.system, built.cut), warnings_of_cut_net(scene, built.model.system),
-          coarse_places(scene.geometry, built.cut, scene.interface_types)})
+          coarse_places(scene.geometry, built.cut, scene.interface_types),
+          openings_in_large_blocks(scene.geometry, built.model.system, built.cut.resolution, scene.kinematics)})
         built.model.warnings.insert(built.model.warnings.end(), warnings.begin(), warnings.end());
     require_memory();
     return built;

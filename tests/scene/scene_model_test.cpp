@@ -338,6 +338,32 @@ TEST(SceneModel, WarnsOfANetThatIsCoarseBesideAnOpening) {
                 IsEmpty());
 }
 
+// The square again, of 0.16 m2, in blocks of 0.84 m2 (the upper half of the body), of a quarter of that, and of 0.04 m2 at most.
+TEST(SceneModel, WarnsOfAnOpeningInBlocksThatAreLargerThanIt) {
+    const auto warnings = [](const std::string& fractures, const std::string& kinematics = "affine") {
+        Scene scene = read_scene_text(body_of_triangles,
+                                      {"geometry.tessellation=null", "analysis.kinematics=" + kinematics,
+                                       "geometry.fractures=[" + fractures + "]"},
+                                      "scene.yaml");
+        scene.geometry.holes = {{{0.3, 1.3}, {0.7, 1.3}, {0.7, 1.7}, {0.3, 1.7}}};
+        return build_scene_model(scene).model.warnings;
+    };
+    const auto joint = [](const std::string& trace) { return "{trace: " + trace + ", interface: joint}"; };
+    const std::string below = joint("[[0, 1], [1, 1]]");
+    EXPECT_THAT(warnings(below),
+                ElementsAre(AllOf(HasSubstr("scene.yaml:8:"), HasSubstr("geometry.domain: block "),
+                                  HasSubstr("has 100 % of the edge of hole 0 and 5.3 times its area"))));
+    EXPECT_THAT(warnings(below, "rigid"), IsEmpty()) << "rigid blocks have no strain";
+    const std::string cross = joint("[[0, 1.5], [1, 1.5]]") + ", " + joint("[[0.5, 1], [0.5, 2]]");
+    EXPECT_THAT(warnings(below + ", " + cross),
+                ElementsAre(HasSubstr("has 25 % of the edge of hole 0 and 1.3 times its area")));
+    std::string many = below;
+    for (const std::string at : {"0.2", "0.4", "0.6", "0.8"})
+        many += ", " + joint("[[" + at + ", 1], [" + at + ", 2]]") + ", " +
+                joint("[[0, 1" + at.substr(1) + "], [1, 1" + at.substr(1) + "]]");
+    EXPECT_THAT(warnings(many), IsEmpty());
+}
+
 TEST(SceneModel, WarnsOfDetailsThatAreFinerThanTheNet) {
     EXPECT_THAT(warnings_of({"geometry.domain.polygon=[[0, 0], [0.5, 0], [0.502, 0], [1, 0], [1, 2], [0, 2]]"}),
                 ElementsAre(AllOf(HasSubstr("scene.yaml:8:"),

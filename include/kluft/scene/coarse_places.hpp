@@ -1,4 +1,4 @@
-// Places where the stress of the rock changes within a block of the net, so that cracks come late there.
+// Places where the stress of the rock changes within a block: cracks of a net come late there, and an opening without one hardly closes.
 #pragma once
 
 #include <string>
@@ -6,6 +6,7 @@
 
 #include "kluft/blocks/block_cutter.hpp"
 #include "kluft/constitutive/material.hpp"
+#include "kluft/kinematics/rigid.hpp"
 
 namespace kluft {
 
@@ -15,5 +16,11 @@ namespace kluft {
 /// None without a net. Of `types` the kind counts. Source of the limits: docs/accuracy.md, "Where stress concentrates".
 [[nodiscard]] std::vector<std::string> coarse_places(const GeometrySpec& geometry, const CutReport& report,
                                                      const std::vector<InterfaceType>& types);
+
+/// Warnings, for users, of a body without a net: holes that a block has more than a third of the edge of, or a tenth of it and more area
+/// than the hole. Its one strain is that of the rock far off, too. None of rigid blocks, which have no strain and say nothing of
+/// stresses within them. `resolution`: of the cut (m).
+[[nodiscard]] std::vector<std::string> openings_in_large_blocks(const GeometrySpec& geometry, const BlockSystem& system,
+                                                                double resolution, Kinematics kinematics);
 
 } // namespace kluft
