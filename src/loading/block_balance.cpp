@@ -19,7 +19,8 @@ namespace {
 constexpr double least_progress = 0.7; ///< of what is left over, from one solve to the next: else the block is moving
 constexpr double least_turn = 0.1; ///< moment over sqrt(area) and force: a block turns too, as one that topples does
 constexpr double much_more = 3.0;
-constexpr double most_roundoff = 0.01; ///< of the loads on a part and of its contact forces: with fewer digits nothing tells whether it stands
+constexpr double most_roundoff =
+    0.01; ///< of the loads on a part and of its contact forces: with fewer digits nothing tells whether it stands
 constexpr double balanced_loads =
     1e-3; ///< resultant of the loads on a block over the sum of their magnitudes: less is none
 constexpr double touch_of_a_load = 0.1; ///< of (27c): less does not join a piece to what carries

@@ -33,18 +33,27 @@ bool has_moved_far(const StepInProgress& p, const Eigen::VectorXd& since) {
 }
 
 /// Of contacts detected where the body stands: whether it is held but for a tenth of what acts on each block and group.
-BlockVerdict verdict_anew(const LoadedBody& body, const Eigen::VectorXd& q) {
-    return judge_blocks(block_balance(body, q), nullptr, {.share = large_imbalance});
+BlockVerdict verdict_anew(const LoadedBody& body, const Eigen::VectorXd& q, double share = large_imbalance) {
+    return judge_blocks(block_balance(body, q), nullptr, {.share = share});
 }
 
 /// Whether the next load step would begin where this one ends.
-bool is_held_anew(const StepInProgress& p) {
+bool is_held_anew(const StepInProgress& p, double share = large_imbalance) {
     const Model& model = p.bench.model;
     const BodyState& body = p.step.end.body;
     if (body.contacts.empty()) return true;
     const Placement placement = placed_anew(model, body, p.from.at.stage);
     const LoadsAt at = p.loads_at(p.load_factor());
-    return verdict_anew(loaded_body(model, placement, at), body.displacement).balanced();
+    return verdict_anew(loaded_body(model, placement, at), body.displacement, share).balanced();
+}
+
+/// Whether a tip has sunk into the ground before it that holds it no more, by contacts detected anew, under a platen: what a large load step carries it past
+/// would be strength of the body.
+bool has_passed_ground(const StepInProgress& p) {
+    const Model& model = p.bench.model;
+    if (!has_gravity(model)) return false;
+    return !detected_contacts(model, p.step.end.body, false).unheld_tips.empty() &&
+           !is_held_anew(p, p.goal.balance.share);
 }
 
 /// Whether the body stands though contacts detected anew do not hold it: two sets of them take turns, each detected where the other one has
@@ -92,19 +101,22 @@ Equilibrium find_again(StepInProgress& p) {
 }
 
 void let_contacts_follow(StepInProgress& p, Eigen::VectorXd placed_at) {
-    if (!p.goal.must_rest && !is_loaded_by_stress(p.bench.stage(p.from))) return;
+    const bool given = p.goal.must_rest || is_loaded_by_stress(p.bench.stage(p.from));
     bool stands = !p.goal.must_rest; // else contacts detected anew tell, however little has moved
     const auto goes_on = [&] {
         if (p.failed() || !p.step.balanced) return false;
+        if (!given) return has_passed_ground(p);
         return !stands || has_moved_far(p, placed_at) || (!p.goal.must_rest && !is_held_anew(p));
     };
     const Eigen::VectorXd began = p.displacement();
     for (int round = 0; goes_on(); ++round) {
         stands = true;
         const Eigen::VectorXd before = std::exchange(placed_at, p.displacement());
+        if (!given) p.step.equilibria.pop_back(); // what held it there holds it no more
         const Equilibrium found = find_again(p);
         if (!p.goal.must_rest && stays_in_place(p, placed_at, before)) return;
         if (p.failed() || round < max_rounds_of_detection) continue;
+        if (!given) return;
         if (!has_moved_far(p, placed_at) && !has_moved_far(p, began)) return;
         fail_by_moving_on(p, found, p.displacement() - placed_at);
     }
