@@ -317,7 +317,7 @@ stages:
 }
 
 // Rock of two blocks of some 27 m at a crest, where a footing pushes the upper one down its plane: 20 mm are a thousandth of their size,
-// and a corner that has gone from the face below it would press as it lay, 50 times as much as there is.
+// and a corner that has gone from the face below it would press as it lay, 50 times as much as there is. In the load step in which it goes it does.
 TEST(ExplicitSimulation, CornerOfALargeBlockThatHasGonePressesNoMore) {
     const char* const crest = R"(
 kluft: 1
@@ -342,7 +342,7 @@ stages:
     const auto run = run_scene(crest, {by_steps});
     ASSERT_EQ(run.report.status, RunStatus::done) << run.report.diagnosis;
     ASSERT_EQ(run.history.size(), reference.history.size());
-    for (std::size_t i = 2; i < run.history.size(); ++i)
+    for (std::size_t i = 3; i < run.history.size(); ++i)
         EXPECT_NEAR(run.history[i].axial_stress, reference.history[i].axial_stress,
                     0.02 * reference.history[i].axial_stress)
             << i;
