@@ -293,6 +293,7 @@ std::string json_of(const SceneAccount& account, const Scene& scene, const Scene
               {"smallest_edge", account.smallest_edge},
               {"smallest_angle", account.smallest_angle * degrees},
               {"merged", Json::array()},
+              {"taken_off", Json::array()},
               {"boundaries", Json::array()},
               {"interface_types", Json::array()},
               {"stages", Json::array()},
@@ -300,6 +301,8 @@ std::string json_of(const SceneAccount& account, const Scene& scene, const Scene
               {"warnings", account.warnings}};
     for (const auto& sliver : built.cut.merged)
         json["merged"].push_back({{"area", sliver.area}, {"x", sliver.at.x()}, {"y", sliver.at.y()}});
+    for (const auto& piece : built.cut.taken_off)
+        json["taken_off"].push_back({{"area", piece.area}, {"x", piece.at.x()}, {"y", piece.at.y()}});
     const Model& model = built.model;
     for (std::size_t i = 0; i < model.system.boundaries.size(); ++i) {
         const BoundaryFrame frame = boundary_frame(model.system, static_cast<int>(i));

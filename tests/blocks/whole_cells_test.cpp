@@ -27,10 +27,11 @@ bool same_report(const CutReport& a, const CutReport& b) {
     const auto same_loss = [](const auto& p, const auto& q) {
         return p.fracture == q.fracture && p.cause == q.cause && p.other == q.other && p.length == q.length;
     };
-    return std::ranges::equal(a.merged, b.merged, same_piece) && std::ranges::equal(a.lost, b.lost, same_loss) &&
-           a.collapsed_edges == b.collapsed_edges && a.joined_ends == b.joined_ends &&
-           a.pruned.size() == b.pruned.size() && a.resolution == b.resolution && a.smallest_area == b.smallest_area &&
-           a.smallest_edge == b.smallest_edge && a.smallest_angle == b.smallest_angle;
+    return std::ranges::equal(a.merged, b.merged, same_piece) && a.taken_off.size() == b.taken_off.size() &&
+           std::ranges::equal(a.lost, b.lost, same_loss) && a.collapsed_edges == b.collapsed_edges &&
+           a.joined_ends == b.joined_ends && a.pruned.size() == b.pruned.size() && a.resolution == b.resolution &&
+           a.smallest_area == b.smallest_area && a.smallest_edge == b.smallest_edge &&
+           a.smallest_angle == b.smallest_angle;
 }
 
 bool same_boundaries(const BlockSystem& a, const BlockSystem& b) {

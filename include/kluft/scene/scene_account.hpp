@@ -33,7 +33,7 @@ struct SceneAccount {
 [[nodiscard]] std::string text_of(const SceneAccount& account);
 
 /// The account as an object of JSON: `scene`, `title`, `plane`, `kinematics`; `blocks`, `interfaces`, `unknowns`;
-/// `smallest_area` (m2), `smallest_edge` (m), `smallest_angle` (degrees); `merged` slivers (`area`, `x`, `y`); `boundaries` with
+/// `smallest_area` (m2), `smallest_edge` (m), `smallest_angle` (degrees); `merged` slivers and pieces `taken_off` a free surface (`area`, `x`, `y`); `boundaries` with
 /// `name`, `length` (m), mean outward `normal`, `lower` and `upper` corner of where they lie (m) and `support`; `interface_types` with
 /// `name`, `kind`, `count`, `normal_stiffness` and `shear_stiffness` (Pa/m); `stages` with `name` and `steps`; `memory_bytes` of a
 /// run, about; `warnings`.
