@@ -93,13 +93,12 @@ void warn(const std::vector<std::string>& warnings, RunLog& log, bool quiet) {
     }
 }
 
-/// What only the numbers of the run have shown to be worth a warning.
-std::vector<std::string> warnings_of_numbers(const RunSummary& summary, const RunReport& report) {
-    std::vector<std::string> warnings;
-    std::ranges::copy_if(summary.warnings, std::back_inserter(warnings), [&](const std::string& warning) {
-        return std::ranges::find(report.warnings, warning) == report.warnings.end();
-    });
-    return warnings;
+/// Those of the warnings that have not been told.
+std::vector<std::string> without(const std::vector<std::string>& told, const std::vector<std::string>& warnings) {
+    std::vector<std::string> rest;
+    std::ranges::copy_if(warnings, std::back_inserter(rest),
+                         [&](const std::string& warning) { return std::ranges::find(told, warning) == told.end(); });
+    return rest;
 }
 
 /// A report that cannot be written for want of disk or memory is an end like that of pictures.
@@ -125,7 +124,7 @@ ExitCode simulate(const SceneModel& built, const Scene& scene, State& state, Run
     RunReport report = run_stages(model, scene, state, observer, stop_requested);
     observer.clear();
     warn_of_contacts(model, state, observer.contacts(), report);
-    warn(report.warnings, log, quiet);
+    warn(without(earlier.warnings, report.warnings), log, quiet);
     if (!report.diagnosis.empty()) {
         log.error(report.diagnosis);
         tell("{}\n", report.diagnosis);
@@ -141,7 +140,7 @@ ExitCode simulate(const SceneModel& built, const Scene& scene, State& state, Run
         if (report.diagnosis == error.what()) return ExitCode::out_of_resources; // said already
         throw;
     }
-    warn(warnings_of_numbers(summary, report), log, quiet);
+    warn(without(report.warnings, summary.warnings), log, quiet); // what only its numbers have shown
     const std::string closing = closing_line(report, summary, directory);
     log.info(closing);
     const bool has_begun = report.status != RunStatus::out_of_resources || state.at.step > 0;

@@ -18,7 +18,7 @@ namespace kluft {
 
 namespace {
 
-constexpr int format_version = 15;
+constexpr int format_version = 16;
 constexpr std::string_view format_name = "kluft state";
 
 constexpr std::string_view seal = "\nkluft digest "; // before the digest of all that stands before the seal
@@ -225,6 +225,15 @@ struct Writer {
         write_array(file, name, numbers.data(), numbers.size());
     }
     void operator()(const char* name, const std::vector<int>& v) { write_array(file, name, v.data(), v.size()); }
+    /// One after the other, each with an end of text.
+    void operator()(const char* name, const std::vector<std::string>& v) {
+        std::vector<std::uint8_t> bytes;
+        for (const std::string& text : v) {
+            bytes.insert(bytes.end(), text.begin(), text.end());
+            bytes.push_back(0);
+        }
+        write_array(file, name, bytes.data(), bytes.size());
+    }
 };
 
 /// Fetches the members of a state one by one.
@@ -305,6 +314,16 @@ struct Reader {
         for (std::size_t i = 0; i < numbers.size(); i += 2) v.emplace_back(numbers[i], numbers[i + 1]);
     }
     void operator()(const char* name, std::vector<int>& v) { v = read_array<int>(file, name); }
+    void operator()(const char* name, std::vector<std::string>& v) {
+        v.clear();
+        const auto bytes = read_array<std::uint8_t>(file, name);
+        for (auto from = bytes.begin(); from != bytes.end();) {
+            const auto end = std::find(from, bytes.end(), 0);
+            if (end == bytes.end()) throw Hdf5Failure{name};
+            v.emplace_back(from, end);
+            from = end + 1;
+        }
+    }
 };
 
 void write_bytes(hid_t file, const char* name, const std::string& text) {

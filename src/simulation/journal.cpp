@@ -55,6 +55,18 @@ std::string remark_on_first_factor(const std::vector<Stage>& stages, int stage, 
         reduced - stages.begin(), reduced->strength_reduction->from);
 }
 
+/// A stage that a resumed run begins again finds what its state has noted already.
+std::vector<std::string> each_once(const std::vector<std::string>& texts) {
+    std::vector<std::string> once;
+    for (const std::string& text : texts)
+        if (std::ranges::find(once, text) == once.end()) once.push_back(text);
+    return once;
+}
+
+constexpr std::string_view contact_was_lost = ": a contact was lost, because ";
+
+bool tells_of_lost_contact(const std::string& warning) { return warning.find(contact_was_lost) != std::string::npos; }
+
 std::string listed(const std::vector<std::string>& causes) {
     std::string text;
     for (const std::string& cause : causes) text += "; " + cause;
@@ -67,6 +79,9 @@ Journal::Journal(const Model& model, const State& state, StepObserver& observer,
                  const EquilibriumSearch* search)
     : model_(model), observer_(observer), search_(search), gauges_(make_gauges(model)), n_steps_(n_steps) {
     report_.costs = state.costs;
+    report_.warnings = state.remarks.warnings;
+    largest_checked_ = state.remarks.largest_checked;
+    warned_of_lost_contact_ = std::ranges::any_of(report_.warnings, tells_of_lost_contact);
 }
 
 double Journal::elapsed() const {
@@ -97,7 +112,7 @@ void Journal::tell(const Step& step) {
 void Journal::warn(const Step& step, int number) {
     if (step.checked_index > largest_checked_.index) largest_checked_ = {step.checked_index, number};
     if (step.lost_contact.empty() || std::exchange(warned_of_lost_contact_, true)) return;
-    report_.warnings.push_back(fmt::format("load step {}: a contact was lost, because {}", number, step.lost_contact));
+    report_.warnings.push_back(fmt::format("load step {}{}{}", number, contact_was_lost, step.lost_contact));
 }
 
 void Journal::tell_state(const StepRecord& row, const State& state, LoadedPlacement in_place, bool last_of_stage) {
@@ -161,6 +176,7 @@ RunReport Journal::cut_short(RunStatus status, std::string why) const {
     report.status = status;
     report.diagnosis = std::move(why);
     report.costs = costs();
+    report.warnings = each_once(report.warnings);
     return report;
 }
 
@@ -177,8 +193,9 @@ void commit(Step step, StepKind kind, State& state, Journal& journal) {
     step.row.step = next.at.step;
     step.row.load_factor = next.at.load_factor;
     step.row.crack_passes = step.crack_passes;
+    journal.warn(step, next.at.step);
+    next.remarks = journal.remarks();
     state = std::move(next);
-    journal.warn(step, state.at.step);
     journal.tell(step);
     journal.tell_state(step.row, state, std::move(step.in_place), kind.last_of_stage);
 }

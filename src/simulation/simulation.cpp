@@ -149,6 +149,7 @@ void end_stage(const StepBench& bench, State& state) {
     const RunCosts costs = bench.journal.costs();
     leave_stage(bench.model, bench.loads, at.loads, state);
     state.costs = costs;
+    state.remarks = bench.journal.remarks();
 }
 
 } // namespace

@@ -120,7 +120,8 @@ EarlierRuns earlier_runs(const fs::path& directory) {
     } catch (const InputError&) {
         return {
             0.0,
-            {"the run before this one has left no summary that can be read: what it had to warn of may be in run.log"}};
+            {"the run before this one has left no summary that can be read: of bonds and corners that carry more "
+             "than they bear, and of platens that leave the body, only the load steps from its saved state on tell"}};
     }
 }
 

@@ -81,6 +81,7 @@ interfaces:
         }
         EXPECT_EQ(resumed.state.body.displacement, whole.state.body.displacement);
         EXPECT_EQ(resumed.report.status, whole.report.status);
+        EXPECT_EQ(resumed.report.warnings, whole.report.warnings) << "stopped after load step " << stopped.at.step;
     }
 }
 
@@ -122,7 +123,8 @@ INSTANTIATE_TEST_SUITE_P(
         RepeatableScene{"StrengthReduction", with_fracture, reduced, "solver: {repeatable: true}"},
         RepeatableScene{"PressureAfterAPlaten", with_fracture, unloaded_sides, "solver: {repeatable: true}"},
         RepeatableScene{"PlatenAfterAPlaten", triangles, other_platens, "solver: {repeatable: true}"},
-        RepeatableScene{"AllThatFail", triangles, pressed, "cracks: {update: all}\nsolver: {repeatable: true}"}),
+        RepeatableScene{"AllThatFail", triangles, pressed, "cracks: {update: all}\nsolver: {repeatable: true}"},
+        RepeatableScene{"LateChecks", triangles, pressed, "cracks: {every: 3}\nsolver: {repeatable: true}"}),
     [](const auto& scene) { return std::string(scene.param.name); });
 
 } // namespace

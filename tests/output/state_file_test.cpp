@@ -38,6 +38,7 @@ State state_of(int n_blocks) {
     state.unbalanced_in_succession = 2;
     state.imbalance = {1, 0.25, {{1, Vec2(0.6, -0.8), 0}, {0, Vec2::Zero(), -1}}};
     state.jumps = 3;
+    state.remarks = {{1.0 / 3.0, 9}, {"load step 9: a contact was lost", "", "\xc3\xa4"}};
     state.memory.rate = 3.0 * state.body.displacement;
     state.memory.near_pairs = {{0, 3}, {2, 1}};
     ContactPoint kept{.block_a = 3, .block_b = 2, .weight = 0.3, .along = 0.7, .law = 1, .interface = 4};
@@ -79,6 +80,7 @@ void expect_same(const State& a, const State& b) {
     EXPECT_EQ(a.unbalanced_in_succession, b.unbalanced_in_succession);
     EXPECT_EQ(a.imbalance, b.imbalance);
     EXPECT_EQ(a.jumps, b.jumps);
+    EXPECT_EQ(a.remarks, b.remarks);
     EXPECT_EQ(a.memory.rate, b.memory.rate);
     EXPECT_EQ(a.memory.near_pairs, b.memory.near_pairs);
     EXPECT_EQ(a.memory.steps_since_detection, b.memory.steps_since_detection);

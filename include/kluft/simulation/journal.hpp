@@ -69,12 +69,9 @@ public:
     void tell(const Step& step);
     /// Keeps the warning of a load step with this number, the first of a run, and the largest index that one has checked.
     void warn(const Step& step, int number);
-    /// The largest failure index of potential cracks at the first check of a load step, and the number of that step.
-    struct CheckedIndex {
-        double index = 0.0;
-        int step = 0;
-    };
     [[nodiscard]] const CheckedIndex& largest_checked() const { return largest_checked_; }
+    /// What a state saved now has to keep of what the run says at its end.
+    [[nodiscard]] Remarks remarks() const { return {largest_checked_, report_.warnings}; }
     /// Tells the row and the state of a committed load step.
     void tell_state(const StepRecord& row, const State& state, LoadedPlacement in_place, bool last_of_stage);
     /// Tells where a load step stands: at `load_factor` on its way from the state, `row` being the last equilibrium's.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -103,6 +104,22 @@ struct Imbalance {
     bool operator==(const Imbalance&) const = default;
 };
 
+/// The largest failure index of potential cracks at the first check of a load step, and the number of that step.
+struct CheckedIndex {
+    double index = 0.0;
+    int step = 0;
+
+    bool operator==(const CheckedIndex&) const = default;
+};
+
+/// What a run has to say at its end of the load steps so far.
+struct Remarks {
+    CheckedIndex largest_checked;
+    std::vector<std::string> warnings;
+
+    bool operator==(const Remarks&) const = default;
+};
+
 struct State {
     LoadPlace at;
     BodyState body;
@@ -115,6 +132,7 @@ struct State {
     int unbalanced_in_succession = 0; ///< load steps
     Imbalance imbalance;              ///< of the last load step: a run that ends with it ends the same when resumed
     int jumps = 0;                    ///< so far
+    Remarks remarks;                  ///< so far
     RunCosts costs;                   ///< so far
 };
 
@@ -161,6 +179,9 @@ template <class Members, class Visit> void visit_saved(Members& state, Visit&& v
     visit("imbalance", state.imbalance.share);
     visit("moving", state.imbalance.moving);
     visit("jumps", state.jumps);
+    visit("checked_index", state.remarks.largest_checked.index);
+    visit("checked_step", state.remarks.largest_checked.step);
+    visit("warnings", state.remarks.warnings);
     visit("elapsed_s", state.costs.elapsed_s);
     visit("loading_cpu_s", state.costs.loading_cpu_s);
     visit_counts(state.costs, visit);

@@ -37,7 +37,8 @@ struct EarlierRuns {
     std::vector<std::string> warnings;
 };
 
-/// From the summary of the last one, without the warnings of its scene; one that was killed has left none, which is a warning of its own.
+/// From the summary of the last one, without the warnings of its scene; one that was killed has left none, which is a warning of its own
+/// (its state has the warnings of its load steps, but not those of a ContactWatch).
 [[nodiscard]] EarlierRuns earlier_runs(const std::filesystem::path& directory);
 
 /// Runs the stages from `state` on with the integrator of the scene, as run_simulation and run_explicit do.
