@@ -19,6 +19,7 @@
 #include "kluft/reference/block_inertia.hpp"
 #include "kluft/reference/explicit_motion.hpp"
 #include "kluft/simulation/causes.hpp"
+#include "kluft/simulation/event_search.hpp"
 #include "kluft/simulation/journal.hpp"
 #include "kluft/simulation/measurements.hpp"
 #include "kluft/simulation/placement.hpp"
@@ -79,6 +80,7 @@ public:
                 state_.costs = journal_.costs();
             }
         });
+        warn_of_late_checks(report);
         report.motion = MotionReport{time_steps_, motion_.time_step(), worst_energy_error_};
         if (report.status == RunStatus::interrupted)
             report.diagnosis =
@@ -192,6 +194,7 @@ private:
         set_load(to);
         keep_state();
         if (failed()) return;
+        if (model_.has_potential_cracks) (void)candidates(); // however long the interval of the checks is
         const BlockVerdict verdict = rests ? look_.verdict : verdict_without_rest();
         step_.row = measure(verdict);
         if (!step_.row.balanced) step_.moving = moving_blocks(verdict);
@@ -407,10 +410,23 @@ private:
 
     // ---- cracks ----------------------------------------------------------------------------------------------
 
+    /// The step keeps the largest index of all its checks.
     [[nodiscard]] std::vector<CrackCandidate> candidates() {
         const Stopwatch watch(journal_.report().costs.seconds.crack_check);
         ++journal_.report().crack_checks;
-        return check_cracks(model_, cracks_.criterion, work(), 1.0, motion_.body(), motion_.displacement());
+        auto all = check_cracks(model_, cracks_.criterion, work(), 1.0, motion_.body(), motion_.displacement());
+        step_.checked_index = std::max(step_.checked_index, std::min(largest_useful_index, largest_index(all)));
+        return all;
+    }
+
+    void warn_of_late_checks(RunReport& report) const {
+        const int interval = options_.crack_check_interval;
+        if (interval <= 1) return;
+        std::string warning = warning_of_late_checks(
+            journal_.largest_checked(),
+            fmt::format("only one time step in {} checks them (analysis.crack_check_interval)", interval),
+            "analysis.crack_check_interval, made smaller,");
+        if (!warning.empty()) report.warnings.push_back(std::move(warning));
     }
 
     void break_bonds() {

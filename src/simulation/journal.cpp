@@ -9,6 +9,7 @@
 
 #include "kluft/core/stopwatch.hpp"
 #include "kluft/simulation/equilibrium_search.hpp"
+#include "kluft/simulation/event_search.hpp"
 #include "kluft/simulation/placement.hpp"
 #include "kluft/simulation/state_fields.hpp"
 #include "kluft/simulation/strength_reduction.hpp"
@@ -208,6 +209,16 @@ StageEnd commit_balanced_part(Step step, State& state, Journal& journal) {
     journal.warn(step, end.step);
     if (has_part) commit(std::move(step), {.regular = false}, state, journal);
     return end;
+}
+
+std::string warning_of_late_checks(const CheckedIndex& largest, std::string_view why, std::string_view remedy) {
+    constexpr double far_beyond = 1.1;
+    const auto [index, step] = largest;
+    if (index <= far_beyond) return {};
+    return fmt::format(
+        "load step {}: stresses reach {:.2g} times the strength of a potential crack{} before it is checked, since {}: "
+        "strengths of the body come out too large by up to that. {} finds where each crack fails",
+        step, index, index >= largest_useful_index ? " or more" : "", why, remedy);
 }
 
 int number_of_steps(const Model& model) {

@@ -119,19 +119,15 @@ void report_estimate(double accuracy, const State& state, RunReport& report) {
         100.0 * estimate, 100.0 * accuracy));
 }
 
-/// Potential cracks fail at a check only: what they carry beyond their criterion until then is strength that they do not have.
 void warn_of_late_checks(const CrackOptions& cracks, const Journal& journal, RunReport& report) {
-    constexpr double far_beyond = 1.1;
     const bool by_every_event = cracks.update == CrackUpdate::event && cracks.every <= 1;
-    const auto [index, step] = journal.largest_checked();
-    if (by_every_event || index <= far_beyond) return;
-    report.warnings.push_back(fmt::format(
-        "load step {}: stresses reach {:.2g} times the strength of a potential crack{} before it is checked, since {}: "
-        "strengths of the body come out too large by up to that. {} finds where each crack fails",
-        step, index, index >= largest_useful_index ? " or more" : "",
+    if (by_every_event) return;
+    std::string warning = warning_of_late_checks(
+        journal.largest_checked(),
         cracks.every > 1 ? fmt::format("only one load step in {} checks them (cracks.every)", cracks.every)
                          : "a load step checks them at its end (cracks.update)",
-        cracks.every > 1 ? "cracks.every: 1 with cracks.update: event" : "cracks.update: event"));
+        cracks.every > 1 ? "cracks.every: 1 with cracks.update: event" : "cracks.update: event");
+    if (!warning.empty()) report.warnings.push_back(std::move(warning));
 }
 
 /// Of a search for the limit that was stopped: how far it had come. It claims no factor of safety.

@@ -110,6 +110,25 @@ TEST(SlowExplicitSimulation, PotentialCracksFailAtTheStressOfTheImplicitRun) {
     expect_closed_energy(run);
 }
 
+// At a stress of 1 MPa the index of an intact body with 0.5 MPa of cohesion and 30 degrees is 1 MPa / (2 c cos(phi)/(1 - sin(phi))) = 0.58;
+// with a tenth of the cohesion 5.8.
+TEST(ExplicitSimulation, StressesThatPassTheStrengthBetweenTwoChecksAreWarnedOf) {
+    const auto warnings_of = [](const char* interval) {
+        const auto run =
+            run_scene(hexagons, {by_steps, "geometry.fractures=[]", "materials.rock.cohesion=0.05 MPa",
+                                 "materials.rock.friction_angle=30", "stages=[{pressure: {top: 1 MPa}, steps: 2}]",
+                                 std::string("analysis.crack_check_interval=") + interval});
+        return run.report.warnings;
+    };
+    EXPECT_THAT(
+        warnings_of("1000000"),
+        ::testing::ElementsAre(::testing::AllOf(
+            ::testing::StartsWith("load step 2: stresses reach "),
+            ::testing::HasSubstr("only one time step in 1000000 checks them (analysis.crack_check_interval)"),
+            ::testing::HasSubstr("analysis.crack_check_interval, made smaller, finds where each crack fails"))));
+    EXPECT_THAT(warnings_of("5"), ::testing::IsEmpty());
+}
+
 std::string incline(double slope_degrees) {
     return fmt::format(R"(
 kluft: 1

@@ -5,6 +5,7 @@
 #include <new>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -101,6 +102,12 @@ void commit(Step step, StepKind kind, State& state, Journal& journal);
 /// Commits what there is of a load step that failed, which ends at its last balanced equilibrium (keep_balanced_part);
 /// nothing where it has none, or where a resumed run has failed again without getting any further.
 [[nodiscard]] StageEnd commit_balanced_part(Step step, State& state, Journal& journal);
+
+/// "load step 9: stresses reach 1.4 times the strength of a potential crack before it is checked, since ..." where that is more than a
+/// tenth; else "". Potential cracks fail at a check only: what they carry beyond their criterion until then is strength that they do not
+/// have. `remedy`: what finds where each of them fails.
+[[nodiscard]] std::string warning_of_late_checks(const CheckedIndex& largest, std::string_view why,
+                                                 std::string_view remedy);
 
 /// Load steps of all stages.
 [[nodiscard]] int number_of_steps(const Model& model);
