@@ -251,6 +251,21 @@ void warn_of_idle_strengths(const SceneSection& root, const Scene& scene, Readin
                          fmt::format("has no effect, nor have friction_angle and tensile_strength: {}", why));
 }
 
+/// A load step is cut where the largest failure index lies between 1 and 1 + event_tolerance.
+void warn_of_loose_events(const SceneSection& root, const Scene& scene, ReadingContext& context) {
+    constexpr double loose = 0.02;
+    const double tolerance = scene.cracks.event_tolerance;
+    const bool cuts_by_it = scene.integrator == Integrator::implicit && scene.cracks.update == CrackUpdate::event &&
+                            !(scene.solver.accuracy > 0.0);
+    if (!cuts_by_it || tolerance <= loose) return;
+    context.warn(
+        root.section("cracks"), "event_tolerance",
+        fmt::format("potential cracks fail at up to {:.3g} times their strength, and with them those that have not "
+                    "reached theirs by as much: strengths of the body come out too large by up to twice that; the "
+                    "default is {}",
+                    1.0 + tolerance, scene_schema().find("cracks.event_tolerance")->fallback));
+}
+
 /// What something else in the scene makes meaningless.
 void warn_of_keys_without_effect(const SceneSection& root, const Scene& scene, ReadingContext& context) {
     const auto warn = [&](const SceneSection& section, std::string_view key, std::string_view why) {
@@ -280,6 +295,7 @@ void warn_of_implausible_values(const SceneSection& root, const Scene& scene, Re
     warn_of_one_sided_pressure(root, scene, context);
     warn_of_symmetric_reduction(root, scene, context);
     warn_of_loose_balance(root, scene, context);
+    warn_of_loose_events(root, scene, context);
     warn_of_keys_without_effect(root, scene, context);
 }
 

@@ -117,6 +117,19 @@ TEST(ImplausibleValues, ABalanceThatLetsFallingBlocksStandIsTold) {
         EXPECT_THAT(warnings_of_block_with({std::string("solver.balance=") + share}), IsEmpty()) << share;
 }
 
+// A body of 25.66 MPa had 29.3 with 0.5.
+TEST(ImplausibleValues, AnEventToleranceThatLetsCracksFailTooLateIsTold) {
+    for (const char* tolerance : {"0.021", "0.5", "0.999"})
+        EXPECT_THAT(warnings_of_block_with({std::string("cracks.event_tolerance=") + tolerance}),
+                    ElementsAre(AllOf(HasSubstr("cracks.event_tolerance: potential cracks fail at up to "),
+                                      HasSubstr("the default is 2.5e-3"))))
+            << tolerance;
+    for (const char* tolerance : {"1e-9", "2.5e-3", "0.02"})
+        EXPECT_THAT(warnings_of_block_with({std::string("cracks.event_tolerance=") + tolerance}), IsEmpty());
+    EXPECT_THAT(warnings_of_block_with({"cracks.event_tolerance=0.5", "cracks.update=all"}), IsEmpty());
+    EXPECT_THAT(warnings_of_block_with({"cracks.event_tolerance=0.5", "solver.accuracy=0.01"}), IsEmpty());
+}
+
 // A wall whose factor of safety is 4.579 by the friction of its top brick came to 4.25.
 TEST(ImplausibleValues, SymmetricTangentIsToldOfWhereStrengthsAreReduced) {
     const std::string reduction = "stages=[{pressure: {left: 1 MPa, right: 1 MPa, top: 1 MPa}}, "
