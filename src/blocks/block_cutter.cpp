@@ -744,9 +744,17 @@ private:
         return static_cast<int>(&fracture - spec_.fractures.data());
     }
 
+    [[nodiscard]] bool is_along(const Polygon& polygon, const Vec2& p) const {
+        for (std::size_t i = 0; i < polygon.size(); ++i)
+            if (distance_to_segment(p, polygon[i], polygon[(i + 1) % polygon.size()]) <= rounding_) return true;
+        return false;
+    }
+
+    /// Or on its outline, or on the wall of a hole.
     [[nodiscard]] bool in_body(const Vec2& p) const {
-        return contains(domain_, p) &&
-               std::none_of(holes_.begin(), holes_.end(), [&p](const Polygon& hole) { return contains(hole, p); });
+        if (!contains(domain_, p)) return is_along(domain_, p);
+        return std::none_of(holes_.begin(), holes_.end(),
+                            [&](const Polygon& hole) { return contains(hole, p) && !is_along(hole, p); });
     }
 
     /// Places on the parts of a fracture that are in the body, an odd number to each of its segments.

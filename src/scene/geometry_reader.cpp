@@ -26,6 +26,7 @@
 #include "kluft/scene/map_reader.hpp"
 #include "kluft/scene/outline.hpp"
 #include "kluft/scene/scene_check.hpp"
+#include "kluft/scene/traces_outside.hpp"
 
 namespace kluft {
 
@@ -58,20 +59,6 @@ void require_simple(const MappedArea& area, const std::filesystem::path& file) {
     };
     require(area.outline, "outline");
     for (std::size_t i = 0; i < area.holes.size(); ++i) require(area.holes[i], fmt::format("hole {}", i));
-}
-
-bool boxes_meet(const Box& a, const Box& b) {
-    return (a.lower.array() <= b.upper.array()).all() && (b.lower.array() <= a.upper.array()).all();
-}
-
-/// Whether a segment has a point in the polygon or on its outline. `sides`: the box of each side.
-bool meets(const Polygon& polygon, const std::vector<Box>& sides, const Vec2& start, const Vec2& end) {
-    if (contains(polygon, start)) return true;
-    const Box box = bounding_box({start, end});
-    for (std::size_t i = 0; i < polygon.size(); ++i)
-        if (boxes_meet(sides[i], box) && segments_meet(polygon[i], polygon[(i + 1) % polygon.size()], start, end))
-            return true;
-    return false;
 }
 
 std::string box_text(const std::vector<Vec2>& points) {
@@ -522,7 +509,7 @@ private:
     /// One line for all of them. A map of which nothing lies in the domain is a mistake, most often of its coordinates.
     void look_for_traces_outside(const SceneSection& geometry) {
         if (spec_.domain.empty() || spec_.fractures.empty()) return;
-        const auto outside = traces_outside(spec_.domain, spec_.fractures);
+        const auto outside = traces_outside(spec_);
         if (outside.empty()) return;
         const std::size_t n = spec_.fractures.size();
         if (outside.size() == n && n_mapped_ > 0) {
@@ -531,17 +518,29 @@ private:
                 places.insert(places.end(), trace.points.begin(), trace.points.end());
             return context_.fail(
                 geometry, "fractures",
-                fmt::format("expected traces in the domain, which lies {}, found {} of {} outside: they "
+                fmt::format("expected traces in the domain, which lies {}, found {} of {} outside{}: they "
                             "lie {}",
-                            box_text(spec_.domain), n, n, box_text(places)));
+                            box_text(spec_.domain), n, n, those_in_holes(outside), box_text(places)));
         }
         if (outside.size() == 1) {
-            const FractureTrace& trace = spec_.fractures[outside.front()];
-            context_.warnings.push_back(fmt::format("{}: {} lies outside the domain", trace.place, trace.name));
+            const FractureTrace& trace = spec_.fractures[outside.front().line];
+            context_.warnings.push_back(
+                fmt::format("{}: {} lies {}", trace.place, trace.name, whereabouts(outside.front())));
         } else {
-            context_.warn(geometry, "fractures",
-                          fmt::format("{} of {} traces lie outside the domain", outside.size(), n));
+            context_.warn(
+                geometry, "fractures",
+                fmt::format("{} of {} traces lie outside the domain{}", outside.size(), n, those_in_holes(outside)));
         }
+    }
+
+    static std::string_view whereabouts(const LineOutside& line) {
+        return line.in_hole ? "in a hole of the domain" : "outside the domain";
+    }
+
+    /// ", 2 of them in its holes"; "" where none is.
+    static std::string those_in_holes(const std::vector<LineOutside>& outside) {
+        const auto n = std::ranges::count(outside, true, &LineOutside::in_hole);
+        return n > 0 ? fmt::format(", {} of them in its holes", n) : "";
     }
 
     /// Index of the interface that a fracture or the tessellation names; -1 for an error.
@@ -613,6 +612,7 @@ private:
                           "expected region and region_spacing together, found one of them");
         if (section.has("region")) grading.region = read_polygon(section, "region");
         grading.region_spacing = section.given_number("region_spacing").value_or(0.0);
+        look_for_grading_of_nothing(section, grading);
         if (!grading.region.empty() && grading.region_spacing > 0.0)
             check_cell_count(section, "region_spacing", "triangles", triangle_area(1.0),
                              std::min(std::abs(signed_area(grading.region)), net_area_));
@@ -621,14 +621,33 @@ private:
 
     void read_construction_lines(const SceneSection& geometry) {
         const auto sections = geometry.sections("construction_lines");
+        std::vector<SceneSection> given;
         if (!sections.empty() && !(spec_.tessellation && spec_.tessellation->triangles))
             context_.fail(geometry, "construction_lines",
                           "expected geometry.tessellation.triangles, which follow them, found none");
         for (const auto& section : sections) {
             if (!section.node()->is_mapping()) continue;
             const auto points = section.given_points("trace");
-            if (points && has_distinct_points(section, "trace", *points)) spec_.construction_lines.push_back(*points);
+            if (!points || !has_distinct_points(section, "trace", *points)) continue;
+            spec_.construction_lines.push_back(*points);
+            given.push_back(section);
         }
+        if (spec_.domain.empty()) return;
+        for (const LineOutside& each : lines_outside(spec_.domain, spec_.holes, spec_.construction_lines))
+            context_.warn(given[each.line], "trace", fmt::format("the line lies {}", whereabouts(each)));
+    }
+
+    /// What a net is to be finer at and the body does not have.
+    void look_for_grading_of_nothing(const SceneSection& grading, const TriangleGrading& given) {
+        if (spec_.domain.empty()) return;
+        const auto warn = [&](std::string_view key, std::string_view why) {
+            context_.warn(grading, key, fmt::format("has no effect: {}", why));
+        };
+        if (grading.has("fractures") && traces_outside(spec_).size() == spec_.fractures.size())
+            warn("fractures", "there is no mapped fracture in the domain");
+        if (grading.has("openings") && spec_.holes.empty()) warn("openings", "the domain has no holes");
+        if (!given.region.empty() && is_outside(given.region, spec_.domain, spec_.holes))
+            warn("region", "it has no part in the body");
     }
 
     /// `unit_area`: of a cell with a spacing of one metre; `area` of what is filled.
@@ -795,24 +814,6 @@ private:
 };
 
 } // namespace
-
-std::vector<std::size_t> traces_outside(const Polygon& domain, const std::vector<FractureTrace>& traces) {
-    const Box window = bounding_box(domain);
-    std::vector<Box> sides;
-    for (std::size_t i = 0; i < domain.size(); ++i)
-        sides.push_back(bounding_box({domain[i], domain[(i + 1) % domain.size()]}));
-    const auto is_inside = [&](const Vec2& start, const Vec2& end) {
-        return boxes_meet(window, bounding_box({start, end})) && meets(domain, sides, start, end);
-    };
-    std::vector<std::size_t> outside;
-    for (std::size_t i = 0; i < traces.size(); ++i) {
-        const auto& points = traces[i].points;
-        bool inside = points.empty();
-        for (std::size_t k = 1; k < points.size() && !inside; ++k) inside = is_inside(points[k - 1], points[k]);
-        if (!inside) outside.push_back(i);
-    }
-    return outside;
-}
 
 std::vector<std::string> block_names(const GeometrySpec& spec) {
     std::vector<std::string> names = names_of(spec.sets);

@@ -22,9 +22,9 @@
 #include "kluft/geometry/predicates.hpp"
 #include "kluft/scene/body_lines.hpp"
 #include "kluft/scene/coarse_places.hpp"
-#include "kluft/scene/geometry_reader.hpp"
 #include "kluft/scene/net_check.hpp"
 #include "kluft/scene/scattered_sides.hpp"
+#include "kluft/scene/traces_outside.hpp"
 
 namespace kluft {
 
@@ -84,7 +84,9 @@ std::string reason(const LostFracture& lost, const Scene& scene, const CutReport
     case LostFracture::Cause::too_short:
         return fmt::format("it is shorter than {:.3g} m, the smallest length that the net resolves", resolution);
     case LostFracture::Cause::coincides:
-        return lost.other < 0 ? "it lies on the outline of the domain" : overlaid(lost, scene);
+        if (lost.other >= 0) return overlaid(lost, scene);
+        return scene.geometry.holes.empty() ? "it lies on the outline of the domain"
+                                            : "it lies on the outline of the domain or of a hole";
     case LostFracture::Cause::cuts_off_little:
         return fmt::format("what it cuts off is {:.3g} m2, less than {:.3g} m2, the smallest block "
                            "(`geometry.minimum_area`)",
@@ -385,12 +387,12 @@ bool is_loaded(const Stage& stage, bool has_weight) {
 std::string cause_of_no_interface(const Scene& scene, const CutReport& report) {
     const std::vector<FractureTrace>& fractures = scene.geometry.fractures;
     if (fractures.empty()) return {};
-    const auto outside = traces_outside(scene.geometry.domain, fractures);
+    const auto outside = traces_outside(scene.geometry);
     if (!outside.empty()) {
-        const FractureTrace& first = fractures[outside.front()];
+        const FractureTrace& first = fractures[outside.front().line];
         const std::string others = outside.size() > 1 ? fmt::format(", as are {} more", outside.size() - 1) : "";
-        return fmt::format("{}: expected a trace that cuts the domain, found {} outside it{}", first.place, first.name,
-                           others);
+        return fmt::format("{}: expected a trace that cuts the domain, found {} {}{}", first.place, first.name,
+                           outside.front().in_hole ? "in a hole of it" : "outside it", others);
     }
     for (const auto& warnings : {lost_fractures(scene, report), pruned_pieces(scene, report)})
         if (!warnings.empty()) return warnings.front();

@@ -343,6 +343,15 @@ TEST_F(ScenesWithMaps, OneLineTellsHowManyTracesLieOutside) {
                 ElementsAre(HasSubstr("geometry.fractures: 2 of 5 traces lie outside the domain")));
 }
 
+TEST_F(ScenesWithMaps, TracesInHolesOfTheDomainLieOutsideIt) {
+    write("t.geojson", R"({"type": "MultiLineString", "coordinates": [[[691420, 5334610], [691425, 5334615]],
+        [[691421, 5334611], [691422, 5334612]]]})");
+    const std::vector<std::string> hole{"geometry.domain.holes=[{polygon: [[691415, 5334605], [691430, 5334605], "
+                                        "[691430, 5334620], [691415, 5334620]]}]",
+                                        "geometry.fractures=[{file: t.geojson, interface: joint}]"};
+    EXPECT_THAT(errors(hole), ElementsAre(HasSubstr("found 2 of 2 outside, 2 of them in its holes: they lie from")));
+}
+
 TEST_F(ScenesWithMaps, AMapThatLiesElsewhereIsAnErrorThatSaysWhere) {
     write("t.geojson", R"({"type": "LineString", "coordinates": [[466011.8607, 6692139.4378], [466012, 6692140]]})");
     EXPECT_THAT(

@@ -257,6 +257,24 @@ TEST(SceneModel, WarnsOfFracturesThatAreNotLeft) {
                                       "'joint' and not 'weak'")));
 }
 
+TEST(SceneModel, WarnsOfTracesInHolesAndOnTheirWalls) {
+    const auto settings = [](const std::string& trace) {
+        return std::vector<std::string>{
+            "geometry.domain.holes=[{polygon: [[0.3, 1.3], [0.7, 1.3], [0.7, 1.7], [0.3, 1.7]]}]",
+            "geometry.fractures=[{trace: [[0, 1], [1, 1]], interface: joint}, {name: other, trace: " + trace +
+                ", interface: joint}]"};
+    };
+    const auto at_reading = [&](const std::string& trace) {
+        return read_scene_text(body_of_triangles, settings(trace), "scene.yaml").warnings;
+    };
+    EXPECT_THAT(at_reading("[[0.4, 1.4], [0.6, 1.6]]"),
+                ElementsAre(HasSubstr("geometry.fractures.1: other lies in a hole of the domain")));
+    EXPECT_THAT(at_reading("[[0.3, 1.5], [0.7, 1.5]]"), ElementsAre(HasSubstr("other lies in a hole of the domain")));
+    EXPECT_THAT(at_reading("[[0.3, 1.3], [0.3, 1.7]]"), IsEmpty());
+    EXPECT_THAT(warnings_of(settings("[[0.3, 1.3], [0.3, 1.7]]")),
+                Contains(HasSubstr("other is left out: it lies on the outline of the domain or of a hole")));
+}
+
 // A corner of 0.1 x 0.1 / 2 m2 where the smallest block has 20 % of a hexagon of 0.3 m, 0.0156 m2.
 TEST(SceneModel, WarnsOfAFractureThatCutsOffTooLittle) {
     EXPECT_THAT(warnings_of({"geometry.fractures.0.trace=[[0, 0.1], [0.1, 0]]", "geometry.minimum_area=0.2",

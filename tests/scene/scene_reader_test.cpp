@@ -285,6 +285,29 @@ TEST(SceneReader, TensileStrengthIsCappedAtTheApexWithAWarning) {
                             "1e+06 Pa is above cohesion cot(friction_angle), taken as 100000 Pa"));
 }
 
+TEST(SceneReader, WarnsOfLinesAndGradingOfANetThatHaveNoPartInTheBody) {
+    const auto warnings = [](const std::string& grading, const std::vector<std::string>& more = {}) {
+        std::vector<std::string> settings{"interfaces.bond.stiffness_ratio=2", "geometry.tessellation.hexagons=null",
+                                          "geometry.tessellation.triangles={spacing: 0.3, grading: {" + grading + "}}"};
+        settings.insert(settings.end(), more.begin(), more.end());
+        auto all = read_scene_text(test::full_scene, settings).warnings;
+        std::erase_if(all, [](const std::string& warning) {
+            return warning.find("grading") == std::string::npos && warning.find("construction") == std::string::npos;
+        });
+        return all;
+    };
+    EXPECT_THAT(warnings("fractures: 0.1"), IsEmpty());
+    EXPECT_THAT(warnings("fractures: 0.1", {"geometry.fractures=null"}),
+                ElementsAre(HasSubstr("grading.fractures: has no effect: there is no mapped fracture in the domain")));
+    EXPECT_THAT(warnings("openings: 0.1"),
+                ElementsAre(HasSubstr("grading.openings: has no effect: the domain has no holes")));
+    EXPECT_THAT(warnings("region: [[8, 8], [9, 8], [9, 9]], region_spacing: 0.1"),
+                ElementsAre(HasSubstr("grading.region: has no effect: it has no part in the body")));
+    EXPECT_THAT(warnings("region: [[1, 0], [2, 0], [2, 1]], region_spacing: 0.1"), IsEmpty());
+    EXPECT_THAT(warnings("", {"geometry.construction_lines=[{trace: [[1, 0], [3, 0]]}, {trace: [[7, 0], [8, 0]]}]"}),
+                ElementsAre(HasSubstr("geometry.construction_lines.1.trace: the line lies outside the domain")));
+}
+
 TEST(SceneReader, WarnsOfWhatHasNoEffect) {
     EXPECT_THAT(read_scene_text(test::full_scene).warnings, IsEmpty());
     EXPECT_THAT(read_scene_text(test::full_scene, {"interfaces.bond.contact_rounding=1 kPa"}).warnings,

@@ -16,9 +16,6 @@ namespace kluft {
 [[nodiscard]] GeometrySpec read_geometry(const SceneSection& root, const std::vector<std::string>& materials,
                                          const std::vector<std::string>& interfaces, ReadingContext& context);
 
-/// Which traces have no point in the domain.
-[[nodiscard]] std::vector<std::size_t> traces_outside(const Polygon& domain, const std::vector<FractureTrace>& traces);
-
 /// What may be called in place of a block: the names of the sets and of the given blocks.
 [[nodiscard]] std::vector<std::string> block_names(const GeometrySpec& spec);
 
