@@ -201,7 +201,16 @@ Box window_of(const std::string& text, const Vec2& origin) {
     if (!is_window)
         throw InputError("--window: expected x0,y0,x1,y1 with x0 < x1 and y0 < y1, as in 0,0,0.2,0.4, found '" + text +
                          "'");
-    return {Vec2(numbers[0], numbers[1]) - origin, Vec2(numbers[2], numbers[3]) - origin};
+    const Box window{Vec2(numbers[0], numbers[1]) - origin, Vec2(numbers[2], numbers[3]) - origin};
+    constexpr double largest = 1e9; // m, as of a coordinate in a scene
+    constexpr double smallest = 1e-12;
+    const double farthest = std::max(window.lower.cwiseAbs().maxCoeff(), window.upper.cwiseAbs().maxCoeff());
+    const double narrowest = (window.upper - window.lower).minCoeff();
+    if (!(farthest <= largest) || !(narrowest >= smallest))
+        throw InputError(fmt::format("--window: expected coordinates up to {:.0e} m that are {:.0e} m apart or more, "
+                                     "found '{}'",
+                                     largest, smallest, text));
+    return window;
 }
 
 std::string heading_of_state(const fs::path& directory, int step, double scale) {

@@ -1692,6 +1692,8 @@ TEST_F(CommandLine, DrawMakesAPictureOfAKeptStateByAField) {
     for (const char* window : {"0,0,1", "1,0,0,1", "a,0,1,1", "0,0,1,1,"})
         expect_refused({"draw", "r", "--window", window}, HasSubstr("--window: expected x0,y0,x1,y1"));
     expect_refused({"draw", "r", "--window", "50,50,60,60"}, HasSubstr("--window: expected a part of the body"));
+    for (const char* window : {"--window=-1e308,-1e308,1e308,1e308", "--window=0,0,1e10,1e10", "--window=0,0,1e-13,1"})
+        expect_refused({"draw", "r", window, "-o", "wide.svg"}, HasSubstr("--window: expected coordinates up to "));
     expect_refused({"draw", "tiny.yaml", "--step", "last"},
                    HasSubstr("expected one directory of results, found a scene file"));
     expect_refused({"draw", "r", "--curve", "--step", "last"}, HasSubstr("found one of a curve"));
