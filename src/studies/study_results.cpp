@@ -102,6 +102,12 @@ bool is_described(const fs::path& directory, const PlannedCase& one) {
     return value_or(json_of(directory / "case.json"), "digest", std::string{}) == one.digest;
 }
 
+/// As it was given where it is short.
+std::string time_limit_text(double seconds) {
+    constexpr double minute = 60.0;
+    return seconds < minute ? fmt::format("{:g} s", seconds) : readable_time(seconds);
+}
+
 /// Why a program that left no final summary ended.
 void judge_outcome(const Study& study, const CaseOutcome& outcome, const fs::path& directory, CaseResult& result) {
     constexpr int done = 0, bad_input = 2, no_equilibrium = 3, out_of_resources = 4;
@@ -111,7 +117,7 @@ void judge_outcome(const Study& study, const CaseOutcome& outcome, const fs::pat
     const std::string why = message.empty() ? "" : ": " + message;
     result.status = CaseStatus::failed;
     if (outcome.out_of_time) {
-        result.reason = "stopped after the time limit of " + readable_time(study.time_limit);
+        result.reason = "stopped after the time limit of " + time_limit_text(study.time_limit);
     } else if (outcome.signal == 0 && (outcome.exit_code == done || outcome.exit_code == no_equilibrium)) {
         result.reason = fmt::format(
             "expected the summary of a run that has ended in {}, found none; the study, run again, makes it anew",

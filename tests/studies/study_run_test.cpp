@@ -184,7 +184,7 @@ TEST_F(StudyRuns, KilledAndRefusedCasesAreToldAndTheOthersGoOn) {
 TEST_F(StudyRuns, CaseThatTakesTooLongIsStopped) {
     const StudyTable table = run(steps("10, 88") + "time_limit: 0.3\n");
     EXPECT_EQ(table.cases[1].status, CaseStatus::failed);
-    EXPECT_THAT(table.cases[1].reason, HasSubstr("time limit"));
+    EXPECT_THAT(table.cases[1].reason, HasSubstr("after the time limit of 0.3 s"));
     EXPECT_LT(*table.cases[1].elapsed_s, 10.0);
 }
 
