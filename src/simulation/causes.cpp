@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "kluft/geometry/polygon.hpp"
 #include "kluft/simulation/placement.hpp"
 #include "kluft/simulation/whole_body.hpp"
 
@@ -96,18 +97,31 @@ bool moves_as_a_whole(const BlockSystem& system, const std::vector<MovingBlock>&
     return of_moving >= whole_body * all;
 }
 
+/// Of a column of the densest block that can move, as high as all that has weight (Pa).
+double largest_overburden(const Model& model, const Loads& loads) {
+    std::vector<Vec2> corners;
+    double densest = 0.0;
+    for (const Block& block : model.system.blocks) {
+        const double density = model.densities.empty() ? 0.0 : model.densities[block.material];
+        if (block.fixed || !(density > 0.0)) continue;
+        densest = std::max(densest, density);
+        for (const Edge& edge : block.edges) corners.push_back(edge_start(model.system, edge));
+    }
+    if (corners.empty()) return 0.0;
+    const Box box = bounding_box(corners);
+    return densest * loads.gravity.norm() * (box.upper - box.lower).maxCoeff();
+}
+
 /// Of pressures, a platen and weight (Pa).
-double largest_stress(const Model& model, const Loads& loads, const WholeBody& body) {
+double largest_stress(const Model& model, const Loads& loads) {
     double stress = 0.0;
     for (const double pressure : loads.pressures) stress = std::max(stress, std::abs(pressure));
     if (loads.platen_force) stress = std::max(stress, std::abs(loads.platen_force->stress));
-    for (const double density : model.densities)
-        stress = std::max(stress, density * loads.gravity.norm() * body.extent);
-    return stress;
+    return std::max(stress, largest_overburden(model, loads));
 }
 
-std::optional<std::string> soft_body(const Model& model, const Loads& loads, const WholeBody& body) {
-    const double stress = largest_stress(model, loads, body);
+std::optional<std::string> soft_body(const Model& model, const Loads& loads) {
+    const double stress = largest_stress(model, loads);
     if (model.effective_modulus <= 0.0 || stress <= suspicious_strain * model.effective_modulus) return std::nullopt;
     return fmt::format(
         "the loads of up to {:.4g} MPa are {:.2g} times the modulus of {:.4g} MPa of the body or its softest "
@@ -131,7 +145,7 @@ std::vector<std::string> likely_causes(const Model& model, const LoadsAt& at, co
             causes.push_back(is_turn(motion) ? std::string("nothing holds the body against a turn")
                                              : unheld_in_words(motion));
     }
-    if (const auto soft = soft_body(model, loads, body)) causes.push_back(*soft);
+    if (const auto soft = soft_body(model, loads)) causes.push_back(*soft);
     return causes;
 }
 

@@ -68,6 +68,25 @@ TEST(Causes, AModulusWithoutItsUnitIsSuspected) {
                 AllOf(HasSubstr("is a unit missing"), HasSubstr("0.01 MPa"), Not(HasSubstr("push the body"))));
 }
 
+// A block of 2 m on a slope that it slides down, and a fixed one 100 000 km away: 2500 kg/m3 over that would be 2.5e6 MPa.
+TEST(Causes, FixedBlocksAreNoOverburden) {
+    const SceneRun run = run_scene(R"(
+kluft: 1
+analysis: {gravity: 10}
+materials: {rock: {density: 2500, youngs_modulus: 10 GPa, poissons_ratio: 0.2}}
+interfaces: {joint: {kind: fracture, normal_stiffness: 1e10, shear_stiffness: 1e10, friction_angle: 10}}
+geometry:
+  reference_spacing: 1
+  blocks:
+    - {name: base, polygon: [[0, -1], [4, -1], [4, 2], [0, 0]], support: fixed}
+    - {name: top, polygon: [[1, 0.5], [3, 1.5], [3, 3], [1, 2]]}
+    - {name: far, polygon: [[1e8, 1], [100000001, 1], [1e8, 2]], support: fixed}
+stages: [{}]
+)");
+    EXPECT_EQ(run.report.status, RunStatus::no_equilibrium);
+    EXPECT_THAT(run.report.diagnosis, AllOf(HasSubstr("'top'"), Not(HasSubstr("times the modulus"))));
+}
+
 /// Warnings of two blocks, one on the other, whose scene says this of boundaries, gravity and stages.
 std::vector<std::string> warnings_of_two_blocks(const std::string& boundaries, const std::string& gravity,
                                                 const std::string& stages) {
