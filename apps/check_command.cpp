@@ -8,6 +8,7 @@
 #include "kluft/scene/scene_account.hpp"
 #include "kluft/scene/scene_model.hpp"
 #include "kluft/scene/scene_reader.hpp"
+#include "kluft/studies/scene_run.hpp"
 #include "standard_output.hpp"
 
 namespace kluft {
@@ -32,7 +33,7 @@ std::string json_of(const InputError& error) {
 
 void check_scene(const CheckArguments& arguments) {
     const Scene scene = read_scene(arguments.scene, arguments.overrides);
-    const SceneModel built = build_scene_model(scene);
+    const SceneModel built = build_for_run(scene);
     const SceneAccount account = account_of(scene, built);
     say_text(arguments.json ? json_of(account, scene, built) : text_of(account));
 }

@@ -169,7 +169,7 @@ ExitCode run(const RunArguments& arguments) {
                          "velocities to go on with");
     if (!is_locked(directory))
         (void)scene_file_for(directory, scene, arguments.resume || arguments.force); // early; again under the lock
-    const SceneModel built = build_scene_model(scene);
+    const SceneModel built = build_for_run(scene);
     const Model& model = built.model;
     const int unknowns = unknowns_per_block(model.kinematics) * model.system.n_blocks();
     if (arguments.threads > 0) set_blas_threads(arguments.threads);

@@ -13,6 +13,7 @@
 #include "kluft/scene/scene_model.hpp"
 #include "kluft/scene/scene_reader.hpp"
 #include "kluft/scene/scene_text.hpp"
+#include "kluft/studies/scene_run.hpp"
 #include "module.hpp"
 
 namespace py = pybind11;
@@ -77,7 +78,7 @@ py::dict account(const SceneText& text) {
     const auto found = [&] {
         const py::gil_scoped_release others;
         const Scene scene = read_scene_text(text.text, text.settings, text.file);
-        return account_of(scene, build_scene_model(scene));
+        return account_of(scene, build_for_run(scene));
     }();
     py::list lines;
     for (const auto& [name, line] : found.lines) lines.append(py::make_tuple(name, line));

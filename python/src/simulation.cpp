@@ -91,7 +91,7 @@ struct Output {
 class Simulation : private StepObserver {
 public:
     Simulation(const SceneText& text, const std::string& directory, bool resume, bool force, int threads)
-        : scene_(read_scene_text(text.text, text.settings, text.file)), built_(build_scene_model(scene_)),
+        : scene_(read_scene_text(text.text, text.settings, text.file)), built_(build_for_run(scene_)),
           state_(initial_state(model())), writer_options_(run_writer_options(scene_, model())), threads_(threads) {
         if (!directory.empty()) open_output(directory, resume, force);
     }

@@ -15,7 +15,8 @@ namespace {
 
 constexpr double rewrite_seconds = 0.1;
 constexpr double plain_seconds = 10.0;
-constexpr int parts = 20; // a plain line for each
+constexpr double shortest_pace = 0.1; // seconds of a load step that tell how long it takes
+constexpr int parts = 20;             // a plain line for each
 
 /// Whether it is known how many load steps there will be: a search for a strength takes more than its stage says.
 bool counts_steps(const Progress& progress) { return progress.n_steps > 0 && progress.step <= progress.n_steps; }
@@ -36,7 +37,9 @@ int terminal_columns() {
 } // namespace
 
 std::string readable_time(double seconds) {
-    const auto whole = static_cast<long>(std::lround(std::clamp(seconds, 0.0, 1e9)));
+    constexpr double year = 365.25 * 24.0 * 3600.0;
+    if (seconds >= year) return fmt::format("{:.2g} years", seconds / year);
+    const auto whole = static_cast<long>(std::lround(std::max(seconds, 0.0)));
     if (whole < 60) return fmt::format("{} s", whole);
     if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
     return fmt::format("{} h {:02} min", whole / 3600, whole % 3600 / 60);
@@ -71,7 +74,7 @@ ProgressLine ProgressLine::on_standard_error() {
 }
 
 /// From the pace of the later half of the time so far: steps after the peak cost more than those before it.
-std::optional<double> ProgressLine::seconds_left(double fraction) const {
+std::optional<double> ProgressLine::seconds_left_at_pace(double fraction) const {
     if (steps_.size() < 2) return std::nullopt;
     const double now = steps_.back().first;
     const double done = steps_.back().second;
@@ -83,8 +86,18 @@ std::optional<double> ProgressLine::seconds_left(double fraction) const {
     return (1.0 - fraction) * (now - then) / (done - before);
 }
 
+/// Not less than where the load steps to come take as long as the one in progress.
+std::optional<double> ProgressLine::seconds_left(const Progress& progress) const {
+    const std::optional<double> left = seconds_left_at_pace(fraction_of(progress));
+    const double share = progress.share_of_step.value_or(0.0);
+    if (!(share > 0.0) || !counts_steps(progress) || steps_.empty()) return left;
+    const double passed = seconds_() - steps_.back().first;
+    if (passed < shortest_pace) return left;
+    return std::max(left.value_or(0.0), (progress.n_steps - progress.step - share) * passed / share);
+}
+
 void ProgressLine::show(const Progress& progress) {
-    std::string text = progress_text(progress, seconds_left(fraction_of(progress)));
+    std::string text = progress_text(progress, seconds_left(progress));
     if (terminal_) {
         if (columns_ > 0) text.resize(std::min(text.size(), static_cast<std::size_t>(columns_) - 1));
         write_("\r" + text + "\033[K");

@@ -50,6 +50,23 @@ constexpr int progress_interval = 1000; ///< time steps
 /// From 0 to 1 without a jump of the velocity at the ends.
 double smooth(double x) { return x * x * (3.0 - 2.0 * x); }
 
+bool has_platen_velocity(const Stage& stage, const ExplicitOptions& options) {
+    return options.loading_rate > 0.0 && stage.motion && stage.motion->control != PlatenControl::stress;
+}
+
+/// In which the load of a load step moves (s).
+double load_time(const Stage& stage, double crossing) {
+    return std::max(crossings_per_step, crossings_per_stage / stage.steps) * crossing;
+}
+
+/// In which a platen of constant velocity moves by what a load step asks for (s).
+double platen_time(const Model& model, const Stage& stage, const ExplicitOptions& options) {
+    double distance = std::abs(stage.motion->value);
+    if (stage.motion->control == PlatenControl::strain)
+        distance *= distance_across(model.system, stage.motion->boundary);
+    return distance / (stage.steps * options.loading_rate);
+}
+
 class ExplicitRun {
 public:
     ExplicitRun(const Model& model, const CrackOptions& cracks, const SolverOptions& solver,
@@ -223,22 +240,9 @@ private:
         return failure_of(FailureKind::no_equilibrium, state_.imbalance.moving);
     }
 
-    [[nodiscard]] bool has_platen_velocity() const {
-        const auto& motion = stage().motion;
-        return options_.loading_rate > 0.0 && motion && motion->control != PlatenControl::stress;
-    }
-
-    [[nodiscard]] double load_time() const {
-        const int steps = stage().steps;
-        return std::max(crossings_per_step, crossings_per_stage / steps) * crossing_time_;
-    }
-
-    [[nodiscard]] double platen_time() const {
-        double distance = std::abs(stage().motion->value);
-        if (stage().motion->control == PlatenControl::strain)
-            distance *= distance_across(model_.system, stage().motion->boundary);
-        return distance / (stage().steps * options_.loading_rate);
-    }
+    [[nodiscard]] bool has_platen_velocity() const { return kluft::has_platen_velocity(stage(), options_); }
+    [[nodiscard]] double load_time() const { return kluft::load_time(stage(), crossing_time_); }
+    [[nodiscard]] double platen_time() const { return kluft::platen_time(model_, stage(), options_); }
 
     // ---- time steps ------------------------------------------------------------------------------------------
 
@@ -247,6 +251,7 @@ private:
         while (done < 1.0 && !failed()) {
             const double rate = steady ? 1.0 : load_rate_;
             done = std::min(1.0, done + rate * motion_.time_step() / duration);
+            load_share_ = done;
             set_load(from + (to - from) * (steady ? done : smooth(done)));
             advance();
         }
@@ -519,7 +524,8 @@ private:
     }
 
     void report_progress() {
-        journal_.progress(work(), step_.row, work().at.load_factor, static_cast<int>(time_steps_));
+        const auto n_steps = static_cast<int>(std::min<long>(time_steps_, std::numeric_limits<int>::max()));
+        journal_.progress(work(), step_.row, work().at.load_factor, n_steps, load_share_);
     }
 
     /// At the blocks of a body that waits.
@@ -546,11 +552,33 @@ private:
     std::vector<double> extents_; ///< largest distance from the centroid in block coordinates, per block
     long time_steps_ = 0;
     double load_rate_ = 1.0;
+    double load_share_ = 0.0; ///< of the way of the load in the load step in progress
     double force_scale_ = 0.0;
     double worst_energy_error_ = 0.0;
 };
 
 } // namespace
+
+std::string warning_of_long_steps(const Model& model, const ExplicitOptions& options) {
+    constexpr double very_many = 1e8; // time steps; of a small body some hours
+    const std::vector<Mat6> masses = block_masses(model, options.density_scaling);
+    const double crossing = crossing_time(model, masses);
+    const double time_step =
+        stable_time_step(largest_frequency(initial_stiffness_bounds(model), masses), options.damping);
+    for (std::size_t s = 0; s < model.loads.stages.size(); ++s) {
+        const Stage& stage = model.loads.stages[s];
+        const bool steady = has_platen_velocity(stage, options);
+        const double time = steady ? platen_time(model, stage, options) : load_time(stage, crossing);
+        const double n_time_steps = time / time_step;
+        if (!(n_time_steps > very_many)) continue;
+        return fmt::format(
+            "stages.{}: a load step takes {:.1e} time steps of {:.2g} s, since {}", s, n_time_steps, time_step,
+            steady ? fmt::format("the platen takes {:.2g} s for it: a larger analysis.loading_rate takes fewer", time)
+                   : "the stiffest interface is far stiffer than the body: smaller stiffnesses of the interfaces, or "
+                     "blocks that differ less in size, take fewer");
+    }
+    return {};
+}
 
 RunReport run_explicit(const Model& model, const CrackOptions& cracks, const SolverOptions& solver,
                        const ExplicitOptions& options, State& state, StepObserver& observer,

@@ -126,7 +126,8 @@ void Journal::tell_state(const StepRecord& row, const State& state, LoadedPlacem
     observer_.step(row, state, fields, last_of_stage);
 }
 
-void Journal::progress(const State& state, const StepRecord& row, double load_factor, int n_solves) {
+void Journal::progress(const State& state, const StepRecord& row, double load_factor, int n_solves,
+                       std::optional<double> share_of_step) {
     Progress progress;
     progress.stage = state.at.stage;
     progress.n_stages = static_cast<int>(model_.loads.stages.size());
@@ -139,6 +140,7 @@ void Journal::progress(const State& state, const StepRecord& row, double load_fa
         progress.strength_factor = strength_factor(model_.loads, state.at.stage, load_factor);
     progress.cracks = row.cracks_tension + row.cracks_shear;
     progress.open_close_iterations = n_solves;
+    progress.share_of_step = share_of_step;
     observer_.progress(progress);
 }
 

@@ -14,6 +14,7 @@
 #include "kluft/kinematics/affine.hpp"
 #include "kluft/output/state_file.hpp"
 #include "kluft/reference/explicit_simulation.hpp"
+#include "kluft/scene/key_places.hpp"
 #include "kluft/scene/scene_as_run.hpp"
 #include "kluft/simulation/cohesion_share.hpp"
 #include "kluft/simulation/contact_following.hpp"
@@ -123,6 +124,14 @@ EarlierRuns earlier_runs(const fs::path& directory) {
             {"the run before this one has left no summary that can be read: of bonds and corners that carry more "
              "than they bear, and of platens that leave the body, only the load steps from its saved state on tell"}};
     }
+}
+
+SceneModel build_for_run(const Scene& scene) {
+    SceneModel built = build_scene_model(scene);
+    if (scene.integrator != Integrator::explicit_motion) return built;
+    std::string warning = warning_of_long_steps(built.model, scene.explicit_options);
+    if (!warning.empty()) built.model.warnings.push_back(located(warning, scene.places));
+    return built;
 }
 
 RunReport run_stages(const Model& model, const Scene& scene, State& state, StepObserver& observer,

@@ -52,6 +52,7 @@ TEST(ProgressLine, TellsTimesAsPeopleReadThem) {
     EXPECT_EQ(readable_time(200.0), "3 min 20 s");
     EXPECT_EQ(readable_time(7500.0), "2 h 05 min");
     EXPECT_EQ(readable_time(-1.0), "0 s");
+    EXPECT_EQ(readable_time(1e9), "32 years");
 }
 
 TEST(ProgressLine, IsAPlainLineEveryFivePercentWhereThereIsNoTerminal) {
@@ -102,6 +103,21 @@ TEST(ProgressLine, EstimatesTheTimeLeftFromTheLaterHalf) {
         shown.line.update(at_step(step, 400));
     }
     EXPECT_THAT(shown.writes.back(), HasSubstr("13 min 00 s left")); // 260 steps of 3 s
+}
+
+// Two load steps of 1 s, and one of which 2 % are done after 20 s: 980 s and 7 more of 1000 s.
+TEST(ProgressLine, EstimatesTheTimeLeftFromALongLoadStepInProgress) {
+    Shown shown(false);
+    for (int step = 0; step <= 2; ++step) {
+        shown.now = step;
+        shown.line.update(at_step(step, 10));
+    }
+    EXPECT_THAT(shown.writes.back(), HasSubstr("8 s left"));
+    shown.now = 22.0;
+    Progress progress = at_step(2, 10);
+    progress.share_of_step = 0.02;
+    shown.line.update(progress);
+    EXPECT_THAT(shown.writes.back(), HasSubstr("2 h 13 min left"));
 }
 
 } // namespace

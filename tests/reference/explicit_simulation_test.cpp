@@ -129,6 +129,22 @@ TEST(ExplicitSimulation, StressesThatPassTheStrengthBetweenTwoChecksAreWarnedOf)
     EXPECT_THAT(warnings_of("5"), ::testing::IsEmpty());
 }
 
+TEST(ExplicitSimulation, LoadStepsThatTakeForEverAreWarnedOf) {
+    const auto warning = [](const std::vector<std::string>& settings) {
+        const Scene scene = read_scene_text(hexagons, settings);
+        return warning_of_long_steps(build_scene_model(scene).model, scene.explicit_options);
+    };
+    EXPECT_EQ(warning({by_steps}), "");
+    EXPECT_EQ(warning({by_steps, "analysis.loading_rate=0.01"}), "");
+    EXPECT_THAT(warning({by_steps, "analysis.loading_rate=1e-12"}),
+                ::testing::AllOf(::testing::StartsWith("stages.1: a load step takes "),
+                                 ::testing::HasSubstr("a larger analysis.loading_rate takes fewer")));
+    EXPECT_THAT(warning({by_steps, "interfaces.joint.normal_stiffness_times_spacing=1e15",
+                         "materials.rock.youngs_modulus=1", "analysis.density_scaling=none"}),
+                ::testing::AllOf(::testing::StartsWith("stages.0: a load step takes "),
+                                 ::testing::HasSubstr("smaller stiffnesses of the interfaces")));
+}
+
 std::string incline(double slope_degrees) {
     return fmt::format(R"(
 kluft: 1

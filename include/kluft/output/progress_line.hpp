@@ -12,7 +12,7 @@
 
 namespace kluft {
 
-/// A time as people read it: `8 s`, `3 min 20 s`, `2 h 05 min`.
+/// A time as people read it: `8 s`, `3 min 20 s`, `2 h 05 min`, `3.4 years`.
 [[nodiscard]] std::string readable_time(double seconds);
 
 /// `stage 2/2  step 57/200 (28 %)  strain 0.570 %  stress 1.213 MPa  cracks 43  iterations 412  left 31 s`.
@@ -36,7 +36,8 @@ public:
     void clear();
 
 private:
-    [[nodiscard]] std::optional<double> seconds_left(double fraction) const;
+    [[nodiscard]] std::optional<double> seconds_left_at_pace(double fraction) const;
+    [[nodiscard]] std::optional<double> seconds_left(const Progress& progress) const;
     void show(const Progress& progress);
 
     std::function<void(std::string_view)> write_;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <string>
 
 #include "kluft/simulation/simulation.hpp"
 
@@ -18,5 +19,9 @@ namespace kluft {
 RunReport run_explicit(const Model& model, const CrackOptions& cracks, const SolverOptions& solver,
                        const ExplicitOptions& options, State& state, StepObserver& observer,
                        const std::atomic<bool>& stop);
+
+/// "stages.1: a load step takes 1.0e+12 time steps of ..., since ..." of the first stage whose load steps take more than anyone waits for;
+/// "" without one.
+[[nodiscard]] std::string warning_of_long_steps(const Model& model, const ExplicitOptions& options);
 
 } // namespace kluft

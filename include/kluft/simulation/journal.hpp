@@ -76,7 +76,8 @@ public:
     /// Tells the row and the state of a committed load step.
     void tell_state(const StepRecord& row, const State& state, LoadedPlacement in_place, bool last_of_stage);
     /// Tells where a load step stands: at `load_factor` on its way from the state, `row` being the last equilibrium's.
-    void progress(const State& state, const StepRecord& row, double load_factor, int n_solves);
+    void progress(const State& state, const StepRecord& row, double load_factor, int n_solves,
+                  std::optional<double> share_of_step = std::nullopt);
 
     /// The report of a run that has ended in the stage of `state`, or that was cut short.
     [[nodiscard]] RunReport ended(const State& state, const StageEnd& end) const;

@@ -20,7 +20,8 @@ struct Progress {
     double axial_stress = 0.0;             ///< Pa
     std::optional<double> strength_factor; ///< F in runs that reduce strengths, where no platen moves
     int cracks = 0;
-    int open_close_iterations = 0; ///< so far in the run
+    int open_close_iterations = 0;       ///< so far in the run
+    std::optional<double> share_of_step; ///< that is done of the load step in progress, where that grows with its time
 };
 
 class StepObserver {

@@ -8,6 +8,7 @@
 #include "kluft/output/run_writer.hpp"
 #include "kluft/output/summary.hpp"
 #include "kluft/scene/scene.hpp"
+#include "kluft/scene/scene_model.hpp"
 #include "kluft/simulation/bond_bending.hpp"
 #include "kluft/simulation/left_platen.hpp"
 #include "kluft/simulation/model.hpp"
@@ -40,6 +41,9 @@ struct EarlierRuns {
 /// From the summary of the last one, without the warnings of its scene; one that was killed has left none, which is a warning of its own
 /// (its state has the warnings of its load steps, but not those of a ContactWatch).
 [[nodiscard]] EarlierRuns earlier_runs(const std::filesystem::path& directory);
+
+/// The body of a scene, with what there is to warn of before it is run.
+[[nodiscard]] SceneModel build_for_run(const Scene& scene);
 
 /// Runs the stages from `state` on with the integrator of the scene, as run_simulation and run_explicit do.
 RunReport run_stages(const Model& model, const Scene& scene, State& state, StepObserver& observer,
