@@ -322,6 +322,23 @@ std::vector<std::string> slivers(const GeometrySpec& geometry, const BlockSystem
         n > 1 ? fmt::format(", one of {}", n) : "", area_of(system) / system.n_blocks())};
 }
 
+/// A net follows sides of the outline that nearly touch, and fills what is between them.
+std::vector<std::string> slivers_of_net(const GeometrySpec& geometry, const BlockSystem& system,
+                                        const CutReport& report) {
+    constexpr double tiny = 1e-6; // of a cell: far less than what a net resolves
+    if (!geometry.tessellation || !report.fine_details.empty()) return {};
+    const double cell = mean_cell_area(geometry);
+    const auto smallest = std::ranges::min_element(system.blocks, {}, &Block::area);
+    if (smallest->area >= tiny * cell) return {};
+    const auto n = std::ranges::count_if(system.blocks, [&](const Block& each) { return each.area < tiny * cell; });
+    const int b = static_cast<int>(smallest - system.blocks.begin());
+    return {
+        fmt::format("{}: block {} at {} is a sliver of {:.3g} m2{}, where a cell of the net has {:.3g} m2: sides of "
+                    "the outline or of holes nearly touch there, and the run may fail there",
+                    geometry.places.domain, block_label(system, b), place_text(system.origin + smallest->centroid),
+                    smallest->area, n > 1 ? fmt::format(", one of {}", n) : "", cell)};
+}
+
 /// Where a trace passes a corner of the body closely, two parts hang together on what is between.
 std::vector<std::string> necks(const GeometrySpec& geometry, const BlockSystem& system) {
     if (geometry.tessellation) return {};
@@ -480,10 +497,11 @@ SceneModel build_scene_model(const Scene& scene) {
     for (const auto& warnings :
          {lost_fractures(scene, built.cut), fine_details(scene.geometry, built.cut), pruned_pieces(scene, built.cut),
           closed_outcrops(scene.geometry, built.cut), small_reference(scene.geometry, built.model.system),
-          slivers(scene.geometry, built.model.system), necks(scene.geometry, built.model.system),
-          bare_net(scene.geometry, built.model.system), empty_regions(scene.geometry, built.model.system),
-          ragged_regions(scene.geometry, built.model.system), scattered_sides(scene),
-          open_joints(scene.geometry, built.model.system, built.cut), warnings_of_cut_net(scene, built.model.system),
+          slivers(scene.geometry, built.model.system), slivers_of_net(scene.geometry, built.model.system, built.cut),
+          necks(scene.geometry, built.model.system), bare_net(scene.geometry, built.model.system),
+          empty_regions(scene.geometry, built.model.system), ragged_regions(scene.geometry, built.model.system),
+          scattered_sides(scene), open_joints(scene.geometry, built.model.system, built.cut),
+          warnings_of_cut_net(scene, built.model.system),
           coarse_places(scene.geometry, built.cut, scene.interface_types),
           openings_in_large_blocks(scene.geometry, built.model.system, built.cut.resolution, scene.kinematics)})
         built.model.warnings.insert(built.model.warnings.end(), warnings.begin(), warnings.end());

@@ -275,6 +275,15 @@ TEST(SceneModel, WarnsOfTracesInHolesAndOnTheirWalls) {
                 Contains(HasSubstr("other is left out: it lies on the outline of the domain or of a hole")));
 }
 
+// A notch that comes within 1e-7 m of the side across from it leaves triangles of about 1e-14 m2 there.
+TEST(SceneModel, WarnsOfSliversOfANetWhereTheOutlineNearlyTouchesItself) {
+    const std::string left = "geometry.domain.polygon=[[0, 0], [1, 0], [1, 2], [0, 2], [0, 1.001], ";
+    EXPECT_THAT(warnings_of({"geometry.fractures=null", left + "[0.9999999, 1], [0, 0.999]]"}),
+                Contains(AllOf(HasSubstr("is a sliver of "), HasSubstr("nearly touch there"))));
+    EXPECT_THAT(warnings_of({"geometry.fractures=null", left + "[0.5, 1], [0, 0.999]]"}),
+                Not(Contains(HasSubstr("is a sliver of "))));
+}
+
 // A corner of 0.1 x 0.1 / 2 m2 where the smallest block has 20 % of a hexagon of 0.3 m, 0.0156 m2.
 TEST(SceneModel, WarnsOfAFractureThatCutsOffTooLittle) {
     EXPECT_THAT(warnings_of({"geometry.fractures.0.trace=[[0, 0.1], [0.1, 0]]", "geometry.minimum_area=0.2",
