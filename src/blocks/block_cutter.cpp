@@ -456,6 +456,8 @@ double least_width(const GeometrySpec& spec, const LocalFrame& frame) {
     return hair * frame.box.upper.norm();
 }
 
+constexpr double loose_share = 0.01; ///< of the domain: what may be taken off its free sides
+
 MendLimits mend_limits(const GeometrySpec& spec, const LocalFrame& frame, const SourceNumbers& numbers) {
     MendLimits limits;
     limits.area = least_area(spec);
@@ -465,7 +467,8 @@ MendLimits mend_limits(const GeometrySpec& spec, const LocalFrame& frame, const 
     limits.first_fracture = numbers.first_fracture;
     limits.tessellation = numbers.tessellation;
     for (const int boundary : boundary_of_sides(spec)) limits.is_free.push_back(static_cast<char>(boundary < 0));
-    limits.loose_perimeter = lattice_spacing(spec); // about half of it wide
+    limits.loose_perimeter = 2.0 * lattice_spacing(spec);
+    limits.loose_area = loose_share * std::abs(signed_area(spec.domain));
     return limits;
 }
 

@@ -132,6 +132,11 @@ private:
     [[nodiscard]] bool is_on_outline(int v) const {
         return std::ranges::any_of(map_.star(v), [this](int h) { return is_outline(h); });
     }
+    /// The source of an edge as cut: what has been taken off beside it made it one of the outline.
+    [[nodiscard]] int fracture_of(int h) const {
+        const auto at = laid_bare_.find(PlanarMap::edge_of(h));
+        return at != laid_bare_.end() ? at->second : map_.source(h);
+    }
     [[nodiscard]] bool is_tessellation(int h) const { return map_.source(h) >= limits_.tessellation; }
 
     void straighten() {
@@ -157,7 +162,7 @@ private:
         const int face = map_.face(h);
         return std::ranges::any_of(half_edges, [&](int of_face) {
             return std::ranges::any_of(map_.star(map_.start(of_face)), [&](int k) {
-                return map_.source(k) == map_.source(h) && map_.face(k) != face && map_.face(map_.twin(k)) != face;
+                return fracture_of(k) == map_.source(h) && map_.face(k) != face && map_.face(map_.twin(k)) != face;
             });
         });
     }
@@ -257,7 +262,7 @@ private:
         return length;
     }
 
-    /// The piece of the outline that a face ends at, if it is one, along a side that no boundary names, and the face meets the outline nowhere else.
+    /// The piece of the outline that a face ends at, if it is one, along sides that no boundary names, and the face meets the outline nowhere else.
     [[nodiscard]] std::vector<int> free_surface(int face) {
         const std::vector<int>& list = map_.half_edges_of(face);
         const auto at_surface = [&](int h) { return map_.face(map_.twin(h)) == outside; };
@@ -269,7 +274,7 @@ private:
         int n_ends = 0;
         for (const int h : list) {
             if (at_surface(h)) {
-                if (!is_free(h) || (!surface.empty() && map_.source(surface.front()) != map_.source(h))) return {};
+                if (!is_free(h)) return {};
                 surface.push_back(h);
             } else {
                 n_ends += at_surface(map_.next(h)) ? 1 : 0;
@@ -285,12 +290,16 @@ private:
     /// it went into: a small piece is taken off.
     bool take_off(int face, int exit) {
         if (is_tessellation(exit) || !goes_on_beyond(exit, map_.half_edges_of(face))) return false;
-        if (perimeter(face) > limits_.loose_perimeter) return false;
+        const double area = std::max(0.0, map_.area(face));
+        if (perimeter(face) > limits_.loose_perimeter || taken_area_ + area > limits_.loose_area) return false;
         const std::vector<int> surface = free_surface(face);
         if (surface.empty()) return false;
-        MendReport::Merged piece{.at = face_centroid(map_, face), .area = std::max(0.0, map_.area(face))};
+        MendReport::Merged piece{.at = face_centroid(map_, face), .area = area};
         for (const int h : surface) piece.length += map_.length(h);
         report_.taken_off.push_back(piece);
+        taken_area_ += area;
+        for (const int h : map_.half_edges_of(face))
+            if (!is_outline(h)) laid_bare_[PlanarMap::edge_of(h)] = map_.source(h);
         map_.take_away(face, map_.source(surface.front()));
         return true;
     }
@@ -471,6 +480,9 @@ private:
     PlanarMap& map_;
     MendLimits limits_;
     MendReport report_;
+    std::map<int, int>
+        laid_bare_; ///< edges of fractures that are of the outline since a piece was taken off: their source before
+    double taken_area_ = 0.0; ///< of all pieces (m2)
 };
 
 } // namespace

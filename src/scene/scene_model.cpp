@@ -192,6 +192,20 @@ std::vector<std::string> closed_outcrops(const GeometrySpec& geometry, const Cut
         trace_of(closed.front()).place, pieces)};
 }
 
+/// What is no part of the body any more.
+std::vector<std::string> taken_off(const GeometrySpec& geometry, const CutReport& report) {
+    if (report.taken_off.empty()) return {};
+    const auto largest = std::ranges::max_element(report.taken_off, {}, &CutReport::Merged::area);
+    double area = 0.0;
+    for (const CutReport::Merged& piece : report.taken_off) area += piece.area;
+    const std::size_t n = report.taken_off.size();
+    return {fmt::format(
+        "{}: {} too small for a block {} taken off the free surface, {:.3g} m2 in all{} at {}: in a neighbour "
+        "it would lock a fracture that comes out there. A side that is named in `boundaries` keeps all of its rock",
+        geometry.places.domain, n > 1 ? fmt::format("{} pieces", n) : "a piece", n > 1 ? "are" : "is", area,
+        n > 1 ? ", the largest" : "", place_text(largest->at))};
+}
+
 std::vector<std::string> bare_net(const GeometrySpec& geometry, const BlockSystem& system) {
     const auto is_of_net = [](const Interface& each) { return each.origin == EdgeOrigin::tessellation; };
     if (!geometry.tessellation || std::ranges::any_of(system.interfaces, is_of_net)) return {};
@@ -496,12 +510,12 @@ SceneModel build_scene_model(const Scene& scene) {
     built.cut = std::move(body.report);
     for (const auto& warnings :
          {lost_fractures(scene, built.cut), fine_details(scene.geometry, built.cut), pruned_pieces(scene, built.cut),
-          closed_outcrops(scene.geometry, built.cut), small_reference(scene.geometry, built.model.system),
-          slivers(scene.geometry, built.model.system), slivers_of_net(scene.geometry, built.model.system, built.cut),
-          necks(scene.geometry, built.model.system), bare_net(scene.geometry, built.model.system),
-          empty_regions(scene.geometry, built.model.system), ragged_regions(scene.geometry, built.model.system),
-          scattered_sides(scene), open_joints(scene.geometry, built.model.system, built.cut),
-          warnings_of_cut_net(scene, built.model.system),
+          closed_outcrops(scene.geometry, built.cut), taken_off(scene.geometry, built.cut),
+          small_reference(scene.geometry, built.model.system), slivers(scene.geometry, built.model.system),
+          slivers_of_net(scene.geometry, built.model.system, built.cut), necks(scene.geometry, built.model.system),
+          bare_net(scene.geometry, built.model.system), empty_regions(scene.geometry, built.model.system),
+          ragged_regions(scene.geometry, built.model.system), scattered_sides(scene),
+          open_joints(scene.geometry, built.model.system, built.cut), warnings_of_cut_net(scene, built.model.system),
           coarse_places(scene.geometry, built.cut, scene.interface_types),
           openings_in_large_blocks(scene.geometry, built.model.system, built.cut.resolution, scene.kinematics)})
         built.model.warnings.insert(built.model.warnings.end(), warnings.begin(), warnings.end());

