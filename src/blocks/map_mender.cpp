@@ -286,18 +286,23 @@ private:
         return surface;
     }
 
+    [[nodiscard]] double taken_area() const {
+        double area = 0.0;
+        for (const MendReport::Merged& piece : report_.taken_off) area += piece.area;
+        return area;
+    }
+
     /// What lies at a free surface between fractures that go on beyond it would lock what slides along one of them, whichever neighbour
     /// it went into: a small piece is taken off.
     bool take_off(int face, int exit) {
         if (is_tessellation(exit) || !goes_on_beyond(exit, map_.half_edges_of(face))) return false;
         const double area = std::max(0.0, map_.area(face));
-        if (perimeter(face) > limits_.loose_perimeter || taken_area_ + area > limits_.loose_area) return false;
+        if (perimeter(face) > limits_.loose_perimeter || taken_area() + area > limits_.loose_area) return false;
         const std::vector<int> surface = free_surface(face);
         if (surface.empty()) return false;
         MendReport::Merged piece{.at = face_centroid(map_, face), .area = area};
         for (const int h : surface) piece.length += map_.length(h);
         report_.taken_off.push_back(piece);
-        taken_area_ += area;
         for (const int h : map_.half_edges_of(face))
             if (!is_outline(h)) laid_bare_[PlanarMap::edge_of(h)] = map_.source(h);
         map_.take_away(face, map_.source(surface.front()));
@@ -482,7 +487,6 @@ private:
     MendReport report_;
     std::map<int, int>
         laid_bare_; ///< edges of fractures that are of the outline since a piece was taken off: their source before
-    double taken_area_ = 0.0; ///< of all pieces (m2)
 };
 
 } // namespace

@@ -189,20 +189,24 @@ TEST(JointedSlope, WedgeSlidesDownAPlaneThatIsTooSteep) {
     }
 }
 
+/// So many parallel traces of the interface j.
+std::string set_of_traces(int n, const Vec2& from, const Vec2& to, const Vec2& apart) {
+    std::string traces;
+    for (int i = 0; i < n; ++i) {
+        const Vec2 a = from + i * apart;
+        const Vec2 b = to + i * apart;
+        traces += fmt::format("    - {{trace: [[{}, {}], [{}, {}]], interface: j}}\n", a.x(), a.y(), b.x(), b.y());
+    }
+    return traces;
+}
+
 /// Two sets of joints with a cohesion of 20 kPa, 3.5 m and 3.1 m apart, in a slope of 10 m.
 SceneRun slope_of_two_sets(const std::string& reduction) {
-    std::string traces;
-    const auto add_set = [&](int n, const Vec2& from, const Vec2& to, const Vec2& apart) {
-        for (int i = 0; i < n; ++i) {
-            const Vec2 a = from + i * apart;
-            const Vec2 b = to + i * apart;
-            traces += fmt::format("    - {{trace: [[{}, {}], [{}, {}]], interface: j}}\n", a.x(), a.y(), b.x(), b.y());
-        }
-    };
-    add_set(22, {-6.846031280247679, -60.12573261256526}, {86.12185147991065, 15.748985015202248},
-            {-2.239809989075591, 2.7443956180607533});
-    add_set(24, {61.282963065168715, -45.691034839305615}, {43.36479143288361, 72.9636706103982},
-            {-3.110323004085508, -0.46969315712887});
+    const std::string traces =
+        set_of_traces(22, {-6.846031280247679, -60.12573261256526}, {86.12185147991065, 15.748985015202248},
+                      {-2.239809989075591, 2.7443956180607533}) +
+        set_of_traces(24, {61.282963065168715, -45.691034839305615}, {43.36479143288361, 72.9636706103982},
+                      {-3.110323004085508, -0.46969315712887});
     return run_scene(
         R"(kluft: 1
 analysis: {gravity: 9.81}
@@ -235,18 +239,11 @@ TEST(SlowJointedSlope, FactorDoesNotDependOnWhereItsSearchBegins) {
 // Two sets of joints cross 0.07 m behind the face: what is left there, too small for a block or for triangles of the net, had gone into a neighbour and
 // locked the wedge behind it (a factor above 4). The independent value is that of the body with all of its pieces as blocks.
 TEST(SlowJointedSlope, APieceAtTheFaceBetweenTwoJointsDoesNotHoldTheWedgeBehindIt) {
-    std::string traces;
-    const auto add_set = [&](int n, const Vec2& from, const Vec2& to, const Vec2& apart) {
-        for (int i = 0; i < n; ++i) {
-            const Vec2 a = from + i * apart;
-            const Vec2 b = to + i * apart;
-            traces += fmt::format("    - {{trace: [[{}, {}], [{}, {}]], interface: j}}\n", a.x(), a.y(), b.x(), b.y());
-        }
-    };
-    add_set(16, {-3.2284880822452777, -60.02104690311497}, {83.91747064776601, 22.47490376737047},
-            {-3.1680614672150462, 3.346633791984029});
-    add_set(16, {72.38091842117817, -32.74271266052266}, {25.266521555431083, 77.62138298646246},
-            {-4.22796499853808, -1.8049168953672344});
+    const std::string traces =
+        set_of_traces(16, {-3.2284880822452777, -60.02104690311497}, {83.91747064776601, 22.47490376737047},
+                      {-3.1680614672150462, 3.346633791984029}) +
+        set_of_traces(16, {72.38091842117817, -32.74271266052266}, {25.266521555431083, 77.62138298646246},
+                      {-4.22796499853808, -1.8049168953672344});
     const auto factor = [&](const std::string& net) {
         const SceneRun run = run_scene(
             "kluft: 1\nanalysis: {gravity: 9.81}\n"
