@@ -65,7 +65,7 @@ void expect_same(const GeometrySpec& spec, const std::string& what) {
     EXPECT_TRUE(same_report(cut.body.report, exact.body.report)) << what;
 }
 
-TEST(WholeCells, MakeTheSameBodyAsTheExactSubdivisionOfAllHexagons) {
+TEST(SlowWholeCells, MakeTheSameBodyAsTheExactSubdivisionOfAllHexagons) {
     expect_same(net(), "plain");
     for (const double rotation : {0.0, 0.1, std::numbers::pi / 6.0, 1.0, -2.0}) {
         for (const double jitter : {0.0, 0.1, 0.2499}) {

@@ -112,7 +112,7 @@ TEST(SlowExplicitSimulation, PotentialCracksFailAtTheStressOfTheImplicitRun) {
 
 // At a stress of 1 MPa the index of an intact body with 0.5 MPa of cohesion and 30 degrees is 1 MPa / (2 c cos(phi)/(1 - sin(phi))) = 0.58;
 // with a tenth of the cohesion 5.8.
-TEST(ExplicitSimulation, StressesThatPassTheStrengthBetweenTwoChecksAreWarnedOf) {
+TEST(SlowExplicitSimulation, StressesThatPassTheStrengthBetweenTwoChecksAreWarnedOf) {
     const auto warnings_of = [](const char* interval) {
         const auto run =
             run_scene(hexagons, {by_steps, "geometry.fractures=[]", "materials.rock.cohesion=0.05 MPa",

@@ -60,7 +60,7 @@ TEST(DilatedJoint, StaysApartWhateverTheSpacing) {
 }
 
 // Cells of a net slide past the vertices of those on the other side.
-TEST(DilatedJoint, StaysApartWhereFacesMeetOthers) {
+TEST(SlowDilatedJoint, StaysApartWhereFacesMeetOthers) {
     expect_sawtooth(direct_shear(3.0, 0.12, 120, "tessellation: {triangles: {spacing: 0.1}, interface: bond}"), 3.0,
                     0.12);
 }

@@ -67,7 +67,7 @@ TEST(SlowNetLocking, TrianglesUnderHighPressureLockAndThePeakIsThatOfTheRockBefo
     EXPECT_NEAR(*numbers.peak_stress, strength_of_the_rock(20e6), 0.03 * strength_of_the_rock(20e6));
 }
 
-TEST(NetLocking, SmoothJointsLeaveAPeak) {
+TEST(SlowNetLocking, SmoothJointsLeaveAPeak) {
     const SceneRun run =
         run_scene(intact_rock, {"interfaces.joint.friction_angle=15", "stages.1.stop_after_drop=20 %"});
     ASSERT_EQ(run.report.status, RunStatus::done);
@@ -80,7 +80,7 @@ TEST(NetLocking, SmoothJointsLeaveAPeak) {
 
 // Counted anew over the cracks that were told, whose places are the middles of their edges: 2.5 to 7.5 m of 10 m, or along
 // the width 1.25 to 3.75 m of 5 m.
-TEST(NetLocking, BrokenShareIsThatOfTheMiddleHalfAlongTheLoad) {
+TEST(SlowNetLocking, BrokenShareIsThatOfTheMiddleHalfAlongTheLoad) {
     for (const bool upright : {true, false}) {
         const std::string boundary = upright ? "stages.1.strain.boundary=top" : "stages.1.strain.boundary=right";
         const SceneRun run = run_scene(intact_rock, {boundary, "stages.1.strain.value=0.25 %", "stages.1.steps=5"});

@@ -132,7 +132,7 @@ TEST(Repeatability, RepeatableRunHasTheSameBitsForAnyNumberOfThreads) {
 
 // Reuse changes the way to an equilibrium, not the equilibrium: with tight tolerances the same states to 1e-8, cracks,
 // sliding and opening included.
-TEST(Repeatability, RunWithAReusedFactorReachesTheStatesOfOneThatAlwaysFactorizes) {
+TEST(SlowRepeatability, RunWithAReusedFactorReachesTheStatesOfOneThatAlwaysFactorizes) {
     std::vector<std::string> overrides = {"stages.1.steps=12",      "stages.1.strain.value=0.01",
                                           "cracks.update=all",      "boundaries.bottom.support=pinned",
                                           "solver.tolerance=1e-10", "solver.balance=1e-5"};

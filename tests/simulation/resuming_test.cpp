@@ -123,7 +123,7 @@ stages:
                        distance, steps);
 }
 
-TEST(Resuming, RunThatEndedAfterUnbalancedLoadStepsEndsTheSame) {
+TEST(SlowResuming, RunThatEndedAfterUnbalancedLoadStepsEndsTheSame) {
     for (const char* most : {"1", "3", "100"}) { // 100: the stage ends before there are as many
         const SceneRun run = run_scene(pushed_block(3.0, 30), {std::string("solver.max_unbalanced_steps=") + most});
         EXPECT_EQ(run.report.status, std::string(most) == "100" ? RunStatus::unbalanced : RunStatus::no_equilibrium);

@@ -113,7 +113,7 @@ TEST(TopplingColumns, ARowThatSnapsOverUnderItsWeightIsWarnedOf) {
 }
 
 // With fifteen points on a face the row does not snap, but leans over bit by bit.
-TEST(TopplingColumns, ARowThatLeansOverBitByBitIsWarnedOfWithTheFactorBefore) {
+TEST(SlowTopplingColumns, ARowThatLeansOverBitByBitIsWarnedOfWithTheFactorBefore) {
     const ColumnRow row{.heights = {4, 6, 8, 8, 6, 4}};
     std::string text = row_scene(row, "[{name: weight}, {name: strength, strength_reduction: {from: 0.2, to: 8}}]");
     text.insert(text.find(", friction_angle"), ", overlap_points: 15");

@@ -100,7 +100,7 @@ stages: [{{strain: {{boundary: top, value: 1e-5}}, steps: 1}}]
 
 // `stiffness_ratio` means the rock's moduli: (20a) with the edges that the net has, which is an approximation for triangles
 // that are not equilateral, better the more there are (docs/theory.md gives what was measured).
-TEST(TriangleNetRun, NetsHaveTheRocksYoungsModulus) {
+TEST(SlowTriangleNetRun, NetsHaveTheRocksYoungsModulus) {
     const auto modulus = [](const std::string& net, const std::string& kinematics) {
         const auto run = run_scene(pressed_net(net, kinematics));
         EXPECT_TRUE(stands(run)) << run.report.diagnosis;
@@ -149,7 +149,7 @@ double axial_modulus_of(const SceneRun& run) {
 
 // The mass-like term leaves no trace in an elastic body, however many small blocks there are to add up what is left over on
 // each. It had made this body 2 % too stiff, all steps balanced. Without the term the body is held by round-off alone.
-TEST(TriangleNetRun, MassLikeTermDoesNotStiffenABodyThatNothingHoldsSideways) {
+TEST(SlowTriangleNetRun, MassLikeTermDoesNotStiffenABodyThatNothingHoldsSideways) {
     const auto run = run_scene(graded_body_pressed_once(5e-3));
     const auto without = run_scene(graded_body_pressed_once(0.0));
     ASSERT_TRUE(stands(run)) << run.report.diagnosis;
