@@ -23,6 +23,7 @@ namespace {
 
 constexpr double short_contact = 0.02; ///< of the spacing of a hexagon as large as the smaller block
 constexpr double large_share = 0.05;   ///< of what acts on a block (measured: below 0.01, or above 0.1)
+constexpr double as_much = 0.98;       ///< of the largest axial stress
 
 /// Two blocks and the edges with which they touch.
 struct Overlap {
@@ -82,7 +83,6 @@ bool is_with_ground(const BlockSystem& system, const Overlap& overlap, const Unh
 /// What carries most of the tips that lean on the ground before them, and of which strength reduction takes no count.
 std::optional<CornerContact> tip_on_ground(const Model& model, const State& state) {
     std::optional<CornerContact> largest;
-    if (!has_gravity(model)) return largest;
     const auto tips = unheld_tips(model, state);
     if (tips.empty()) return largest;
     with_body_of_state(model, state, [&](const LoadedBody& body) {
@@ -151,7 +151,7 @@ std::string description(const Model& model, const CornerContact& corner) {
 
 std::string corner_contact_warning(const Model& model, const State& state) {
     if (model.loads.stages[state.at.stage].strength_reduction) return {};
-    if (const auto tip = tip_on_ground(model, state))
+    if (const auto tip = has_gravity(model) ? tip_on_ground(model, state) : std::nullopt)
         return description(model, *tip) +
                ": a tip leans there on the ground before it, on which rock would break or ride over; a stage of "
                "`strength_reduction` takes no count of it, and tells whether the body stands without";
@@ -160,6 +160,29 @@ std::string corner_contact_warning(const Model& model, const State& state) {
     if (corners.empty()) return {};
     return description(model, corners.front()) + ": blocks without potential cracks keep their corners, and where "
                                                  "joints cross these may carry what rock would not";
+}
+
+void TipWatch::step(const StepRecord& record, const State& state) {
+    const Stage& stage = model_.loads.stages[record.stage];
+    if (!stage.motion || stage.strength_reduction || !record.balanced) return;
+    if (model_.has_potential_cracks && !has_gravity(model_)) return; // a specimen, without ground
+    const double stress = std::abs(record.axial_stress);
+    if (stress <= without_) return;
+    const auto tip = tip_on_ground(model_, state);
+    if (!tip) without_ = stress;
+    if (stress <= largest_stress_) return;
+    largest_stress_ = stress;
+    tip_ = tip;
+    step_ = record.step;
+}
+
+std::string TipWatch::warning() const {
+    if (!tip_ || without_ >= as_much * largest_stress_) return {};
+    return fmt::format(
+        "load step {}: at the largest axial stress, {:.4g} MPa, {}: a tip leans there on the ground before it, on "
+        "which rock would break or ride over{}",
+        step_, 1e-6 * largest_stress_, description(model_, *tip_),
+        without_ > 0.0 ? fmt::format(". Without one the body has borne {:.4g} MPa", 1e-6 * without_) : "");
 }
 
 } // namespace kluft

@@ -149,6 +149,7 @@ void ContactWatch::step(const StepRecord& record, const State& state) {
     bonds_.step(record, state);
     bending_.step(record, state);
     platens_.step(record, state);
+    tips_.step(record, state);
 }
 
 void warn_of_contacts(const Model& model, const State& state, const ContactWatch& watch, RunReport& report) {
@@ -162,12 +163,13 @@ void warn_of_contacts(const Model& model, const State& state, const ContactWatch
             add(watch.bonds().warning());
             add(watch.bending().warning());
             add(watch.platens().warning());
+            add(watch.tips().warning());
             return;
         }
         for (const std::string& warning :
              {contact_pressure_warning(model, state, watch.largest_stress()), corner_contact_warning(model, state),
               watch.corners().warning(), watch.bonds().warning(), watch.bending().warning(), watch.platens().warning(),
-              rocking_joint_warning(model, state), pulling_support_warning(model, state),
+              watch.tips().warning(), rocking_joint_warning(model, state), pulling_support_warning(model, state),
               cohesion_share_warning(model, state),
               report.status == RunStatus::done ? contacts_anew_warning(model, state) : "",
               report.status == RunStatus::done ? unstable_equilibrium_warning(model, state) : ""})

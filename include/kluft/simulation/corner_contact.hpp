@@ -1,6 +1,7 @@
 // Corners that hold blocks: short contacts that carry much.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "kluft/core/vector.hpp"
 #include "kluft/simulation/model.hpp"
 #include "kluft/simulation/state.hpp"
+#include "kluft/simulation/step_record.hpp"
 
 namespace kluft {
 
@@ -38,5 +40,25 @@ struct CornerContact {
 /// What is to be said of the largest one of them on which a tip leans on the ground before it, or else of the largest one of blocks that cannot
 /// break; "" where there is none, and in a stage that reduces strengths, which knows when a corner has caught.
 [[nodiscard]] std::string corner_contact_warning(const Model& model, const State& state);
+
+/// Follows the platen stages of a run, and remembers the largest axial stress and what tip leaned on the ground before it then. `model` must
+/// outlive it.
+class TipWatch {
+public:
+    explicit TipWatch(const Model& model) : model_(model) {}
+
+    /// A committed load step.
+    void step(const StepRecord& record, const State& state);
+
+    /// What is to be said of that tip; "" where the body has borne as much without it.
+    [[nodiscard]] std::string warning() const;
+
+private:
+    const Model& model_;
+    std::optional<CornerContact> tip_; ///< at the largest axial stress
+    int step_ = 0;
+    double largest_stress_ = 0.0; ///< Pa
+    double without_ = 0.0;        ///< the largest one of load steps in which none leaned (Pa)
+};
 
 } // namespace kluft

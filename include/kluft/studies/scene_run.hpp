@@ -10,6 +10,7 @@
 #include "kluft/scene/scene.hpp"
 #include "kluft/scene/scene_model.hpp"
 #include "kluft/simulation/bond_bending.hpp"
+#include "kluft/simulation/corner_contact.hpp"
 #include "kluft/simulation/left_platen.hpp"
 #include "kluft/simulation/model.hpp"
 #include "kluft/simulation/overloaded_bonds.hpp"
@@ -53,7 +54,7 @@ RunReport run_stages(const Model& model, const Scene& scene, State& state, StepO
 class ContactWatch {
 public:
     ContactWatch(const Model& model, CrackCriterion criterion)
-        : corners_(model), bonds_(model, criterion), bending_(model), platens_(model) {}
+        : corners_(model), bonds_(model, criterion), bending_(model), platens_(model), tips_(model) {}
 
     /// A committed load step.
     void step(const StepRecord& record, const State& state);
@@ -64,12 +65,14 @@ public:
     [[nodiscard]] const BondWatch& bonds() const { return bonds_; }
     [[nodiscard]] const BendingWatch& bending() const { return bending_; }
     [[nodiscard]] const PlatenWatch& platens() const { return platens_; }
+    [[nodiscard]] const TipWatch& tips() const { return tips_; }
 
 private:
     CornerWatch corners_;
     BondWatch bonds_;
     BendingWatch bending_;
     PlatenWatch platens_;
+    TipWatch tips_;
     double largest_stress_ = 0.0;
 };
 
