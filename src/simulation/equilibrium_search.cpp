@@ -20,6 +20,10 @@ constexpr double sharpest = 1e-5;    ///< of the tolerance
 constexpr int rounds_that_open = 12; ///< points of platens: then they may only close
 constexpr int max_platen_rounds = 24;
 constexpr double share_of_solve = 0.1; ///< of what may be left over on a block: largest residual of a solve
+constexpr double share_of_change =
+    0.01; ///< of what a change of the loads has put on the blocks: what may be left over of it
+constexpr double least_change = 1e-7; ///< of F_ref
+constexpr int rounds_of_change = 3;
 
 OpenCloseOptions open_close_options(const SolverOptions& solver) {
     OpenCloseOptions options;
@@ -53,6 +57,12 @@ bool lags_behind(const EquilibriumProblem& problem, const Equilibrium& found, do
 bool has_friction(const LoadedBody& body) {
     return std::ranges::any_of(body.placement->contacts,
                                [&](const ContactPoint& point) { return (*body.laws)[point.law].tan_friction > 0.0; });
+}
+
+double norm_of(const std::vector<Vec3>& left) {
+    double sum = 0.0;
+    for (const Vec3& each : left) sum += each.squaredNorm();
+    return std::sqrt(sum);
 }
 
 /// Each block and group, and the mass-like term, which holds strains of blocks back too.
@@ -149,7 +159,9 @@ Equilibrium EquilibriumSearch::find_held(EquilibriumProblem problem, Eigen::Vect
     found.iterations = n_spent;
     found.displacement = std::move(guess);
     iterate(problem, balance, circumstances, found);
+    const EquilibriumProblem posed = problem;
     if (found.converged()) settle(problem, balance, found);
+    if (found.balanced && circumstances.adds_loads) follow_small_loads(posed, balance, found);
     return found;
 }
 
@@ -215,24 +227,43 @@ void EquilibriumSearch::settle(EquilibriumProblem& problem, const BlockGoal& bal
     }
     found.balanced = is_balanced(found, balance);
     if (found.balanced && lags_behind(problem, found, open_close_.options().tolerance))
-        catch_up(problem, balance, found);
+        catch_up(problem, balance, 1.0, found);
 }
 
 /// A body in which nothing slides stands where the mass-like term from its last state, a tenth of it, leaves it: in small steps
 /// of load what (27b) allows would be seen beside the growth of the load.
-void EquilibriumSearch::catch_up(EquilibriumProblem& problem, const BlockGoal& balance, Equilibrium& found) {
+bool EquilibriumSearch::catch_up(EquilibriumProblem& problem, const BlockGoal& balance, double tolerance_share,
+                                 Equilibrium& found) {
     problem.start = found.displacement;
     for (double& eta : problem.eta) eta *= eta_decay;
     Equilibrium next = found;
     next.summary =
-        open_close_.solve(problem, pattern_, next.displacement, {.block_tolerance = share_of_solve * balance.share});
+        open_close_.solve(problem, pattern_, next.displacement,
+                          {.block_tolerance = share_of_solve * balance.share, .tolerance_share = tolerance_share});
     found.iterations += next.summary.iterations;
-    if (!next.converged()) return;
+    if (!next.converged()) return false;
     next.iterations = found.iterations;
     next.blocks = block_balance(problem.body, next.displacement);
     next.verdict = judge_blocks(next.blocks, &found.blocks, balance);
     next.viscous_share = viscous_share(problem, next.displacement, next.summary.force_scale);
-    if (is_balanced(next, balance)) found = std::move(next);
+    next.balanced = is_balanced(next, balance);
+    if (!next.balanced) return false;
+    found = std::move(next);
+    return true;
+}
+
+/// What balances a body beside all that it carries may be much beside loads that are small, and are added to these: a hundredth
+/// of what they have put on the blocks may be left over (27e).
+void EquilibriumSearch::follow_small_loads(EquilibriumProblem problem, const BlockGoal& balance, Equilibrium& found) {
+    const double change = norm_of(block_balance(problem.body, problem.start).left);
+    if (change <= least_change * found.summary.force_scale) return;
+    double tolerance_share = 1.0;
+    for (int round = 0; round < rounds_of_change; ++round) {
+        const double left = norm_of(found.blocks.left);
+        if (left <= share_of_change * change) return;
+        tolerance_share *= sharpening * share_of_change * change / left;
+        if (!catch_up(problem, balance, std::max(tolerance_share, sharpest), found)) return;
+    }
 }
 
 Equilibrium EquilibriumSearch::move_on(const EquilibriumProblem& problem, const Eigen::VectorXd& guess,

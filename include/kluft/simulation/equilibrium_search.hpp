@@ -23,6 +23,7 @@ namespace kluft {
 struct Circumstances {
     bool unloaded = false;    ///< contacts carry no force yet (IterationGoal)
     bool given_loads = false; ///< and not the motion of a platen (IterationGoal)
+    bool adds_loads = false;  ///< to what the body carries
 };
 
 /// What was found at one load level.
@@ -85,7 +86,8 @@ private:
     Equilibrium move_held(const EquilibriumProblem& problem, Eigen::VectorXd guess, const BlockGoal& balance,
                           bool unloaded);
     void settle(EquilibriumProblem& problem, const BlockGoal& balance, Equilibrium& found);
-    void catch_up(EquilibriumProblem& problem, const BlockGoal& balance, Equilibrium& found);
+    bool catch_up(EquilibriumProblem& problem, const BlockGoal& balance, double tolerance_share, Equilibrium& found);
+    void follow_small_loads(EquilibriumProblem problem, const BlockGoal& balance, Equilibrium& found);
 
     const Model& model_;
     double viscosity_;
