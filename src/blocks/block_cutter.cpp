@@ -914,7 +914,7 @@ CutBody cut(const GeometrySpec& spec, ExactCells exact) {
                                       std::max(-1, piece.source - numbers.first_fracture), piece.length,
                                       piece.at_outline});
     for (const auto& piece : mended.taken_off)
-        body.report.taken_off.push_back({frame.origin + piece.at, piece.area, -1, piece.length, true});
+        body.report.taken_off.push_back({frame.origin + piece.at, piece.area, -1, piece.length, true, piece.width});
 
     body.system = SystemBuilder(spec, frame, numbers, map).build();
     if (has_triangles(spec)) grade(body.system, side_of_triangles(spec, frame, numbers));

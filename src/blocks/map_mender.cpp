@@ -297,10 +297,11 @@ private:
     bool take_off(int face, int exit) {
         if (is_tessellation(exit) || !goes_on_beyond(exit, map_.half_edges_of(face))) return false;
         const double area = std::max(0.0, map_.area(face));
-        if (perimeter(face) > limits_.loose_perimeter || taken_area() + area > limits_.loose_area) return false;
+        const double around = perimeter(face);
+        if (around > limits_.loose_perimeter || taken_area() + area > limits_.loose_area) return false;
         const std::vector<int> surface = free_surface(face);
         if (surface.empty()) return false;
-        MendReport::Merged piece{.at = face_centroid(map_, face), .area = area};
+        MendReport::Merged piece{.at = face_centroid(map_, face), .area = area, .width = 2.0 * area / around};
         for (const int h : surface) piece.length += map_.length(h);
         report_.taken_off.push_back(piece);
         for (const int h : map_.half_edges_of(face))

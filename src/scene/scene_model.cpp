@@ -235,6 +235,49 @@ double distance_to_outline(const Polygon& polygon, const Vec2& p) {
     return nearest;
 }
 
+/// To two digits.
+double rounded_down(double value) {
+    const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
+    return unit * std::floor(value / unit);
+}
+
+/// What keeps a piece that was taken off.
+std::string what_keeps(const CutReport::Merged& piece, const GeometrySpec& geometry, const CutReport& report) {
+    const std::string named = "a boundary that names its side keeps the rock there";
+    if (piece.width < report.minimum_width) return "a finer net, or " + named;
+    const double whole = std::min(mean_cell_area(geometry), std::abs(signed_area(geometry.domain)));
+    return fmt::format("`geometry.minimum_area` of at most {:.2g} keeps it as a block, or {}",
+                       rounded_down(piece.area / whole), named);
+}
+
+/// Throws InputError for points of forces and histories in what was taken off, which belong to no block.
+void refuse_points_taken_off(const Scene& scene, const CutBody& body) {
+    const GeometrySpec& geometry = scene.geometry;
+    const std::vector<CutReport::Merged>& taken = body.report.taken_off;
+    if (taken.empty()) return;
+    const double rounding = 1e-9 * (body.system.upper - body.system.lower).norm();
+    std::vector<std::string> messages;
+    const auto judge = [&](const std::string& key, const Vec2& p) {
+        const bool is_in_domain = is_in_body(p, geometry) || distance_to_outline(geometry.domain, p) <= rounding;
+        if (!is_in_domain || block_containing(body.system, p) >= 0) return;
+        const auto away = [&](const CutReport::Merged& piece) { return (piece.at - p).norm(); };
+        const CutReport::Merged& piece = *std::ranges::min_element(taken, {}, away);
+        messages.push_back(fmt::format("{}: expected a point in a block, found {} in a piece of {:.3g} m2 that is too "
+                                       "small for a block and is taken off the free surface; {}",
+                                       key, place_text(p), piece.area, what_keeps(piece, geometry, body.report)));
+    };
+    const LoadProgram& loads = scene.loads;
+    for (int i = 0; i < static_cast<int>(loads.forces.size()); ++i) {
+        const PointForce& force = loads.forces[static_cast<std::size_t>(i)];
+        const auto stage =
+            std::ranges::find_if(loads.stages, [i](const Stage& each) { return each.forces.contains(i); });
+        judge(fmt::format("stages.{}.forces.{}", stage - loads.stages.begin(), force.name), force.point);
+    }
+    for (const HistoryRequest& request : scene.output.histories)
+        if (request.point) judge("output.histories." + request.name, *request.point);
+    if (!messages.empty()) throw located(InputError(std::move(messages)), scene.places);
+}
+
 /// Where cells of a net belong to a polygon by their middles, it ends at their edges: cells of the rock beside it bridge a thin layer.
 std::vector<std::string> ragged_regions(const GeometrySpec& geometry, const BlockSystem& system) {
     constexpr double far_off = 0.02; // of the spacing, on the average
@@ -497,6 +540,7 @@ ModelInput model_input(const Scene& scene) {
 
 SceneModel build_scene_model(const Scene& scene) {
     CutBody body = cut_body(scene);
+    refuse_points_taken_off(scene, body);
     SceneModel built;
     try {
         built.model = build_model(std::move(body.system), model_input(scene));

@@ -70,6 +70,38 @@ TEST(SceneModel, WhatTheBodyShowsToBeWrongHasItsPlace) {
     }
 }
 
+// Two traces cross 0.1 m behind a side of 2 m: the triangle between them, 0.01 m2, is 0.0115 of a hexagon of 1 m, 0.866 m2.
+TEST(SceneModel, PointsInAPieceThatIsTakenOffAreRefusedWithTheKeyThatKeepsIt) {
+    const std::string crossed = R"(kluft: 1
+analysis: {gravity: 9.81}
+materials: {rock: {density: 2500, youngs_modulus: 10 GPa, poissons_ratio: 0.2}}
+interfaces: {joint: {kind: fracture, friction_angle: 30, normal_stiffness: 10 GPa/m, shear_stiffness: 5 GPa/m}}
+geometry:
+  domain: {polygon: [[0, 0], [2, 0], [2, 2], [0, 2]]}
+  reference_spacing: 1
+  minimum_area: 0.02
+  fractures:
+    - {trace: [[0.9, 0], [2.7, 1.8]], interface: joint}
+    - {trace: [[0.9, 2], [2.7, 0.2]], interface: joint}
+boundaries: {base: {sides: [0], support: fixed}}
+stages: [{forces: {push: {point: [1.98, 1], force: [-1 kN/m, 0]}}}]
+output: {histories: {face: {point: [2, 1]}, behind: {point: [0.5, 1]}}}
+)";
+    const auto messages = [&](const std::vector<std::string>& overrides) {
+        return test::messages_of([&] { return build_scene_model(read_scene_text(crossed, overrides, "scene.yaml")); });
+    };
+    const auto says = [](const std::string& key) {
+        return AllOf(HasSubstr(key + ": expected a point in a block"),
+                     HasSubstr("in a piece of 0.01 m2 that is too small for a block and is taken off"),
+                     HasSubstr("`geometry.minimum_area` of at most 0.011 keeps it"));
+    };
+    EXPECT_THAT(messages({}), ElementsAre(says("stages.0.forces.push"), says("output.histories.face")));
+    EXPECT_THAT(messages({"geometry.minimum_area=0.011"}), IsEmpty());
+    EXPECT_THAT(messages({"boundaries.face={sides: [1]}"}), IsEmpty());
+    EXPECT_THAT(messages({"stages.0.forces.push.point=[2.1, 1]", "output.histories=null"}),
+                ElementsAre(AllOf(HasSubstr("found (2.1, 1)"), Not(HasSubstr("taken off")))));
+}
+
 // A layer half a cell thick, at whose sides no line of the net lies: 5 GPa of rock bridge it.
 TEST(SceneModel, WarnsOfARegionThatTheNetDoesNotFollow) {
     const std::vector<std::string> layer{

@@ -61,6 +61,7 @@ struct CutReport {
         int fracture = -1;      ///< that lost the longest piece with it; -1 without one
         double length = 0.0;    ///< of that piece (m)
         bool daylights = false; ///< that piece ends at the outline
+        double width = 0.0;     ///< of what was taken off, twice its area over its perimeter (m)
     };
     std::vector<Merged> merged;    ///< pieces below the minimum area that went into a neighbour
     std::vector<Merged> taken_off; ///< pieces below it that were taken off a free surface; `length` is the outline's

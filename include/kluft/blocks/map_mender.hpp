@@ -30,6 +30,7 @@ struct MendReport {
         int source = -1; ///< of the fracture that lost the longest piece, the one between the two faces; -1 without one
         double length = 0.0;     ///< of that piece (m)
         bool at_outline = false; ///< that piece ends at the outline
+        double width = 0.0;      ///< of what was taken off, twice its area over its perimeter (m)
     };
     std::vector<Merged> merged;
     std::vector<Merged> taken_off;    ///< with the outline's piece; no source
