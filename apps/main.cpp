@@ -317,8 +317,9 @@ void add_study_command(CLI::App& app, Command& command) {
     CLI::App* sub = app.add_subcommand("study", "Run a scene with many settings and set the results side by side");
     sub->add_option(
            "study", arguments->words,
-           "Study file (YAML), or 'step-size SCENE': 25-800 load steps of the last stage that moves a platen, or "
-           "'trade SCENE': every numerical setting and the choices of the model, with a recommendation")
+           "Study file (YAML), or 'step-size SCENE': 25-800 load steps, and the scene's own, of the last stage that "
+           "moves "
+           "a platen, or 'trade SCENE': every numerical setting and the choices of the model, with a recommendation")
         ->required()
         ->expected(1, 2);
     sub->add_option(

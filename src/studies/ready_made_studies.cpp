@@ -1,9 +1,11 @@
 #include "kluft/studies/ready_made_studies.hpp"
 
 #include <algorithm>
+#include <set>
 #include <string_view>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "kluft/core/diagnostics.hpp"
 #include "kluft/core/nearest_name.hpp"
@@ -61,16 +63,18 @@ bool is_ready_made(const fs::path& file) { return read_file(file).starts_with(st
 std::string step_size_study(const fs::path& scene, const std::vector<std::string>& overrides) {
     const Scene read = read_scene(scene, overrides);
     const std::size_t stage = studied_stage(read);
+    std::set<int> steps{25, 50, 100, 200, 400, 800};
+    steps.insert(read.loads.stages[stage].steps);
     return fmt::format(
         R"(# How the results depend on the number of load steps.
 title: {}
 scene: {}
 vary:
-  stages.{}.steps: [25, 50, 100, 200, 400, 800]
+  stages.{}.steps: [{}]
 quantities: [{}]
 )",
         quoted("Load steps: " + heading_of(read)), quoted(fs::absolute(scene).lexically_normal().string()), stage,
-        quantities_of(read.loads.stages[stage]));
+        fmt::join(steps, ", "), quantities_of(read.loads.stages[stage]));
 }
 
 } // namespace kluft

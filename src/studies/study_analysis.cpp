@@ -502,6 +502,7 @@ SeriesValues series_values(const StudyTable& table, const std::vector<StudyGroup
         if (const auto mean = group_mean(table, members, measure.values)) {
             found.sizes.push_back(level.size);
             found.values.push_back(*mean);
+            found.groups.push_back(level.group);
         }
     }
     return found;
@@ -509,7 +510,7 @@ SeriesValues series_values(const StudyTable& table, const std::vector<StudyGroup
 
 Convergence convergence(const Values& sizes, const Values& values, double noise) {
     Convergence result;
-    const std::size_t n = std::min<std::size_t>(values.size(), 4);
+    const std::size_t n = std::min(values.size(), most_judged);
     const Values h(sizes.end() - static_cast<std::ptrdiff_t>(n), sizes.end());
     const Values q(values.end() - static_cast<std::ptrdiff_t>(n), values.end());
     if (n > 1) result.scatter = scatter_of(q);

@@ -148,6 +148,8 @@ private:
     [[nodiscard]] std::vector<std::string> varied_items() const;
     [[nodiscard]] bool has_own_text(std::size_t parameter) const;
     [[nodiscard]] std::string setting_of(const StudySeries& series, const SeriesLevel& level) const;
+    [[nodiscard]] std::string left_out_text(const StudySeries& series, const StudyMeasure& measure,
+                                            const SeriesValues& found) const;
     [[nodiscard]] ReportTable chosen_convergence() const;
     [[nodiscard]] ReportTable other_convergence() const;
     [[nodiscard]] bool has_replicas() const;
@@ -373,6 +375,27 @@ std::string ReportBuilder::setting_of(const StudySeries& series, const SeriesLev
     return groups_[level.group].settings[series.parameter];
 }
 
+/// "; but +140 % at 25" of coarser values than the verdict is of that differ from the finest by more than those do; "" without any.
+std::string ReportBuilder::left_out_text(const StudySeries& series, const StudyMeasure& measure,
+                                         const SeriesValues& found) const {
+    const double finest = found.values.empty() ? 0.0 : found.values.back();
+    const auto distance = [&](double value) { return std::abs(value - finest); };
+    const std::size_t n_left_out = found.values.size() - std::min(found.values.size(), most_judged);
+    double among_judged = noise_of_values * std::abs(finest);
+    for (std::size_t i = n_left_out; i < found.values.size(); ++i)
+        among_judged = std::max(among_judged, distance(found.values[i]));
+    std::string text;
+    for (std::size_t i = 0; i < n_left_out; ++i) {
+        const double value = found.values[i];
+        if (distance(value) <= among_judged) continue;
+        text += fmt::format("{} {} at {}", text.empty() ? "; but" : ",",
+                            finest != 0.0 ? error_text((value - finest) / std::abs(finest), true)
+                                          : value_text(measure, value),
+                            groups_[found.groups[i]].settings[series.parameter]);
+    }
+    return text;
+}
+
 /// The chosen quantity's series in full.
 ReportTable ReportBuilder::chosen_convergence() const {
     ReportTable rows{{"refined", "with", "from", "to", "finest value", "verdict"}, {}, {}, 6};
@@ -382,10 +405,11 @@ ReportTable ReportBuilder::chosen_convergence() const {
         const SeriesValues found = series_values(table_, groups_, series, measure);
         if (found.values.empty()) continue;
         const Convergence result = convergence(found.sizes, found.values, noise_of_values);
-        rows.rows.push_back({table_.parameters[series.parameter], series_label(table_, groups_, series_, series),
-                             setting_of(series, series.levels.front()), setting_of(series, series.levels.back()),
-                             value_text(measure, found.values.back()),
-                             verdict_text(measure, result, found.values.size())});
+        rows.rows.push_back(
+            {table_.parameters[series.parameter], series_label(table_, groups_, series_, series),
+             setting_of(series, series.levels.front()), setting_of(series, series.levels.back()),
+             value_text(measure, found.values.back()),
+             verdict_text(measure, result, found.values.size()) + left_out_text(series, measure, found)});
     }
     return rows;
 }
@@ -404,8 +428,9 @@ ReportTable ReportBuilder::other_convergence() const {
                                      series_label(table_, groups_, series_, series)};
         for (const StudyMeasure* const measure : others) {
             const SeriesValues found = series_values(table_, groups_, series, *measure);
-            row.push_back(
-                short_verdict(*measure, convergence(found.sizes, found.values, noise_of_values), found.values.size()));
+            const Convergence result = convergence(found.sizes, found.values, noise_of_values);
+            row.push_back(short_verdict(*measure, result, found.values.size()) +
+                          left_out_text(series, *measure, found));
         }
         const bool any =
             std::any_of(row.begin() + 2, row.end(), [](const std::string& cell) { return cell != unknown; });
@@ -424,7 +449,8 @@ void ReportBuilder::add_convergence() {
                     "more): the observed order p of q = q0 + C h^p, the limit q0, and behind \u00b1 the uncertainty "
                     "of the finest value against it (grid convergence index). Where values go up and down there "
                     "is no order and no limit; the scatter is the range of these values over their mean. Changes "
-                    "up to {} are called constant.",
+                    "up to {} are called constant. Coarser values are named where they differ from the finest one "
+                    "by more than the last four do.",
                     percent_text(noise_of_values))});
     if (!chosen.rows.empty()) {
         add(ReportParagraph{measures_[*chosen_].name + ":"});

@@ -379,9 +379,12 @@ TEST_F(StudyRuns, LineBreaksInNamesAreRefused) {
 TEST_F(StudyRuns, StepSizeStudyTakesTheLastStageThatMovesAPlaten) {
     std::ofstream(directory_ / "made.yaml") << step_size_study(directory_ / "scene.yaml");
     const ReadStudy study = read_study(directory_ / "made.yaml");
-    ASSERT_THAT(study.cases, SizeIs(6));
+    ASSERT_THAT(study.cases, SizeIs(7));
     EXPECT_EQ(study.study.parameters[0].key, "stages.1.steps");
-    EXPECT_EQ(study.cases[5].settings[0], "800");
+    EXPECT_EQ(study.cases[0].settings[0], "8"); // the scene's own
+    EXPECT_EQ(study.cases[6].settings[0], "800");
+    std::ofstream(directory_ / "same.yaml") << step_size_study(directory_ / "scene.yaml", {"stages.1.steps=100"});
+    EXPECT_THAT(read_study(directory_ / "same.yaml").cases, SizeIs(6));
     EXPECT_THROW((void)ready_made_study("step", directory_ / "scene.yaml"), InputError);
 }
 

@@ -18,7 +18,7 @@ namespace kluft {
 /// Whether a file has the text of a ready-made study; false where there is none.
 [[nodiscard]] bool is_ready_made(const std::filesystem::path& file);
 
-/// 25, 50, ..., 800 load steps of the last stage that moves a platen or reduces strengths, or else of the last stage.
+/// 25, 50, ..., 800 load steps, and as many as the scene has, of the last stage that moves a platen or reduces strengths, or else of the last stage.
 [[nodiscard]] std::string step_size_study(const std::filesystem::path& scene,
                                           const std::vector<std::string>& overrides = {});
 

@@ -81,6 +81,7 @@ struct StudySeries {
 struct SeriesValues {
     std::vector<double> sizes; ///< from coarse to fine
     std::vector<double> values;
+    std::vector<std::size_t> groups; ///< that they are the means of
 };
 
 /// Means over the replicas that all levels with a value have in common (over all members if there are none); levels
@@ -95,6 +96,9 @@ enum class ConvergenceKind {
     unsettled, ///< monotone, but with no order that two successive estimates agree on
     scattered  ///< up and down
 };
+
+/// Values that a convergence is judged by: the finest ones.
+inline constexpr std::size_t most_judged = 4;
 
 /// How values go to a limit with the size h.
 struct Convergence {
