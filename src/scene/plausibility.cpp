@@ -66,6 +66,18 @@ void warn_of_material(const SceneSection& section, const Material& material, Rea
                      fmt::format("{:.4g} kg/m3 is the density of no rock, which is some 1500 to 5000 kg/m3", density));
 }
 
+/// Round-off of the bulk stiffness, E/(3 (1 - 2 nu)), against stresses of less than 1 MPa.
+void warn_of_incompressible_blocks(const SceneSection& section, const Material& material, ReadingContext& context) {
+    constexpr double beyond_round_off = 0.4999999; // at which nothing is lost yet (80 GPa under a metre of rock)
+    if (material.poissons_ratio > beyond_round_off)
+        context.warn(
+            section, "poissons_ratio",
+            fmt::format("{:.12g} is so near to 0.5 that round-off of the blocks' stiffness against compression "
+                        "is seen in their stresses, and factors of safety may be per cents off; 0.4999 "
+                        "stands for the same rock without that",
+                        material.poissons_ratio));
+}
+
 void warn_of_joint(const SceneSection& section, const InterfaceType& type, ReadingContext& context) {
     constexpr double steel = 2.1e11 / 1e-3; // Pa/m: Young's modulus over a thickness of 1 mm
     constexpr double softest = 1e5;         // Pa/m: a metre of soft clay has 1e6
@@ -284,6 +296,8 @@ void warn_of_implausible_values(const SceneSection& root, const Scene& scene, Re
     const auto materials = root.sections("materials");
     for (std::size_t m = 0; m < std::min(materials.size(), scene.materials.size()); ++m) {
         warn_of_material(materials[m], scene.materials[m], context);
+        if (scene.plane == Plane::strain && scene.kinematics == Kinematics::affine)
+            warn_of_incompressible_blocks(materials[m], scene.materials[m], context);
         warn_of_strength(materials[m], scene.materials[m].strength.value_or(Strength{}), context);
     }
     const auto interfaces = root.sections("interfaces");

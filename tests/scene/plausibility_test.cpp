@@ -160,6 +160,18 @@ TEST(ImplausibleValues, TensileStrengthsThatDecideNothingOrAllAreTold) {
                 ElementsAre(HasSubstr("0 Pa lets the net's bonds fail as soon as the body is loaded")));
 }
 
+// With 20 GPa and a nu 1e-10 below 0.5 the factor of safety of a jointed slope of 20 m is 1.285 for 1.268.
+TEST(ImplausibleValues, BlocksThatAreNearlyIncompressibleAreTold) {
+    const auto warnings = [](const std::string& ratio, std::vector<std::string> changes = {}) {
+        changes.push_back("materials.rock.poissons_ratio=" + ratio);
+        return warnings_of_block_with(changes);
+    };
+    EXPECT_THAT(warnings("0.4999999999"),
+                ElementsAre(HasSubstr("materials.rock.poissons_ratio: 0.4999999999 is so near to 0.5")));
+    for (const char* ratio : {"0.49", "0.4999", "0.499999"}) EXPECT_THAT(warnings(ratio), IsEmpty()) << ratio;
+    EXPECT_THAT(warnings("0.4999999999", {"analysis.plane=stress"}), IsEmpty()); // E/(1 - nu) is no large number
+}
+
 // A slope without a net came out with a factor of safety "above 8" in place of 1.532.
 TEST(ImplausibleValues, StrengthsOfAMaterialThatNoPotentialCrackTakesAreTold) {
     const auto warnings = [](std::vector<std::string> changes) {
