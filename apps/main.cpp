@@ -318,8 +318,8 @@ void add_study_command(CLI::App& app, Command& command) {
     sub->add_option(
            "study", arguments->words,
            "Study file (YAML), or 'step-size SCENE': 25-800 load steps, and the scene's own, of the last stage that "
-           "moves "
-           "a platen, or 'trade SCENE': every numerical setting and the choices of the model, with a recommendation")
+           "moves a platen, or 'trade SCENE': every numerical setting and the choices of the model, with a "
+           "recommendation")
         ->required()
         ->expected(1, 2);
     sub->add_option(

@@ -232,6 +232,24 @@ void warn_of_symmetric_reduction(const SceneSection& root, const Scene& scene, R
             "unsymmetric finds them");
 }
 
+/// A body without weight stands by what joints carry of its other loads alone.
+void warn_of_missing_weight(const SceneSection& root, const Scene& scene, ReadingContext& context) {
+    const bool reduces = std::ranges::any_of(scene.loads.stages,
+                                             [](const Stage& stage) { return stage.strength_reduction.has_value(); });
+    const bool in_a_stage =
+        std::ranges::any_of(scene.loads.stages, [](const Stage& stage) { return stage.gravity.has_value(); });
+    const SceneSection analysis = root.section("analysis");
+    if (!reduces || in_a_stage || analysis.has("gravity")) return;
+    const auto materials = root.sections("materials");
+    for (const SceneSection& material : materials) {
+        if (!material.has("density")) continue;
+        context.warn(material, "density",
+                     "the body has no weight, for there is no `analysis.gravity`, and a factor of safety is that of "
+                     "its other loads alone; gravity: 0 says so");
+        return;
+    }
+}
+
 /// What is left over on a block is missing in what holds it: a block on a plane of 20 degrees stands with a share of 0.02 where its
 /// factor of safety is 1 - 0.02/sin(20 deg) = 0.94.
 void warn_of_loose_balance(const SceneSection& root, const Scene& scene, ReadingContext& context) {
@@ -286,6 +304,12 @@ void warn_of_keys_without_effect(const SceneSection& root, const Scene& scene, R
     if (scene.geometry.blocks.empty())
         warn(root.section("geometry"), "blocks_interface",
              "it is that of given blocks; the interfaces of a domain stand in fractures and tessellation");
+    const bool has_size = scene.geometry.tessellation || scene.geometry.reference_spacing > 0.0;
+    if (!has_size && scene.geometry.blocks.empty())
+        warn(root.section("geometry"), "minimum_area",
+             "it is a fraction of a cell, and there is neither a tessellation nor a `reference_spacing` (about the "
+             "size of "
+             "the blocks, in m)");
     if (scene.cracks.strength_noise.deviation == 0.0)
         warn(root.section("cracks"), "strength_seed", "without cracks.strength_noise the strengths do not scatter");
 }
@@ -308,6 +332,7 @@ void warn_of_implausible_values(const SceneSection& root, const Scene& scene, Re
     warn_of_loads(root, scene, context);
     warn_of_one_sided_pressure(root, scene, context);
     warn_of_symmetric_reduction(root, scene, context);
+    warn_of_missing_weight(root, scene, context);
     warn_of_loose_balance(root, scene, context);
     warn_of_loose_events(root, scene, context);
     warn_of_keys_without_effect(root, scene, context);

@@ -21,9 +21,10 @@ constexpr int rounds_that_open = 12; ///< points of platens: then they may only 
 constexpr int max_platen_rounds = 24;
 constexpr double share_of_solve = 0.1; ///< of what may be left over on a block: largest residual of a solve
 constexpr double share_of_change =
-    0.01; ///< of what a change of the loads has put on the blocks: what may be left over of it
+    3e-3; ///< of what a change of the loads has put on the blocks: what may be left over of it
+constexpr double small_change = 0.02; ///< of F_ref: of a larger one less is left over anyway
 constexpr double least_change = 1e-7; ///< of F_ref
-constexpr int rounds_of_change = 3;
+constexpr int rounds_of_change = 6;
 
 OpenCloseOptions open_close_options(const SolverOptions& solver) {
     OpenCloseOptions options;
@@ -159,9 +160,7 @@ Equilibrium EquilibriumSearch::find_held(EquilibriumProblem problem, Eigen::Vect
     found.iterations = n_spent;
     found.displacement = std::move(guess);
     iterate(problem, balance, circumstances, found);
-    const EquilibriumProblem posed = problem;
     if (found.converged()) settle(problem, balance, found);
-    if (found.balanced && circumstances.adds_loads) follow_small_loads(posed, balance, found);
     return found;
 }
 
@@ -252,17 +251,17 @@ bool EquilibriumSearch::catch_up(EquilibriumProblem& problem, const BlockGoal& b
     return true;
 }
 
-/// What balances a body beside all that it carries may be much beside loads that are small, and are added to these: a hundredth
-/// of what they have put on the blocks may be left over (27e).
-void EquilibriumSearch::follow_small_loads(EquilibriumProblem problem, const BlockGoal& balance, Equilibrium& found) {
-    const double change = norm_of(block_balance(problem.body, problem.start).left);
-    if (change <= least_change * found.summary.force_scale) return;
+void EquilibriumSearch::follow_small_loads(EquilibriumProblem problem, const Eigen::VectorXd& before,
+                                           const BlockGoal& balance, Equilibrium& found) {
+    const double change = norm_of(block_balance(problem.body, before).left);
+    const double carried = found.summary.force_scale;
+    if (change <= least_change * carried || change >= small_change * carried) return;
     double tolerance_share = 1.0;
     for (int round = 0; round < rounds_of_change; ++round) {
         const double left = norm_of(found.blocks.left);
         if (left <= share_of_change * change) return;
-        tolerance_share *= sharpening * share_of_change * change / left;
-        if (!catch_up(problem, balance, std::max(tolerance_share, sharpest), found)) return;
+        tolerance_share = std::max(tolerance_share * sharpening * share_of_change * change / left, sharpest);
+        if (!catch_up(problem, balance, tolerance_share, found)) return;
     }
 }
 

@@ -79,12 +79,14 @@ RockingJoint softest_rocking_joint(const Model& model, const State& state) {
 std::string rocking_joint_warning(const Model& model, const State& state) {
     const RockingJoint found = softest_rocking_joint(model, state);
     if (!(found.shortfall > large_shortfall)) return {};
+    const double less = 100.0 * found.shortfall;
     return fmt::format(
         "the joint of blocks {} and {} at about {} is open over a part of its length. Its three points are a hinge in "
-        "the corner; on a joint of its normal stiffness ({:.3g} Pa/m) a block turns over at about {:.0f} % less: "
+        "the corner; on a joint of its normal stiffness ({:.3g} Pa/m) a block turns over {}: "
         "overlap_points: 15 for its interface computes that, and with a larger normal_stiffness it is less",
         block_label(model.system, found.block_a), block_label(model.system, found.block_b), place_text(found.place),
-        model.laws[found.law].normal_stiffness, std::min(100.0, 100.0 * found.shortfall));
+        model.laws[found.law].normal_stiffness,
+        less < 99.0 ? fmt::format("at about {:.0f} % less", less) : "by itself");
 }
 
 } // namespace kluft

@@ -138,10 +138,8 @@ Equilibrium find_at(StepInProgress& p, const PlacedState& placed, double load_fa
     State& state = p.step.end;
     const LoadsAt at = p.loads_at(load_factor);
     if (model.kinematics == Kinematics::rigid) make_rigid(model.system, guess);
-    const bool given_loads = is_loaded_by_stress(p.bench.stage(p.from));
     const Circumstances circumstances{.unloaded = state.body.contacts.empty(),
-                                      .given_loads = given_loads,
-                                      .adds_loads = given_loads && !p.goal.must_rest};
+                                      .given_loads = is_loaded_by_stress(p.bench.stage(p.from))};
     Equilibrium found = search.find(pose(model, placed, at, p.displacement()), guess, p.goal.balance, circumstances);
     found.load_factor = load_factor;
     found.strength_factor = at.strength_factor;

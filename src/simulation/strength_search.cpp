@@ -334,8 +334,9 @@ std::string doubt_in_words(const std::string& said, double factor, double withou
     const std::string before = fmt::format("{:.4g}", without);
     if (before == fmt::format("{:.4g}", factor))
         return fmt::format("{}: without that the factor of safety is the same to four digits", said);
-    return fmt::format("{}: the factor of safety is lower without that; {} is the factor of the last load step before",
-                       said, before);
+    return fmt::format(
+        "{}: the factor of safety may be lower without that; {} is the factor of the last load step before", said,
+        before);
 }
 
 double reduction_tolerance(const StrengthReduction& reduction, const SolverOptions& solver) {

@@ -134,10 +134,26 @@ TEST(ImplausibleValues, AnEventToleranceThatLetsCracksFailTooLateIsTold) {
 TEST(ImplausibleValues, SymmetricTangentIsToldOfWhereStrengthsAreReduced) {
     const std::string reduction = "stages=[{pressure: {left: 1 MPa, right: 1 MPa, top: 1 MPa}}, "
                                   "{strength_reduction: {from: 1, to: 2}, steps: 4}]";
-    EXPECT_THAT(warnings_of_block_with({reduction, "solver.tangent=symmetric"}),
+    EXPECT_THAT(warnings_of_block_with({reduction, "analysis.gravity=0", "solver.tangent=symmetric"}),
                 ElementsAre(HasSubstr("solver.tangent: with symmetric the search may miss equilibria")));
-    EXPECT_THAT(warnings_of_block_with({reduction}), IsEmpty());
+    EXPECT_THAT(warnings_of_block_with({reduction, "analysis.gravity=0"}), IsEmpty());
     EXPECT_THAT(warnings_of_block_with({"solver.tangent=symmetric"}), IsEmpty());
+}
+
+TEST(ImplausibleValues, AFactorOfSafetyOfABodyWithoutWeightIsTold) {
+    const std::string reduction = "stages.1.strength_reduction={from: 1, to: 2}";
+    const std::string alone = "stages.1.strain=null";
+    EXPECT_THAT(warnings_of_block_with({reduction, alone}),
+                ElementsAre(HasSubstr("materials.rock.density: the body has no weight, for there is no "
+                                      "`analysis.gravity`")));
+    EXPECT_THAT(warnings_of_block_with({reduction, alone, "analysis.gravity=9.81"}), IsEmpty());
+    EXPECT_THAT(warnings_of_block_with({reduction, alone, "analysis.gravity=0"}), IsEmpty());
+}
+
+TEST(ImplausibleValues, AMinimumAreaOfNoCellIsTold) {
+    EXPECT_THAT(warnings_of_block_with({"geometry.minimum_area=0.1"}),
+                ElementsAre(HasSubstr("geometry.minimum_area: has no effect: it is a fraction of a cell")));
+    EXPECT_THAT(warnings_of_block_with({"geometry.minimum_area=0.1", "geometry.reference_spacing=1"}), IsEmpty());
 }
 
 // A platen that goes out at once holds nothing, unless something presses its boundary until then: triaxial extension.

@@ -23,7 +23,6 @@ namespace kluft {
 struct Circumstances {
     bool unloaded = false;    ///< contacts carry no force yet (IterationGoal)
     bool given_loads = false; ///< and not the motion of a platen (IterationGoal)
-    bool adds_loads = false;  ///< to what the body carries
 };
 
 /// What was found at one load level.
@@ -65,6 +64,10 @@ public:
     /// platens press on all that they hold and are penetrated by nothing (docs/theory.md, platens).
     [[nodiscard]] Equilibrium find(const EquilibriumProblem& problem, const Eigen::VectorXd& guess,
                                    const BlockGoal& balance, const Circumstances& circumstances);
+    /// Solves again from a balanced state, until what is left over on the blocks is little of what the loads have put on them since
+    /// the displacements `before`, where that is little beside what the body carries (docs/theory.md, (27e)). Of a body without platens.
+    void follow_small_loads(EquilibriumProblem problem, const Eigen::VectorXd& before, const BlockGoal& balance,
+                            Equilibrium& found);
     /// One step of a motion from the problem's start.
     [[nodiscard]] Equilibrium move_on(const EquilibriumProblem& problem, const Eigen::VectorXd& guess,
                                       const BlockGoal& balance, bool unloaded);
@@ -87,7 +90,6 @@ private:
                           bool unloaded);
     void settle(EquilibriumProblem& problem, const BlockGoal& balance, Equilibrium& found);
     bool catch_up(EquilibriumProblem& problem, const BlockGoal& balance, double tolerance_share, Equilibrium& found);
-    void follow_small_loads(EquilibriumProblem problem, const BlockGoal& balance, Equilibrium& found);
 
     const Model& model_;
     double viscosity_;
