@@ -442,7 +442,7 @@ std::vector<LoosePiece> pruned_pieces(const PlanarMap& map, const SourceNumbers&
 
 /// A piece below it is no block of its own (m2).
 double least_area(const GeometrySpec& spec) {
-    constexpr double rounding_area = 1e-9; // of the domain: slivers that tell of rounding where no spacing is given
+    constexpr double rounding_area = 1e-12; // of the domain, where no spacing is given
     const double domain_area = std::abs(signed_area(spec.domain));
     return std::max(rounding_area * domain_area,
                     minimum_area_share(spec) * std::min(mean_cell_area(spec), domain_area));

@@ -50,19 +50,6 @@ std::optional<Equilibrium> find_before_goal(StepInProgress& p, const PlacedState
     return without_event;
 }
 
-/// What balances a body beside all that it carries may be much beside loads that are small, and are added to it (27e).
-void follow_small_loads(StepInProgress& p, const PlacedState& placed, Equilibrium& found) {
-    const Model& model = p.bench.model;
-    if (p.goal.must_rest || !is_loaded_by_stress(p.bench.stage(p.from))) return;
-    const LoadsAt at = p.loads_at(found);
-    if (!at.loads.platens.empty()) return;
-    const int so_far = std::exchange(found.iterations, 0);
-    p.bench.search.follow_small_loads(pose(model, placed, at, found.displacement), p.from.body.displacement,
-                                      p.goal.balance, found);
-    count_solves(p, found);
-    found.iterations += so_far;
-}
-
 /// What the search found up to the first event, or after a relaxation; the step fails where there is neither.
 Equilibrium advance(StepInProgress& p, PlacedState& placed) {
     const double target = p.goal.load_factor;

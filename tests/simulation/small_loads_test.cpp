@@ -80,5 +80,12 @@ TEST(SmallLoads, OnASlenderColumnMoveItAsMuchInAnyNumberOfSteps) {
             }
 }
 
+TEST(SmallLoads, MoveAsMuchInStepsOfAnAccuracy) {
+    const double force = 1e-4 * 30.0 * weight_of_course;
+    const SceneRun run = run_scene(read_scene_text(tower(30, force, 4), {"solver.accuracy=0.01"}, "tower.yaml"));
+    ASSERT_TRUE(stands(run)) << run.report.diagnosis;
+    EXPECT_NEAR(run.state.body.displacement[6 * 30], motion_of_top(30, force), 0.01 * motion_of_top(30, force));
+}
+
 } // namespace
 } // namespace kluft
