@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "kluft/blocks/block_search.hpp"
 #include "kluft/core/stopwatch.hpp"
 #include "kluft/simulation/equilibrium_search.hpp"
 #include "kluft/simulation/event_search.hpp"
@@ -43,13 +44,21 @@ std::string remark_on_drop(const Stage& stage, const State& state) {
 
 /// Of a body that does not stand with the strengths that a reduction begins with. Not where a platen of given travel may have moved it, and
 /// not where its loads are at fault.
-std::string remark_on_first_factor(const std::vector<Stage>& stages, int stage, const StageEnd& end) {
+std::string remark_on_first_factor(const Model& model, int stage, const StageEnd& end) {
+    const std::vector<Stage>& stages = model.loads.stages;
     const auto until = stages.begin() + stage;
     const auto reduced =
         std::find_if(until, stages.end(), [](const Stage& s) { return s.strength_reduction.has_value(); });
     if (reduced == stages.end() || end.factor_of_safety || !end.failure->may_be_collapse() || !end.causes.empty() ||
         std::any_of(stages.begin(), until + 1, prescribes_strain))
         return {};
+    const auto sliver = std::ranges::find_if(end.failure->moving, [&](const MovingBlock& each) {
+        return model.system.blocks[each.block].area < sliver_area(model.system);
+    });
+    if (sliver != end.failure->moving.end())
+        return fmt::format("; block {} is a sliver, which may fail where the body stands: `geometry.reference_spacing` "
+                           "leaves it out",
+                           block_label(model.system, sliver->block));
     return fmt::format(
         "; its factor of safety is below stages.{}.strength_reduction.from, {:g}, with which the body was "
         "loaded: a smaller `from` finds it, if the body stands with any",
@@ -165,7 +174,7 @@ RunReport Journal::ended(const State& state, const StageEnd& end) const {
     const bool past_limit = end.failure->may_be_collapse() && is_platen_loaded_by_stress(stage) && has_stood;
     std::string why = fmt::format("no equilibrium in stage {} at load step {}: {}", state.at.stage, end.step,
                                   description(model_, *end.failure) + listed(end.causes)) +
-                      remark_on_first_factor(model_.loads.stages, state.at.stage, end);
+                      remark_on_first_factor(model_, state.at.stage, end);
     if (end.factor_of_safety) why = fmt::format("factor of safety {:.6g}; beyond it {}", *end.factor_of_safety, why);
     RunReport report = cut_short(end.factor_of_safety || past_limit ? RunStatus::collapsed : RunStatus::no_equilibrium,
                                  std::move(why));

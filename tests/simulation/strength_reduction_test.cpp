@@ -1,4 +1,6 @@
 #include <cmath>
+#include <numbers>
+#include <string>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -129,6 +131,35 @@ TEST(StrengthReduction, AFactorBelowTheFirstIsSaidToBeSo) {
     }
     const auto run = run_scene(block_on_slope(40.0, "{from: 0.65, to: 2}"));
     EXPECT_TRUE(run.report.results.factor_of_safety);
+    EXPECT_THAT(run.report.diagnosis, testing::Not(testing::HasSubstr("is below")));
+}
+
+// A crumb of 1 mm on a plane of 40 degrees, which it slides down with a friction of 30; the other block stands with any.
+TEST(StrengthReduction, ASliverThatFailsFirstTellsNothingOfTheFactor) {
+    const double slope = std::numbers::pi * 40.0 / 180.0;
+    const Vec2 up = 1e-3 * Vec2(-std::cos(slope), std::sin(slope));
+    const Vec2 out = 1e-3 * Vec2(std::sin(slope), std::cos(slope));
+    const Vec2 foot(5.5, 0.5 * std::tan(slope));
+    std::string crumb;
+    for (const Vec2& corner : {foot, Vec2(foot + out), Vec2(foot + out + up), Vec2(foot + up)})
+        crumb += fmt::format("[{:.17g}, {:.17g}], ", corner.x(), corner.y());
+    const auto run = run_scene(fmt::format(R"(
+kluft: 1
+analysis: {{gravity: 9.81}}
+materials: {{rock: {{density: 2600, youngs_modulus: 1 GPa, poissons_ratio: 0.2}}}}
+interfaces: {{joint: {{kind: fracture, friction_angle: 30, normal_stiffness: 1e10, shear_stiffness: 1e10}}}}
+geometry:
+  blocks:
+    - {{name: base, polygon: [[0, -1], [2, -1], [2, 0], [0, 0]], support: fixed}}
+    - {{name: block, polygon: [[0.5, 0], [1.5, 0], [1.5, 1], [0.5, 1]]}}
+    - {{name: ramp, polygon: [[5, 0], [6, 0], [5, {:.17g}]], support: fixed}}
+    - {{name: crumb, polygon: [{}]}}
+stages: [{{steps: 1}}, {{strength_reduction: {{to: 2}}, steps: 2}}]
+)",
+                                           std::tan(slope), crumb.substr(0, crumb.size() - 2)));
+    EXPECT_EQ(run.report.status, RunStatus::no_equilibrium);
+    EXPECT_THAT(run.report.diagnosis,
+                testing::HasSubstr("block 'crumb' is a sliver, which may fail where the body stands"));
     EXPECT_THAT(run.report.diagnosis, testing::Not(testing::HasSubstr("is below")));
 }
 
