@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "kluft/equilibrium/held_friction.hpp"
 #include "kluft/equilibrium/left_over.hpp"
@@ -25,6 +26,7 @@ constexpr double share_of_change =
 constexpr double small_change = 0.02; ///< of F_ref: of a larger one less is left over anyway
 constexpr double least_change = 1e-7; ///< of F_ref
 constexpr int rounds_of_change = 6;
+constexpr double falls_by = 0.95; ///< with each round, of what something holds
 
 OpenCloseOptions open_close_options(const SolverOptions& solver) {
     OpenCloseOptions options;
@@ -46,12 +48,15 @@ bool is_on_the_way(const Equilibrium& found) {
     return found.converged() || found.summary.termination == Termination::relaxed;
 }
 
+bool slides(const EquilibriumProblem& problem, const Eigen::VectorXd& q) {
+    return std::ranges::any_of(problem.body.placement->contacts, [&](const ContactPoint& point) {
+        return contact_traction(*problem.body.laws, point, q).state == ContactState::sliding;
+    });
+}
+
 /// Whether the mass-like term is more than the iteration leaves, in a state where nothing slides.
 bool lags_behind(const EquilibriumProblem& problem, const Equilibrium& found, double tolerance) {
-    if (found.viscous_share <= tolerance) return false;
-    return std::ranges::none_of(problem.body.placement->contacts, [&](const ContactPoint& point) {
-        return contact_traction(*problem.body.laws, point, found.displacement).state == ContactState::sliding;
-    });
+    return found.viscous_share > tolerance && !slides(problem, found.displacement);
 }
 
 /// Whether a contact may slide under a limit that follows its pressure.
@@ -257,11 +262,16 @@ void EquilibriumSearch::follow_small_loads(EquilibriumProblem problem, const Eig
     const double carried = found.summary.force_scale;
     if (change <= least_change * carried || change >= small_change * carried) return;
     double tolerance_share = 1.0;
-    for (int round = 0; round < rounds_of_change; ++round) {
-        const double left = norm_of(found.blocks.left);
-        if (left <= share_of_change * change) return;
+    double left = norm_of(found.blocks.left);
+    for (int round = 0; round < rounds_of_change && left > share_of_change * change; ++round) {
+        if (!found.blocks.free.empty() || slides(problem, found.displacement)) return;
         tolerance_share = std::max(tolerance_share * sharpening * share_of_change * change / left, sharpest);
-        if (!catch_up(problem, balance, tolerance_share, found)) return;
+        Equilibrium next = found;
+        const bool is_balanced = catch_up(problem, balance, tolerance_share, next);
+        found.iterations = next.iterations;
+        const double left_before = std::exchange(left, norm_of(next.blocks.left));
+        if (!is_balanced || left > falls_by * left_before) return; // nothing holds what creeps on
+        found = std::move(next);
     }
 }
 
