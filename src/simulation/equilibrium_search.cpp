@@ -256,6 +256,7 @@ bool EquilibriumSearch::catch_up(EquilibriumProblem& problem, const BlockGoal& b
     return true;
 }
 
+/// Source: (27e).
 void EquilibriumSearch::follow_small_loads(EquilibriumProblem problem, const Eigen::VectorXd& before,
                                            const BlockGoal& balance, Equilibrium& found) {
     const double change = norm_of(block_balance(problem.body, before).left);
