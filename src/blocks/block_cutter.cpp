@@ -442,8 +442,10 @@ std::vector<LoosePiece> pruned_pieces(const PlanarMap& map, const SourceNumbers&
 
 /// A piece below it is no block of its own (m2).
 double least_area(const GeometrySpec& spec) {
-    constexpr double rounding_area = 1e-12; // of the domain, where no spacing is given
+    constexpr double rounding_area = 1e-12; // of the domain
+    constexpr double crumb = 1e-8;          // of the domain: what lies between traces that meet in one point on a map
     const double domain_area = std::abs(signed_area(spec.domain));
+    if (lattice_spacing(spec) == 0.0) return crumb * domain_area;
     return std::max(rounding_area * domain_area,
                     minimum_area_share(spec) * std::min(mean_cell_area(spec), domain_area));
 }
@@ -838,8 +840,8 @@ private:
             loss.cause = LostFracture::Cause::too_short;
         } else if (const auto piece = cut_off_.find(numbers_.first_fracture + fracture);
                    piece != cut_off_.end() && (piece->second < least_area(spec_) || !has_triangles(spec_))) {
-            loss.cause = piece->second < least_area(spec_) ? LostFracture::Cause::cuts_off_little
-                                                           : LostFracture::Cause::cuts_off_a_hair;
+            const bool is_little = lattice_spacing(spec_) > 0.0 && piece->second < least_area(spec_);
+            loss.cause = is_little ? LostFracture::Cause::cuts_off_little : LostFracture::Cause::cuts_off_a_hair;
             loss.area = piece->second;
         } else if (has_triangles(spec_) && (region_.empty() || contains(region_, places[places.size() / 2]))) {
             loss.cause = LostFracture::Cause::too_near;

@@ -92,8 +92,9 @@ std::string reason(const LostFracture& lost, const Scene& scene, const CutReport
                            "(`geometry.minimum_area`)",
                            lost.area, report.minimum_area);
     case LostFracture::Cause::cuts_off_a_hair:
-        return fmt::format("what it cuts off from another line is narrower than {:.3g} m, the smallest block",
-                           report.minimum_width);
+        return fmt::format("what it cuts off from another line is narrower than {:.3g} m or smaller than {:.3g} m2, "
+                           "the smallest block",
+                           report.minimum_width, report.minimum_area);
     case LostFracture::Cause::too_near:
         return fmt::format("it lies nearer to another line than {:.3g} m, the smallest length that the net resolves, "
                            "or at less than 14 degrees to it",

@@ -537,7 +537,8 @@ std::vector<KeyRule> cut_rules() {
                 "smaller, are merged with a neighbour; those that would lock a fracture which comes out at a free side "
                 "(one of no "
                 "boundary) are taken off. Between fractures a net of triangles also merges what is narrower "
-                "than 0.05 of its smallest side, whatever this is."},
+                "than 0.05 of its smallest side, whatever this is. With neither a net nor `geometry.reference_spacing` "
+                "only pieces below 1e-8 of the body are merged."},
         {.path = "geometry.material",
          .type = KeyType::text,
          .fallback_note = "the only material",

@@ -55,13 +55,14 @@ std::string remark_on_first_factor(const Model& model, int stage, const StageEnd
     const auto sliver = std::ranges::find_if(end.failure->moving, [&](const MovingBlock& each) {
         return model.system.blocks[each.block].area < sliver_area(model.system);
     });
-    if (sliver != end.failure->moving.end())
-        return fmt::format("; block {} is a sliver, which may fail where the body stands: `geometry.reference_spacing` "
-                           "leaves it out",
-                           block_label(model.system, sliver->block));
+    const bool is_of_sliver = sliver != end.failure->moving.end();
     return fmt::format(
-        "; its factor of safety is below stages.{}.strength_reduction.from, {:g}, with which the body was "
+        "; {}its factor of safety is below stages.{}.strength_reduction.from, {:g}, with which the body was "
         "loaded: a smaller `from` finds it, if the body stands with any",
+        is_of_sliver ? fmt::format("block {} is a sliver, which may fail where the body stands: "
+                                   "`geometry.reference_spacing` leaves it out; or else ",
+                                   block_label(model.system, sliver->block))
+                     : std::string(),
         reduced - stages.begin(), reduced->strength_reduction->from);
 }
 

@@ -87,7 +87,7 @@ void expect_same_faces(const GeometrySpec& spec) {
     const std::vector<double> areas = sorted_areas(body.system);
     Geos::Faces expected = geos.faces_in(spec.domain, points_of(spec), body.report.minimum_width);
     std::erase_if(expected.areas,
-                  [&spec](double area) { return area < 1e-12 * domain_area(spec); }); // merged as slivers
+                  [&body](double area) { return area < body.report.minimum_area; }); // merged as slivers
     ASSERT_EQ(areas.size(), expected.areas.size());
     for (std::size_t i = 0; i < areas.size(); ++i)
         EXPECT_NEAR(areas[i], expected.areas[i], 1e-9 + expected.narrow) << i;

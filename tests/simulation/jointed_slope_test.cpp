@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,6 +15,7 @@
 #include <gtest/gtest.h>
 
 #include "kluft/core/units.hpp"
+#include "kluft/geometry/polygon.hpp"
 #include "kluft/simulation/corner_contact.hpp"
 #include "support/scene_run.hpp"
 
@@ -266,6 +268,42 @@ TEST(SlowJointedSlope, APieceAtTheFaceBetweenTwoJointsDoesNotHoldTheWedgeBehindI
     const double expected = factor("  reference_spacing: 3\n  minimum_area: 0\n");
     EXPECT_NEAR(factor("  reference_spacing: 3\n  minimum_area: 0.05\n"), expected, 3e-3 * expected);
     EXPECT_NEAR(factor("  tessellation: {triangles: {spacing: 1.5}, interface: bond}\n"), expected, 3e-3 * expected);
+}
+
+// Two joints meet on a third, along which the block before them slides, or would, had the map no digits: the triangle of up to 3 mm between the three
+// came loose under the weight above it where joints are soft, and no equilibrium was found. The factor is that of plane failure.
+TEST(JointedSlope, JointsThatNearlyMeetInAPointCutNoBlockThere) {
+    const double friction = std::numbers::pi * 40.0 / 180.0;
+    const double cohesion = 20e3;
+    const double dip = std::atan(4.0 / 7.0);
+    const Vec2 foot(478.0 / 23.0, 260.0 / 23.0); // of the joint through (15, 8) on the face
+    const Vec2 back(936.0 / 19.0, 524.0 / 19.0); // where the joint through (60, -10) meets it
+    const Vec2 crest(60.0 - 100.0 / 7.0, 40.0);  // and the top
+    const double weight = 2700.0 * 9.81 * std::abs(signed_area({foot, back, crest, {38, 40}}));
+    const double expected =
+        std::tan(friction) / std::tan(dip) + cohesion * (back - foot).norm() / (weight * std::sin(dip));
+    for (const double stiffness : {3e7, 1e8, 1e10}) {
+        for (const double beside : {1e-4, 1e-3, 2e-3, 3e-3}) {
+            const SceneRun run =
+                run_scene(fmt::format(R"(kluft: 1
+analysis: {{gravity: 9.81}}
+materials: {{rock: {{density: 2700, youngs_modulus: 25 GPa, poissons_ratio: 0.25}}}}
+interfaces:
+  j: {{kind: fracture, friction_angle: 40, cohesion: 20 kPa, normal_stiffness: {:.17g}, shear_stiffness: {:.17g}}}
+geometry:
+  domain: {{polygon: [[0, 0], [80, 0], [80, 40], [38, 40], [20, 10], [0, 10]]}}
+  fractures:
+    - {{trace: [[15, 8], [85, 48]]}}
+    - {{trace: [[60, -10], [40, 60]]}}
+    - {{trace: [[{:.17g}, -10], [{:.17g}, 31]]}}
+boundaries: {{bottom: {{support: fixed}}}}
+stages: [{{name: weight}}, {{name: strength, strength_reduction: {{to: 4}}}}]
+)",
+                                      stiffness, 0.5 * stiffness, back.x() + beside, back.x() + beside));
+            ASSERT_TRUE(run.report.results.factor_of_safety.has_value()) << stiffness << ' ' << beside;
+            EXPECT_NEAR(*run.report.results.factor_of_safety, expected, 1e-3 * expected) << stiffness << ' ' << beside;
+        }
+    }
 }
 
 // A joint that comes out a little above the toe, as round-off and the digits of maps have it, and no spacing by which that would be mended: the

@@ -16,7 +16,7 @@ struct LostFracture {
         too_short,         ///< than what is resolved
         coincides,         ///< with an earlier fracture or the outline
         cuts_off_little,   ///< a piece below the minimum area
-        cuts_off_a_hair,   ///< a strip that is too narrow for a block
+        cuts_off_a_hair,   ///< a strip that is too narrow for a block, or a crumb where no spacing is given
         too_near,          ///< to another line, of a net of triangles
         separates_nothing, ///< it ends inside blocks
         in_part            ///< pieces of it are too near to another line
