@@ -513,6 +513,36 @@ std::vector<std::string> strengths_of_nothing(const Scene& scene, const Model& m
     return warnings;
 }
 
+/// A pressure beside weight is often that of water, which would press in the joints that come out at its boundary too.
+std::vector<std::string> pressed_joints(const Model& model) {
+    if (!has_gravity(model)) return {};
+    const BlockSystem& system = model.system;
+    std::map<int, int> first_stage; // with a pressure on it, by boundary
+    for (int s = 0; s < static_cast<int>(model.loads.stages.size()); ++s)
+        for (const auto& [boundary, pressure] : model.loads.stages[s].pressure)
+            if (pressure > 0.0) first_stage.emplace(boundary, s);
+    std::vector<std::string> warnings;
+    for (const auto& [boundary, stage] : first_stage) {
+        std::set<int> vertices;
+        for (const Block& block : system.blocks)
+            for (const Edge& edge : block.edges)
+                if (edge.boundary == boundary) vertices.insert({edge.start, edge.end});
+        const auto n = std::ranges::count_if(system.interfaces, [&](const Interface& interface) {
+            const Edge& edge = system.blocks[interface.block_a].edges[interface.edge_a];
+            return model.bonds[static_cast<std::size_t>(law_of(interface))] == 0 &&
+                   (vertices.contains(edge.start) || vertices.contains(edge.end));
+        });
+        if (n == 0) continue;
+        const std::string& name = system.boundaries[boundary].name;
+        warnings.push_back(fmt::format(
+            "stages.{}.pressure.{}: the pressure acts on the face and not in the joints that come out there ({}): right "
+            "for a membrane or a foundation; water would press in them as well (uplift), and the body be weaker than "
+            "found",
+            stage, name, n));
+    }
+    return warnings;
+}
+
 /// The blocks of the scene's body.
 CutBody cut_body(const Scene& scene) {
     try {
@@ -545,8 +575,8 @@ SceneModel build_scene_model(const Scene& scene) {
     SceneModel built;
     try {
         built.model = build_model(std::move(body.system), model_input(scene));
-        const std::vector<std::string> warnings = strengths_of_nothing(scene, built.model, body.report);
-        built.model.warnings.insert(built.model.warnings.end(), warnings.begin(), warnings.end());
+        for (const auto& warnings : {strengths_of_nothing(scene, built.model, body.report), pressed_joints(built.model)})
+            built.model.warnings.insert(built.model.warnings.end(), warnings.begin(), warnings.end());
     } catch (const InputError& error) {
         blame_coarse_net(scene.geometry, error);
         throw located(error, scene.places);

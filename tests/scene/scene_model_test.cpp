@@ -45,6 +45,21 @@ std::string refusal_of(const std::vector<std::string>& overrides) {
     return messages.empty() ? "" : messages.front();
 }
 
+// A pressed face at which a joint comes out: as that of a dam's lake, where the body has weight.
+TEST(SceneModel, WarnsOfPressuresThatDoNotEnterJoints) {
+    const auto warnings = [](const std::string& pressure, const std::string& gravity) {
+        return warnings_of({"stages=[" + pressure + "]", "analysis.gravity=" + gravity, "materials.rock.density=2500",
+                            "boundaries={bottom: {support: fixed}, left: {}, top: {}}"});
+    };
+    EXPECT_THAT(warnings("{pressure: {left: 1 kPa}}", "9.81"), 
+                Contains(AllOf(HasSubstr("stages.0.pressure.left: "), HasSubstr("joints that come out there (1)"),
+                               HasSubstr("water would press in them as well"))));
+    EXPECT_THAT(warnings("{}, {pressure: {left: 1 kPa}}", "9.81"), Contains(HasSubstr("stages.1.pressure.left")));
+    EXPECT_THAT(warnings("{pressure: {left: 1 kPa}}", "0"), Not(Contains(HasSubstr("water"))));
+    EXPECT_THAT(warnings("{pressure: {top: 1 kPa}}", "9.81"), Not(Contains(HasSubstr("water"))));
+    EXPECT_THAT(warnings("{pressure: {left: 0}}", "9.81"), Not(Contains(HasSubstr("water"))));
+}
+
 // What only the body shows to be wrong has its place in the scene, too: that of the key, of the mapping that lacks it, or the override.
 TEST(SceneModel, WhatTheBodyShowsToBeWrongHasItsPlace) {
     EXPECT_THAT(
