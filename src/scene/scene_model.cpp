@@ -535,7 +535,8 @@ std::vector<std::string> pressed_joints(const Model& model) {
         if (n == 0) continue;
         const std::string& name = system.boundaries[boundary].name;
         warnings.push_back(fmt::format(
-            "stages.{}.pressure.{}: the pressure acts on the face and not in the joints that come out there ({}): right "
+            "stages.{}.pressure.{}: the pressure acts on the face and not in the joints that come out there ({}): "
+            "right "
             "for a membrane or a foundation; water would press in them as well (uplift), and the body be weaker than "
             "found",
             stage, name, n));
@@ -575,7 +576,8 @@ SceneModel build_scene_model(const Scene& scene) {
     SceneModel built;
     try {
         built.model = build_model(std::move(body.system), model_input(scene));
-        for (const auto& warnings : {strengths_of_nothing(scene, built.model, body.report), pressed_joints(built.model)})
+        for (const auto& warnings :
+             {strengths_of_nothing(scene, built.model, body.report), pressed_joints(built.model)})
             built.model.warnings.insert(built.model.warnings.end(), warnings.begin(), warnings.end());
     } catch (const InputError& error) {
         blame_coarse_net(scene.geometry, error);

@@ -679,7 +679,8 @@ std::vector<KeyRule> loading_rules() {
          .doc = "For messages and output."},
         {.path = "stages.#.pressure",
          .type = KeyType::named,
-         .doc = "Pressure on boundaries by name. It follows the surface, and does not act in joints that come out there; boundaries not named keep theirs."},
+         .doc = "Pressure on boundaries by name. It follows the surface, and does not act in joints that come out "
+                "there; boundaries not named keep theirs."},
         {.path = "stages.#.pressure.*",
          .type = KeyType::number,
          .measure = Measure::stress,

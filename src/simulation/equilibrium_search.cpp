@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "kluft/equilibrium/held_friction.hpp"
@@ -26,7 +27,10 @@ constexpr double share_of_change =
 constexpr double small_change = 0.02; ///< of F_ref: of a larger one less is left over anyway
 constexpr double least_change = 1e-7; ///< of F_ref
 constexpr int rounds_of_change = 6;
-constexpr double falls_by = 0.95; ///< with each round, of what something holds
+constexpr double falls_by = 0.95;         ///< with each round, of what something holds
+constexpr double share_of_motion = 0.01;  ///< of a load step's: what a round may still move a body that has caught up
+constexpr double eta_of_lag = 1e-4;       ///< of eta: what holds the body back is not what finds how far
+constexpr double tolerance_of_lag = 1e-3; ///< of the tolerance
 
 OpenCloseOptions open_close_options(const SolverOptions& solver) {
     OpenCloseOptions options;
@@ -68,6 +72,17 @@ bool has_friction(const LoadedBody& body) {
 double norm_of(const std::vector<Vec3>& left) {
     double sum = 0.0;
     for (const Vec3& each : left) sum += each.squaredNorm();
+    return std::sqrt(sum);
+}
+
+/// Root of the integral of the squared displacement over the blocks.
+double motion(const EquilibriumProblem& problem, const Eigen::VectorXd& from, const Eigen::VectorXd& to) {
+    const std::vector<Block>& blocks = problem.body.system->blocks;
+    double sum = 0.0;
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+        const Vec6 moved = (to - from).segment<6>(static_cast<Eigen::Index>(6 * b));
+        sum += moved.dot(mass_product(blocks[b], 0.0, moved));
+    }
     return std::sqrt(sum);
 }
 
@@ -256,22 +271,28 @@ bool EquilibriumSearch::catch_up(EquilibriumProblem& problem, const BlockGoal& b
     return true;
 }
 
-/// Source: (27e).
-void EquilibriumSearch::follow_small_loads(EquilibriumProblem problem, const Eigen::VectorXd& before,
-                                           const BlockGoal& balance, Equilibrium& found) {
+/// Source: (27e), (27f).
+void EquilibriumSearch::follow_loads(EquilibriumProblem problem, const Eigen::VectorXd& before,
+                                     const BlockGoal& balance, Equilibrium& found) {
     const double change = norm_of(block_balance(problem.body, before).left);
     const double carried = found.summary.force_scale;
-    if (change <= least_change * carried || change >= small_change * carried) return;
+    if (change <= least_change * carried) return;
+    const double allowed =
+        change < small_change * carried ? share_of_change * change : std::numeric_limits<double>::infinity();
+    for (double& eta : problem.eta) eta *= eta_of_lag;
     double tolerance_share = 1.0;
     double left = norm_of(found.blocks.left);
-    for (int round = 0; round < rounds_of_change && left > share_of_change * change; ++round) {
+    bool lags = found.viscous_share > 0.0;
+    for (int round = 0; round < rounds_of_change && (left > allowed || lags); ++round) {
         if (!found.blocks.free.empty() || slides(problem, found.displacement)) return;
-        tolerance_share = std::max(tolerance_share * sharpening * share_of_change * change / left, sharpest);
+        tolerance_share = std::max(std::min(tolerance_of_lag, tolerance_share * sharpening * allowed / left), sharpest);
         Equilibrium next = found;
         const bool is_balanced = catch_up(problem, balance, tolerance_share, next);
         found.iterations = next.iterations;
         const double left_before = std::exchange(left, norm_of(next.blocks.left));
         if (!is_balanced || left > falls_by * left_before) return; // nothing holds what creeps on
+        lags = motion(problem, found.displacement, next.displacement) >
+               share_of_motion * motion(problem, before, next.displacement);
         found = std::move(next);
     }
 }

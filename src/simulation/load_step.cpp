@@ -69,7 +69,7 @@ Equilibrium advance(StepInProgress& p, PlacedState& placed) {
         if (!found.balanced && p.bench.loads.constraints().rows().empty())
             fail(p, found, found.viscous_share, FailureKind::no_equilibrium);
     }
-    if (found.balanced) follow_small_loads(p, placed, found);
+    if (found.balanced) follow_loads(p, placed, found);
     if (by_events && found.balanced) {
         const Eigen::VectorXd beyond = found.displacement;
         found = cut_at_failure(p, placed, std::move(found));

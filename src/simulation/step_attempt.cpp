@@ -142,7 +142,7 @@ std::optional<StepError> judge_by_halves(StepInProgress& p, PlacedState placed, 
         finish_step(p, std::move(placed), whole);
         return std::nullopt;
     }
-    follow_small_loads(p, placed, half);
+    follow_loads(p, placed, half);
     Course course;
     const LoadsAt at_start = p.loads_at(p.load_factor());
     const LoadsAt at_target = p.loads_at(target);
@@ -159,7 +159,7 @@ std::optional<StepError> judge_by_halves(StepInProgress& p, PlacedState placed, 
         finish_step(p, std::move(placed), {std::move(end), target - middle});
         return std::nullopt;
     }
-    follow_small_loads(p, placed, end);
+    follow_loads(p, placed, end);
     const EventCut<Equilibrium> cut = cut_at_first_event(p, placed, std::move(end));
     const bool event = cut.found.load_factor < target || index_of(p, placed, cut.found) >= 1.0 - p.goal.accuracy;
     finish_step(p, std::move(placed), cut);
@@ -186,7 +186,7 @@ std::optional<StepError> advance(StepInProgress& p, double small_step) {
         p.step.end.memory.rate.resize(0);
         return std::nullopt;
     }
-    follow_small_loads(p, placed, found);
+    follow_loads(p, placed, found);
     const EventCut<Equilibrium> cut = cut_at_first_event(p, placed, std::move(found));
     const double reached = cut.found.load_factor;
     const bool event = reached < first || index_of(p, placed, cut.found) >= 1.0 - p.goal.accuracy;

@@ -147,14 +147,14 @@ Equilibrium find_at(StepInProgress& p, const PlacedState& placed, double load_fa
     return found;
 }
 
-void follow_small_loads(StepInProgress& p, const PlacedState& placed, Equilibrium& found) {
+void follow_loads(StepInProgress& p, const PlacedState& placed, Equilibrium& found) {
     const Model& model = p.bench.model;
     if (p.goal.must_rest || !is_loaded_by_stress(p.bench.stage(p.from))) return;
     const LoadsAt at = p.loads_at(found);
     if (!at.loads.platens.empty()) return;
     const int so_far = std::exchange(found.iterations, 0);
-    p.bench.search.follow_small_loads(pose(model, placed, at, found.displacement), p.from.body.displacement,
-                                      p.goal.balance, found);
+    p.bench.search.follow_loads(pose(model, placed, at, found.displacement), p.from.body.displacement, p.goal.balance,
+                                found);
     count_solves(p, found);
     found.iterations += so_far;
 }

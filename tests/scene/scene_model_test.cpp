@@ -51,7 +51,7 @@ TEST(SceneModel, WarnsOfPressuresThatDoNotEnterJoints) {
         return warnings_of({"stages=[" + pressure + "]", "analysis.gravity=" + gravity, "materials.rock.density=2500",
                             "boundaries={bottom: {support: fixed}, left: {}, top: {}}"});
     };
-    EXPECT_THAT(warnings("{pressure: {left: 1 kPa}}", "9.81"), 
+    EXPECT_THAT(warnings("{pressure: {left: 1 kPa}}", "9.81"),
                 Contains(AllOf(HasSubstr("stages.0.pressure.left: "), HasSubstr("joints that come out there (1)"),
                                HasSubstr("water would press in them as well"))));
     EXPECT_THAT(warnings("{}, {pressure: {left: 1 kPa}}", "9.81"), Contains(HasSubstr("stages.1.pressure.left")));

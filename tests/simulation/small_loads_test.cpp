@@ -1,5 +1,6 @@
-// Loads that are small beside what a body carries, and are added to it.
+// Loads that are small beside what a body carries, and motions that are large beside what holds them back.
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -15,8 +16,8 @@ constexpr double tower_course = 0.8;
 constexpr double tower_stiffness = 2e10; ///< of its joints (Pa/m); half of that in shear
 constexpr double weight_of_course = 2600.0 * 9.81 * tower_width * tower_course;
 
-/// A column of so many blocks, that its weight and then a horizontal force on the uppermost one act on.
-std::string tower(int n, double force, int steps) {
+/// A column of so many blocks, that its weight, `tilt` of it sideways, and then a horizontal force on the uppermost one act on.
+std::string tower(int n, double force, int steps, double tilt = 0.0, int weight_steps = 1) {
     std::string blocks;
     for (int i = 0; i < n; ++i) {
         const double low = tower_course * i;
@@ -26,21 +27,22 @@ std::string tower(int n, double force, int steps) {
                         i, low, high);
     }
     return fmt::format(R"(kluft: 1
-analysis: {{gravity: 9.81}}
+analysis: {{gravity: [{7:.17g}, -9.81]}}
 materials: {{rock: {{density: 2600, youngs_modulus: 2000 GPa, poissons_ratio: 0}}}}
 interfaces: {{joint: {{kind: fracture, friction_angle: 35, normal_stiffness: {0:.17g}, shear_stiffness: {1:.17g}}}}}
 geometry:
   blocks:
     - {{name: base, polygon: [[-2, -1], [3, -1], [3, 0], [-2, 0]], support: fixed}}
 {2}stages:
-  - {{name: weight}}
+  - {{name: weight, steps: {8}}}
   - {{name: push, forces: {{push: {{block: b{3}, point: [0.5, {4:.17g}], force: [{5:.17g}, 0]}}}}, steps: {6}}}
 )",
-                       tower_stiffness, 0.5 * tower_stiffness, blocks, n - 1, tower_course * (n - 0.5), force, steps);
+                       tower_stiffness, 0.5 * tower_stiffness, blocks, n - 1, tower_course * (n - 0.5), force, steps,
+                       9.81 * tilt, weight_steps);
 }
 
 /// Of the uppermost block: rigid blocks on elastic joints, with the moments of the weights that have moved.
-double motion_of_top(int n, double force) {
+double motion_of_top(int n, double force, double tilt = 0.0) {
     const double k_turn = tower_stiffness * tower_width * tower_width * tower_width / 12.0;
     const double k_slip = 0.5 * tower_stiffness * tower_width;
     std::vector<double> turn(n, 0.0);
@@ -50,14 +52,15 @@ double motion_of_top(int n, double force) {
         std::vector<double> middle(n);
         for (int i = 0; i < n; ++i) {
             const double above = weight_of_course * (n - i);
-            const double tilt = 0.5 * (turn[i] + (i > 0 ? turn[i - 1] : 0.0));
-            const double slip = (force + above * tilt) / k_slip;
+            const double turned = 0.5 * (turn[i] + (i > 0 ? turn[i - 1] : 0.0));
+            const double slip = (force + above * (turned + tilt)) / k_slip;
             foot[i] = slip + (i > 0 ? foot[i - 1] + tower_course * turn[i - 1] : 0.0);
             middle[i] = foot[i] + 0.5 * tower_course * turn[i];
         }
         for (int i = 0; i < n; ++i) {
             double moment = force * tower_course * (n - 0.5 - i);
-            for (int j = i; j < n; ++j) moment += weight_of_course * (middle[j] - foot[i]);
+            for (int j = i; j < n; ++j)
+                moment += weight_of_course * (middle[j] - foot[i] + tilt * tower_course * (j + 0.5 - i));
             turn[i] = moment / k_turn + (i > 0 ? turn[i - 1] : 0.0);
         }
         top = middle[n - 1];
@@ -77,6 +80,22 @@ TEST(SmallLoads, OnASlenderColumnMoveItAsMuchInAnyNumberOfSteps) {
                 const double top = run.state.body.displacement[6 * n];
                 const double expected = motion_of_top(n, force);
                 EXPECT_NEAR(top, expected, 0.01 * expected) << n << " blocks, " << share << ", " << steps << " steps";
+            }
+}
+
+// The mass-like term holds back what is soft beside it: 5 to 60 % of the sway of a column was missing, by its viscosity and the number of load
+// steps, while it was a share of 3e-5 of the forces on the body.
+TEST(SmallLoads, OfAWeightThatIsNotQuiteUprightMoveAColumnAsMuchWithAnyViscosity) {
+    for (const auto& [n, tilt] : {std::pair(30, 1e-3), std::pair(50, 2e-4)})
+        for (const char* viscosity : {"1e-4", "1e-2", "1"})
+            for (const int steps : {1, 4, 20}) {
+                const SceneRun run = run_scene(read_scene_text(
+                    tower(n, 0.0, 1, tilt, steps), {std::string("solver.viscosity=") + viscosity}, "tower.yaml"));
+                ASSERT_TRUE(stands(run)) << run.report.diagnosis;
+                const double top = run.state.body.displacement[6 * n];
+                const double expected = motion_of_top(n, 0.0, tilt);
+                EXPECT_NEAR(top, expected, 0.01 * expected)
+                    << n << " blocks, " << viscosity << ", " << steps << " steps";
             }
 }
 

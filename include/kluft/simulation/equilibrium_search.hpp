@@ -65,9 +65,10 @@ public:
     [[nodiscard]] Equilibrium find(const EquilibriumProblem& problem, const Eigen::VectorXd& guess,
                                    const BlockGoal& balance, const Circumstances& circumstances);
     /// Solves again from a balanced state, until what is left over on the blocks is little of what the loads have put on them since
-    /// the displacements `before`, where that is little beside what the body carries (docs/theory.md, (27e)). Of a body without platens.
-    void follow_small_loads(EquilibriumProblem problem, const Eigen::VectorXd& before, const BlockGoal& balance,
-                            Equilibrium& found);
+    /// the displacements `before`, where that is little beside what the body carries, and the body moves by little of what it has moved since
+    /// (docs/theory.md, (27e) and (27f)). Of a body without platens.
+    void follow_loads(EquilibriumProblem problem, const Eigen::VectorXd& before, const BlockGoal& balance,
+                      Equilibrium& found);
     /// One step of a motion from the problem's start.
     [[nodiscard]] Equilibrium move_on(const EquilibriumProblem& problem, const Eigen::VectorXd& guess,
                                       const BlockGoal& balance, bool unloaded);

@@ -92,9 +92,9 @@ void renew(const StepInProgress& in_progress, PlacedState& placed);
 [[nodiscard]] Equilibrium find_at(StepInProgress& in_progress, const PlacedState& placed, double load_factor,
                                   Eigen::VectorXd guess);
 
-/// What balances a body beside all that it carries may be much beside loads that are small and are added to it: follows these to
-/// their end (docs/theory.md, (27e)).
-void follow_small_loads(StepInProgress& in_progress, const PlacedState& placed, Equilibrium& found);
+/// What balances a body beside all that it carries may be much beside loads that are small and are added to it, and hold back what is
+/// soft: follows the loads to their end (docs/theory.md, (27e) and (27f)).
+void follow_loads(StepInProgress& in_progress, const PlacedState& placed, Equilibrium& found);
 
 /// Moves the body to what was found: contacts keep their histories. False, and the step has failed, where its displacements
 /// are those of no body.
