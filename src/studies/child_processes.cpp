@@ -36,13 +36,32 @@ void open_as(int descriptor, const char* path, int flags) {
     if (file != descriptor) close(file);
 }
 
+/// While it lives, signals wait: a child that is asked to stop before it has left this program's handlers would take the
+/// request for one to this program.
+class SignalsWait {
+public:
+    SignalsWait() {
+        sigset_t all;
+        sigfillset(&all);
+        pthread_sigmask(SIG_SETMASK, &all, &before_);
+    }
+    SignalsWait(const SignalsWait&) = delete;
+    SignalsWait& operator=(const SignalsWait&) = delete;
+    ~SignalsWait() { end(); }
+    void end() const { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+
+private:
+    sigset_t before_{};
+};
+
 /// In the child: nothing that allocates memory.
-[[noreturn]] void become(char* const* words, const char* messages, pid_t parent) {
+[[noreturn]] void become(char* const* words, const char* messages, pid_t parent, const SignalsWait& signals) {
     setpgid(0, 0);
     prctl(PR_SET_PDEATHSIG, SIGINT);
     if (getppid() != parent) _exit(cannot_start);
     std::signal(SIGINT, SIG_DFL);
     std::signal(SIGTERM, SIG_DFL);
+    signals.end();
     open_as(STDIN_FILENO, "/dev/null", O_RDONLY);
     open_as(STDOUT_FILENO, "/dev/null", O_WRONLY);
     open_as(STDERR_FILENO, messages, O_WRONLY | O_CREAT | O_TRUNC);
@@ -82,10 +101,11 @@ void ChildProcesses::start(std::size_t tag, const std::vector<std::string>& word
     for (auto& word : copies) pointers.push_back(word.data());
     pointers.push_back(nullptr);
     const pid_t parent = getpid();
+    const SignalsWait signals;
     const pid_t pid = fork();
     if (pid < 0)
         throw ResourceError(fmt::format("{}: cannot start another process: {}", words.front(), std::strerror(errno)));
-    if (pid == 0) become(pointers.data(), messages.c_str(), parent);
+    if (pid == 0) become(pointers.data(), messages.c_str(), parent, signals);
     running_.push_back({tag, pid, time_limit, Clock::now(), {}, false, false});
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <csignal>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -186,6 +187,16 @@ TEST_F(StudyRuns, CaseThatTakesTooLongIsStopped) {
     EXPECT_EQ(table.cases[1].status, CaseStatus::failed);
     EXPECT_THAT(table.cases[1].reason, HasSubstr("after the time limit of 0.3 s"));
     EXPECT_LT(*table.cases[1].elapsed_s, 10.0);
+}
+
+// Asked before it has become the program of the case: by then it has the handlers of the study's own program.
+TEST_F(StudyRuns, CaseIsStoppedHoweverShortItsTimeIs) {
+    void (*const before)(int) = std::signal(SIGINT, [](int) {});
+    const StudyTable table = run(steps("88") + "time_limit: 1e-9\n");
+    std::signal(SIGINT, before);
+    EXPECT_EQ(table.cases[0].status, CaseStatus::failed);
+    EXPECT_THAT(table.cases[0].reason, HasSubstr("after the time limit of 1e-09 s"));
+    EXPECT_LT(*table.cases[0].elapsed_s, 5.0);
 }
 
 TEST_F(StudyRuns, InterruptedCaseGoesOnFromItsSavedState) {
