@@ -91,7 +91,23 @@ ExitCode tell_failure() noexcept {
     }
 }
 
+namespace {
+
+/// Nothing can be made at a link that leads to what is not there, nor below it.
+void require_no_dead_link(const fs::path& path) {
+    std::error_code error;
+    for (fs::path place = fs::absolute(path); place.has_relative_path(); place = place.parent_path()) {
+        if (fs::exists(place, error)) return;
+        if (fs::is_symlink(fs::symlink_status(place, error)))
+            throw InputError(fmt::format("{}: expected a place for the results, found a link to {}, which is not there",
+                                         place.string(), fs::read_symlink(place, error).string()));
+    }
+}
+
+} // namespace
+
 void require_no_file(const fs::path& directory) {
+    require_no_dead_link(directory);
     std::error_code error;
     if (fs::exists(directory, error) && !fs::is_directory(directory, error))
         throw InputError(directory.string() + ": expected a directory for the results, found a file");
@@ -111,6 +127,7 @@ void require_possible_output(const std::string& path) {
             throw InputError("-o: expected a name for the results, found a pipe, " + path);
         return;
     }
+    require_no_dead_link(path);
     fs::path place = fs::absolute(path).parent_path(); // or the next one above it that is there
     std::error_code error;
     while (!fs::exists(place, error) && place.has_relative_path()) place = place.parent_path();

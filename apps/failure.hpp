@@ -17,10 +17,11 @@ namespace kluft {
 [[noreturn]] void leave_without_handlers(ExitCode code);
 
 /// Throws InputError where nothing can be made at `path`, which the option -o names: a part of it is too long or is a file, or the
-/// nearest directory above it may not be written to; or where a pipe is there, which would wait for a reader.
+/// nearest directory above it may not be written to; where it or one above it is a link to what is not there; or where a pipe is
+/// there, which would wait for a reader.
 void require_possible_output(const std::string& path);
 
-/// Throws InputError where what is to be the directory of the results is a file.
+/// Throws InputError where what is to be the directory of the results is a file, or it or one above it a link to what is not there.
 void require_no_file(const std::filesystem::path& directory);
 
 /// Throws InputError where the directory of a file that -o names is not there, or where that file is a directory.

@@ -890,6 +890,20 @@ TEST_F(CommandLine, ResumedRunLeavesTheSceneThatItWasResumedWith) {
     EXPECT_THAT(content_of(path("r/scene.yaml")), HasSubstr("pictures: false"));
 }
 
+TEST_F(CommandLine, ResultsAtOrBelowALinkToNothingAreRefused) {
+    write("tiny.yaml", tiny_scene);
+    fs::create_symlink("gone", path("link"));
+    fs::create_symlink("gone.png", path("link.png"));
+    const auto names_the_link =
+        HasSubstr("link: expected a place for the results, found a link to gone, which is not there");
+    expect_refused({"run", "tiny.yaml", "-o", "link"}, names_the_link);
+    expect_refused({"run", "tiny.yaml", "-o", "link/below"}, names_the_link);
+    expect_refused({"study", "step-size", "tiny.yaml", "-o", "link"}, names_the_link);
+    expect_refused({"draw", "tiny.yaml", "-o", "link.png"}, HasSubstr("found a link to gone.png"));
+    fs::create_directory(path("gone"));
+    EXPECT_EQ(kluft({"run", "tiny.yaml", "-o", "link", "--quiet"}).code, 0);
+}
+
 TEST_F(CommandLine, RunIsRefusedWhereItsDirectoryIsAFile) {
     write("tiny.yaml", tiny_scene);
     expect_refused({"run", "tiny.yaml", "-o", "tiny.yaml"}, HasSubstr("expected a directory for the results"));
