@@ -451,6 +451,23 @@ std::set<int> types_in(const Scene& scene, const BlockSystem& system) {
     return types;
 }
 
+/// Fractures of the body with a cohesion whose friction has been forgotten: it slides at that cohesion however hard it is pressed.
+std::vector<std::string> cohesion_without_friction(const Scene& scene, const BlockSystem& system) {
+    std::vector<std::string> warnings;
+    for (const int index : types_in(scene, system)) {
+        const InterfaceType& type = scene.interface_types[static_cast<std::size_t>(index)];
+        const std::string path = joined_path("interfaces", type.name);
+        const bool is_meant =
+            std::ranges::find(scene.places, joined_path(path, "friction_angle"), &KeyPlace::path) != scene.places.end();
+        if (type.kind != InterfaceKind::fracture || !(type.cohesion > 0.0) || is_meant) continue;
+        warnings.push_back(fmt::format(
+            "{}: without friction_angle the fracture has no friction, and slides at {:.4g} MPa however hard "
+            "it is pressed; friction_angle: 0 says that this is meant",
+            joined_path(path, "cohesion"), 1e-6 * type.cohesion));
+    }
+    return warnings;
+}
+
 bool is_loaded(const Stage& stage, bool has_weight) {
     const auto is_pressure = [](const auto& each) { return each.second != 0.0; };
     const auto is_force = [](const auto& each) { return !each.second.isZero(); };
@@ -576,8 +593,8 @@ SceneModel build_scene_model(const Scene& scene) {
     SceneModel built;
     try {
         built.model = build_model(std::move(body.system), model_input(scene));
-        for (const auto& warnings :
-             {strengths_of_nothing(scene, built.model, body.report), pressed_joints(built.model)})
+        for (const auto& warnings : {strengths_of_nothing(scene, built.model, body.report), pressed_joints(built.model),
+                                     cohesion_without_friction(scene, built.model.system)})
             built.model.warnings.insert(built.model.warnings.end(), warnings.begin(), warnings.end());
     } catch (const InputError& error) {
         blame_coarse_net(scene.geometry, error);

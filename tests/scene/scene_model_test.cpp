@@ -85,6 +85,22 @@ TEST(SceneModel, WhatTheBodyShowsToBeWrongHasItsPlace) {
     }
 }
 
+// Coulomb's law with c alone: |t| <= c under any normal stress.
+TEST(SceneModel, WarnsOfACohesionWhoseFrictionIsForgottenWhereTheBodyHasTheFracture) {
+    const auto slides = [](const std::string& key, const std::string& at) {
+        return HasSubstr(key + ": without friction_angle the fracture has no friction, and slides at " + at + " MPa");
+    };
+    EXPECT_THAT(warnings_of({"interfaces.joint.friction_angle=null", "interfaces.joint.cohesion=0.2 MPa"}),
+                ElementsAre(slides("interfaces.joint.cohesion", "0.2")));
+    EXPECT_THAT(warnings_of({"interfaces.crack={friction_angle: null, cohesion: 3 MPa}"}),
+                ElementsAre(slides("interfaces.crack.cohesion", "3")));
+    EXPECT_THAT(warnings_of({"interfaces.joint.cohesion=0.2 MPa"}), IsEmpty());
+    EXPECT_THAT(warnings_of({"interfaces.joint.friction_angle=0", "interfaces.joint.cohesion=0.2 MPa"}), IsEmpty());
+    EXPECT_THAT(warnings_of({"interfaces.fault={kind: fracture, cohesion: 0.2 MPa, normal_stiffness: 500 GPa/m, "
+                             "shear_stiffness: 250 GPa/m}"}),
+                IsEmpty());
+}
+
 // Two traces cross 0.1 m behind a side of 2 m: the triangle between them, 0.01 m2, is 0.0115 of a hexagon of 1 m, 0.866 m2.
 TEST(SceneModel, PointsInAPieceThatIsTakenOffAreRefusedWithTheKeyThatKeepsIt) {
     const std::string crossed = R"(kluft: 1
