@@ -432,7 +432,8 @@ private:
             }
             n_mapped_ += read.traces.size();
         } catch (const InputError& error) {
-            context_.fail(section, "file", error.what());
+            const std::string& key = error.problems().front().path;
+            context_.fail(section, key.empty() ? "file" : key, error.what());
         }
     }
 

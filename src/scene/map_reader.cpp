@@ -212,10 +212,14 @@ TakenMap take_map(const MapRequest& request) {
 std::optional<std::size_t> field_of(const MapRequest& request, const MapLayer& layer) {
     if (request.attribute.empty()) return std::nullopt;
     const auto found = std::ranges::find(layer.fields, request.attribute);
-    if (found == layer.fields.end())
-        throw InputError(fmt::format("{}: expected an attribute of its features ({}), found {}{}",
-                                     request.file.string(), listed(layer.fields), in_quotes(request.attribute),
-                                     suggestion(request.attribute, layer.fields)));
+    if (found == layer.fields.end()) {
+        InputProblem problem;
+        problem.path = "attribute";
+        problem.message = fmt::format("{}: expected an attribute of its features ({}), found {}{}",
+                                      request.file.string(), listed(layer.fields), in_quotes(request.attribute),
+                                      suggestion(request.attribute, layer.fields));
+        throw InputError(std::vector{problem});
+    }
     return static_cast<std::size_t>(found - layer.fields.begin());
 }
 

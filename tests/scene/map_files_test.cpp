@@ -299,7 +299,8 @@ TEST_F(ScenesWithMaps, AnAttributeChoosesTheInterface) {
         ElementsAre(HasSubstr("expected values that are names of interfaces, or `interface` for all others, found 5 "
                               "traces with '7' (1), 'A' (3), 'B' (1)")));
     EXPECT_THAT(errors({"geometry.fractures=[{file: t.geojson, attribute: sets, interface: joint}]"}),
-                ElementsAre(AllOf(HasSubstr("(set), found 'sets'"), HasSubstr("did you mean 'set'?"))));
+                ElementsAre(AllOf(HasSubstr("geometry.fractures.0.attribute: "), HasSubstr("(set), found 'sets'"),
+                                  HasSubstr("did you mean 'set'?"))));
     EXPECT_THAT(
         errors(
             {"geometry.fractures=[{file: t.geojson, interface: joint, interfaces: [{value: A, interface: joint}]}]"}),

@@ -50,7 +50,7 @@ struct MappedTraces {
 [[nodiscard]] MappedArea read_map_area(const MapRequest& request);
 
 /// Reads all traces of a map: LineStrings and the parts of MultiLineStrings, in the order of the file. Otherwise as
-/// `read_map_area`.
+/// `read_map_area`. An error of the attribute that is asked for has the path "attribute".
 [[nodiscard]] MappedTraces read_map_traces(const MapRequest& request);
 
 } // namespace kluft
