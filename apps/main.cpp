@@ -135,7 +135,8 @@ void add_run_command(CLI::App& app, Command& command) {
     sub->add_option("-o,--output", arguments->directory, "Directory of the results (default: results/<scene name>)")
         ->check(flaw_of_name);
     sub->add_option("--set", arguments->overrides,
-                    "Set a value of the scene, e.g. --set stages.1.steps=200; a mapping is merged, null removes a key")
+                    "Set a value of the scene, e.g. --set stages.1.steps=200; a mapping is merged with the one that is "
+                    "there, also a stage ('stages.1={steps: 200}' keeps all else of it); null removes a key")
         ->take_all()
         ->allow_extra_args(false);
     sub->add_option("--threads", arguments->threads, "Threads of the factorization (bodies of 20 000 unknowns or more)")

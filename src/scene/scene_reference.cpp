@@ -94,6 +94,8 @@ way of giving a stiffness to another, or from a rectangle to a polygon.
 `--set key.path=value` on the command line does the same after that. The path goes through mappings by key and through
 lists by index from 0 (the number of items appends one); the value is YAML:
 `--set stages.1.steps=200 --set geometry.tessellation.triangles.spacing=0.03 --set geometry.tessellation=null`.
+A mapping is merged here, too: `--set 'stages.1={steps: 200}'` keeps all else of the stage; an empty one, which changes nothing,
+is refused.
 
 ## Errors
 

@@ -158,7 +158,7 @@ public:
 private:
     void set(SceneNode& node, const std::vector<std::string>& keys, std::size_t depth, const std::string& pattern,
              const std::string& path) {
-        if (depth == keys.size()) return merge_scene_trees(node, std::move(*value_));
+        if (depth == keys.size()) return lay(node);
         const std::string& key = keys[depth];
         const std::string below = scene_schema().child_pattern(pattern, key);
         if (node.kind == SceneNode::Kind::nothing) {
@@ -174,6 +174,18 @@ private:
             errors_.add(
                 at_, path,
                 fmt::format("expected a mapping or a list for the key {}, found {}", in_quotes(key), found_text(node)));
+    }
+
+    /// Mappings merge, so that one without keys would change nothing of another one.
+    void lay(SceneNode& node) {
+        if (node.is_mapping() && !node.items.empty() && value_->is_mapping() && value_->items.empty())
+            errors_.add(
+                at_, path_,
+                fmt::format("expected keys to merge with those that are there, or null, which removes {}; found "
+                            "{{}}, which changes nothing",
+                            in_quotes(path_)));
+        else
+            merge_scene_trees(node, std::move(*value_));
     }
 
     /// The item of a list, appended if it is the next one. Removes it and returns null for a `null` value.

@@ -202,6 +202,18 @@ TEST(Overrides, MappingsMergeAndNullRemoves) {
     EXPECT_THAT(errors_in(test::short_scene, {"geometry.tessellation=null"}), IsEmpty()) << "nothing to remove";
 }
 
+TEST(Overrides, AMappingWithoutKeysIsRefusedWhereItWouldChangeNothing) {
+    EXPECT_THAT(errors_with({"materials={}"}),
+                ElementsAre("--set materials={}: materials: expected keys to merge with those that are there, or null, "
+                            "which removes 'materials'; found {}, which changes nothing"));
+    EXPECT_THAT(errors_with({"stages.1={}"}), ElementsAre(HasSubstr("stages.1: expected keys to merge")));
+    EXPECT_THAT(errors_in(test::full_scene, {"geometry.regions=null", "output.histories=null", "output.histories={}"}),
+                IsEmpty());
+    const Scene merged = read_scene_text(test::full_scene, {"stages.1={steps: 200}"});
+    EXPECT_EQ(merged.loads.stages[1].steps, 200);
+    EXPECT_TRUE(merged.loads.stages[1].motion) << "the rest of the stage is kept";
+}
+
 TEST(Overrides, KeyThatIsMissingBecauseOneTookItAwayIsToldThere) {
     for (const std::string key : {"stages", "geometry", "materials", "kluft", "materials.rock.density"}) {
         for (const char* nothing : {"null", "~"})
