@@ -161,15 +161,11 @@ void draw_blocks_of_run(const DrawArguments& arguments, const std::vector<fs::pa
     std::erase_if(history, [&](const StepRecord& record) { return record.step > state.at.step; });
     BlocksPlot plot = plot_of(scene);
     plot.title = arguments.title.empty() ? heading_of(directory).title : arguments.title;
-    std::optional<double> factor;
-    if (fs::exists(directory / "summary.json")) {
-        const RunSummary summary = read_summary(directory / "summary.json");
-        if (summary.numbers.steps == state.at.step) { // else a run that went on, and has not ended
-            plot.moving = summary.falling;
-            factor = summary.results.factor_of_safety;
-        }
-    }
-    plot.after = after_title(history, !moves_no_platen(directory), factor);
+    std::optional<RunSummary> summary;
+    if (fs::exists(directory / "summary.json")) summary = read_summary(directory / "summary.json");
+    if (summary && summary->numbers.steps != state.at.step) summary.reset(); // a run that went on, and has not ended
+    if (summary) plot.moving = summary->falling;
+    plot.after = after_title(history, !moves_no_platen(directory), summary);
     const FieldRecord fields = fields_of_state(built.model, state);
     for (const auto& picture : pictures) {
         write_blocks(picture, built.model.system, fields, plot);

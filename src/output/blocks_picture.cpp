@@ -249,8 +249,9 @@ std::vector<LegendEntry> outside_note(int n) {
 } // namespace
 
 std::string after_title(const std::vector<StepRecord>& history, bool moves_platen,
-                        const std::optional<double>& factor_of_safety) {
-    if (factor_of_safety) return fmt::format("after, factor of safety {:.4g}", *factor_of_safety);
+                        const std::optional<RunSummary>& summary) {
+    if (summary && summary->results.factor_of_safety)
+        return fmt::format("after, {} {:.4g}", factor_name(summary->reduced_alone), *summary->results.factor_of_safety);
     if (history.empty() || !moves_platen) return "after";
     return fmt::format("after, axial strain {:.2f} %", 100.0 * history.back().axial_strain);
 }

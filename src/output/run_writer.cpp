@@ -291,7 +291,7 @@ void RunWriter::write_fields(const StepRecord& record, const FieldRecord& fields
 
 void RunWriter::write_pictures(const RunSummary& summary, const Rows& history, const Rows& equilibria,
                                const FieldRecord& fields) const {
-    const std::string after = after_title(history, options_.platen_stage.has_value(), summary.results.factor_of_safety);
+    const std::string after = after_title(history, options_.platen_stage.has_value(), summary);
     const BlocksPlot blocks{options_.title, after, 1.0, options_.material_names, {}, summary.falling};
     const bool svg = system_.n_blocks() <= most_blocks_in_svg;
     FirstError errors;
@@ -329,6 +329,7 @@ RunSummary RunWriter::summary_of(const RunOutcome& outcome, const Rows& history,
     summary.blas_core = outcome.blas_core;
     summary.message = outcome.report.diagnosis.empty() ? outcome.report.remark : outcome.report.diagnosis;
     summary.results = outcome.report.results;
+    summary.reduced_alone = outcome.report.reduced_alone;
     summary.warnings = outcome.report.warnings;
     const std::string& doubt = options_.elastic_constants_warning;
     const bool is_said =

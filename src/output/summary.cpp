@@ -386,6 +386,7 @@ RunSummary summary_in(const Json& json) {
     visit_results(summary.results, [&](const char* name, std::optional<double>& result) {
         if (json.contains(name)) result = optional_number(json, name);
     });
+    read_newer_key(json, "reduced_alone", summary.reduced_alone);
     if (json.value("integrator", "implicit") == "explicit") {
         summary.motion =
             MotionReport{json.at("time_steps").get<long>(), optional_number(json, "time_step").value_or(0.0),
@@ -552,6 +553,7 @@ std::string summary_json(const RunSummary& summary) {
     json["lateral_ratio"] = json_number(numbers.lateral_ratio);
     visit_results(summary.results,
                   [&](const char* name, const std::optional<double>& result) { json[name] = json_number(result); });
+    json["reduced_alone"] = summary.reduced_alone;
     json["cracks_tension"] = numbers.cracks_tension;
     json["cracks_shear"] = numbers.cracks_shear;
     json["jumps"] = numbers.jumps;

@@ -36,16 +36,20 @@ std::string place_of_peak(const RunFacts& facts) {
 
 RunAnswer factor_of_safety(const RunFacts& facts) {
     RunAnswer answer;
-    answer.name = "Factor of safety";
+    answer.name = factor_name(facts.reduced_alone);
+    answer.name.front() = 'F';
+    const std::string rest = facts.reduced_alone.empty() ? "" : " All other interfaces keep theirs.";
+    const std::string strengths = facts.reduced_alone.empty() ? "its strengths" : "these strengths";
     if (facts.summary && facts.summary->results.factor_of_safety) {
         answer.value = fmt::format("{:.4g}", *facts.summary->results.factor_of_safety);
-        answer.sentence = "The strengths divided by it are those with which the body just stands.";
+        answer.sentence = "The strengths divided by it are those with which the body just stands." + rest;
         answer.firm = true;
         return answer;
     }
     if (facts.stood) {
         answer.value = fmt::format("at least {:.4g}", *facts.stood);
-        answer.sentence = "The body stands with its strengths divided by it; the limit was not found.";
+        answer.sentence =
+            fmt::format("The body stands with {} divided by it; the limit was not found.{}", strengths, rest);
     } else {
         answer.value = "not found";
         answer.sentence = "The run has no equilibrium from which strengths could be reduced.";

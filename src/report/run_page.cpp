@@ -142,7 +142,7 @@ std::vector<Number> numbers_of(const RunFacts& facts, const BlockSystem& system)
     const CurveNumbers& curve = facts.numbers;
     const auto add = [&](const std::string& name, const std::string& value) { numbers.push_back({name, value}); };
     if (facts.summary && facts.summary->results.factor_of_safety)
-        add("factor of safety", fmt::format("{:.6g}", *facts.summary->results.factor_of_safety));
+        add(factor_name(facts.reduced_alone), fmt::format("{:.6g}", *facts.summary->results.factor_of_safety));
     if (facts.summary && facts.summary->results.estimated_error)
         add("estimated error", fmt::format("{:.2g} %", 100.0 * *facts.summary->results.estimated_error));
     add("cracks in tension, shear", fmt::format("{}, {}", curve.cracks_tension, curve.cracks_shear));
@@ -254,6 +254,7 @@ RunFacts facts_of(const fs::path& directory, const Rows& history, const Rows& eq
     facts.sense = platen_sense(history, facts.platen_stage);
     facts.peak = peak_row(equilibria.empty() ? history : equilibria, facts.platen_stage);
     facts.stood = factor_that_stood(history, model.loads);
+    if (!history.empty()) facts.reduced_alone = reduced_alone(model, history.back().stage);
     facts.n_merged = cut.merged.size();
     facts.reduces_strength = looks_for_factor_of_safety(model);
     facts.tables_are_whole = !facts.summary || !differ(facts.summary->numbers, facts.numbers);

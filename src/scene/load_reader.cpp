@@ -199,7 +199,9 @@ private:
             for (const SceneNode& name : names->items) {
                 if (!name.is_scalar()) continue;
                 const auto type = context_.index_of(section, "interfaces", name.text, interfaces_, "an interface");
-                if (type) reduction.interface_types.push_back(*type);
+                if (!type) continue;
+                reduction.interface_types.push_back(*type);
+                reduction.names.push_back(name.text);
             }
         }
         if (loads_.stages.empty())

@@ -176,10 +176,13 @@ RunReport Journal::ended(const State& state, const StageEnd& end) const {
     std::string why = fmt::format("no equilibrium in stage {} at load step {}: {}", state.at.stage, end.step,
                                   description(model_, *end.failure) + listed(end.causes)) +
                       remark_on_first_factor(model_, state.at.stage, end);
-    if (end.factor_of_safety) why = fmt::format("factor of safety {:.6g}; beyond it {}", *end.factor_of_safety, why);
+    const auto reduced = end.factor_of_safety ? reduced_alone(model_, state.at.stage) : std::vector<std::string>{};
+    if (end.factor_of_safety)
+        why = fmt::format("{} {:.6g}; beyond it {}", factor_name(reduced), *end.factor_of_safety, why);
     RunReport report = cut_short(end.factor_of_safety || past_limit ? RunStatus::collapsed : RunStatus::no_equilibrium,
                                  std::move(why));
     report.results.factor_of_safety = end.factor_of_safety;
+    report.reduced_alone = reduced;
     report.falling = falling_blocks(model_, state, all_moving(*end.failure));
     return report;
 }

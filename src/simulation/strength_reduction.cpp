@@ -12,6 +12,14 @@ bool is_reduced(const StrengthReduction& reduction, int interface_type) {
     return types.empty() || std::ranges::find(types, interface_type) != types.end();
 }
 
+/// Whether an interface of the body, or what it fails to, keeps its strength.
+bool leaves_some(const StrengthReduction& reduction, const Model& model) {
+    return std::ranges::any_of(model.system.interfaces, [&](const Interface& interface) {
+        const auto broken = static_cast<std::size_t>(model.fracture_law[interface.interface_type]);
+        return !is_reduced(reduction, interface.interface_type) || !is_reduced(reduction, model.law_types[broken]);
+    });
+}
+
 } // namespace
 
 const StrengthReduction* reduction_of(const LoadProgram& loads, int stage) {
@@ -25,6 +33,12 @@ double strength_factor(const LoadProgram& loads, int stage, double load_factor) 
     const StrengthReduction* const reduction = reduction_of(loads, stage);
     if (reduction == nullptr) return 1.0;
     return loads.stages[stage].strength_reduction ? reduction->factor_at(load_factor) : reduction->from;
+}
+
+std::vector<std::string> reduced_alone(const Model& model, int stage) {
+    const StrengthReduction* const reduction = reduction_of(model.loads, stage);
+    if (reduction == nullptr || !leaves_some(*reduction, model)) return {};
+    return reduction->names;
 }
 
 std::vector<InterfaceLaw> reduced_laws(const Model& model, int stage, double factor) {

@@ -401,8 +401,8 @@ StageEnd find_strength_limit(const StepBench& bench, State& state) {
     if (end.failure) warn_of_unheld_tip(bench, state, *end.failure);
     if (!end.failure) {
         bench.journal.report().warnings.push_back(
-            fmt::format("the factor of safety is above {:g}, the largest strength factor of stage {}", reduction.to,
-                        state.at.stage));
+            fmt::format("the {} is above {:g}, the largest strength factor of stage {}",
+                        factor_name(reduced_alone(bench.model, state.at.stage)), reduction.to, state.at.stage));
         return end;
     }
     end.step = state.at.step + 1;

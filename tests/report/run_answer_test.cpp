@@ -55,6 +55,16 @@ TEST(RunAnswer, OfATestThatPullsIsTheTensileStrengthAndPositive) {
     EXPECT_THAT(answer.sentence, HasSubstr("at 0.01 % axial strain;"));
 }
 
+TEST(RunAnswer, OfAReductionOfSomeStrengthsNamesThem) {
+    RunFacts facts = reduced();
+    facts.reduced_alone = {"seam", "joint"};
+    EXPECT_EQ(run_answer(facts).name, "Factor of safety of seam, joint alone");
+    EXPECT_THAT(run_answer(facts).sentence, AllOf(HasSubstr("with these strengths divided"), HasSubstr("keep theirs")));
+    facts.summary->results.factor_of_safety = 1.5;
+    EXPECT_EQ(run_answer(facts).value, "1.5");
+    EXPECT_THAT(run_answer(facts).sentence, HasSubstr("All other interfaces keep theirs."));
+}
+
 TEST(RunAnswer, HasTheEstimatedErrorAsItsBand) {
     RunFacts facts = pressed();
     facts.summary->results.estimated_error = 0.02;

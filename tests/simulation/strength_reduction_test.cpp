@@ -172,6 +172,27 @@ TEST(StrengthReduction, InterfacesThatAreNotNamedKeepTheirStrength) {
     EXPECT_FALSE(run.report.results.factor_of_safety);
 }
 
+// Two cuts, of which the upper one alone is reduced: tan 30/tan 20 = 1.586 is that of the cut, not of the body.
+TEST(StrengthReduction, AFactorOfSomeInterfacesSaysOfWhich) {
+    const auto run_with = [](const std::string& interfaces, const std::string& above) {
+        return run_scene(block_on_slope(20.0, fmt::format("{{to: 2{}}}", interfaces),
+                                        "other: {kind: fracture, normal_stiffness: 1e11, shear_stiffness: 1e11, "
+                                        "friction_angle: 40, contact_rounding: 0}"),
+                         {fmt::format("geometry.fractures.1={{trace: [[-9, 1], [9, 1]], interface: {}}}", above)});
+    };
+    const auto of_part = run_with(", interfaces: [joint]", "other");
+    EXPECT_THAT(of_part.report.reduced_alone, testing::ElementsAre("joint"));
+    EXPECT_THAT(of_part.report.diagnosis, testing::StartsWith("factor of safety of joint alone 1.58"));
+    const auto stands = run_with(", interfaces: [other]", "other");
+    EXPECT_THAT(stands.report.warnings,
+                testing::Contains(testing::HasSubstr("the factor of safety of other alone is above 2")));
+    for (const auto& of_all : {run_with(", interfaces: [other, joint]", "other"), run_with("", "other"),
+                               run_with(", interfaces: [joint]", "joint")}) {
+        EXPECT_THAT(of_all.report.reduced_alone, testing::IsEmpty());
+        EXPECT_THAT(of_all.report.diagnosis, testing::StartsWith("factor of safety 1.58"));
+    }
+}
+
 // A bond on a slope that nothing holds once it is broken: it breaks where c L/F + W cos tan(phi)/F = W sin.
 TEST(StrengthReduction, StrengthOfAPotentialCrackIsDividedToo) {
     const auto run = run_scene(block_on_slope(50.0, "{to: 4, tolerance: 1e-6}",

@@ -37,6 +37,7 @@ struct StrengthReduction {
     double to = 1.0;                  ///< F at its end, more than `from`
     double tolerance = 1e-4;          ///< of the factor of safety, relative
     std::vector<int> interface_types; ///< whose strengths are divided; empty: all
+    std::vector<std::string> names;   ///< of these
 
     [[nodiscard]] double factor_at(double load_factor) const { return from + load_factor * (to - from); }
     [[nodiscard]] double load_factor_at(double factor) const { return (factor - from) / (to - from); }

@@ -9,6 +9,7 @@
 #include "kluft/blocks/block_system.hpp"
 #include "kluft/geometry/polygon.hpp"
 #include "kluft/output/canvas.hpp"
+#include "kluft/output/summary.hpp"
 #include "kluft/simulation/run_report.hpp"
 #include "kluft/simulation/step_record.hpp"
 
@@ -24,10 +25,10 @@ struct BlocksPlot {
     std::vector<FallingBlock> moving; ///< marked in the deformed body, with where they go
 };
 
-/// The words above the deformed body after the given load steps: with the factor of safety that was found, or else where a platen
-/// moves the axial strain.
+/// The words above the deformed body after the given load steps: with the factor of safety that the summary has, if there is one,
+/// or else where a platen moves the axial strain.
 [[nodiscard]] std::string after_title(const std::vector<StepRecord>& history, bool moves_platen,
-                                      const std::optional<double>& factor_of_safety);
+                                      const std::optional<RunSummary>& summary);
 
 /// A field of blocks by which a picture is coloured.
 struct ColouredField {

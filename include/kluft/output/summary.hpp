@@ -110,9 +110,10 @@ struct RunSummary {
     std::string blas_core; ///< the processor for which the BLAS's kernels in use were written, by its name of it
     std::string message;   ///< why the run ended, if not with the last load step
     RunResults results;
-    std::vector<std::string> warnings;  ///< of the scene, of its body and of the run
-    std::vector<FallingBlock> falling;  ///< blocks that move where the run has ended
-    std::optional<MotionReport> motion; ///< of an explicit run
+    std::vector<std::string> reduced_alone; ///< as in the report of the run
+    std::vector<std::string> warnings;      ///< of the scene, of its body and of the run
+    std::vector<FallingBlock> falling;      ///< blocks that move where the run has ended
+    std::optional<MotionReport> motion;     ///< of an explicit run
 };
 
 /// The text of summary.json. What is not known or not a finite number is null.

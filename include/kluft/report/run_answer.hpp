@@ -18,9 +18,10 @@ struct RunFacts {
     double sense = 1.0;             ///< of the platen: 1 presses, -1 pulls
     std::optional<StepRecord> peak; ///< the equilibrium of the peak stress
     std::optional<double> stood;    ///< largest strength factor with which the body stood while strengths were reduced
-    std::size_t n_merged = 0;       ///< pieces too small that were merged when the body was cut
-    bool reduces_strength = false;  ///< a stage looks for the factor of safety
-    bool tables_are_whole = true;   ///< they give the numbers that the run wrote at its end
+    std::vector<std::string> reduced_alone; ///< interfaces whose strengths alone were reduced; empty: all
+    std::size_t n_merged = 0;               ///< pieces too small that were merged when the body was cut
+    bool reduces_strength = false;          ///< a stage looks for the factor of safety
+    bool tables_are_whole = true;           ///< they give the numbers that the run wrote at its end
 };
 
 struct RunAnswer {

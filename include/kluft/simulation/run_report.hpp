@@ -24,6 +24,9 @@ template <class Results, class Visit> void visit_results(Results& results, Visit
     visit("estimated_error", results.estimated_error);
 }
 
+/// "factor of safety", and of what: "factor of safety of joint alone".
+[[nodiscard]] std::string factor_name(const std::vector<std::string>& reduced_alone);
+
 /// A block that moves where the run has ended.
 struct FallingBlock {
     std::string block; ///< its name, or its number
@@ -39,7 +42,9 @@ struct RunReport {
     std::string diagnosis; ///< names the blocks and interfaces concerned, or what ran out; empty for `done`
     std::string remark;    ///< of a run that was done before its last load step: where and why
     RunResults results;
-    RunCosts costs; ///< also of the parts of the run before a resumed state
+    std::vector<std::string>
+        reduced_alone; ///< interfaces whose strengths alone the factor of safety divides; empty: all
+    RunCosts costs;    ///< also of the parts of the run before a resumed state
     int unbalanced_steps = 0;
     int detections = 0;
     int crack_checks = 0;

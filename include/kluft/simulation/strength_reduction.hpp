@@ -2,6 +2,7 @@
 // of safety").
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "kluft/constitutive/interface_law.hpp"
@@ -16,6 +17,9 @@ namespace kluft {
 
 /// F at a load factor of a stage.
 [[nodiscard]] double strength_factor(const LoadProgram& loads, int stage, double load_factor);
+
+/// The interfaces that the reduction of a stage names, where others in the body keep their strengths; else empty.
+[[nodiscard]] std::vector<std::string> reduced_alone(const Model& model, int stage);
 
 /// The laws of the model with tan(phi) and c divided by `factor`, of the interface types that the reduction of a stage
 /// names. Stiffness and tensile strength stay; a dilation angle is cut to the friction angle that is left.
