@@ -6,7 +6,6 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
-#include <span>
 #include <string_view>
 #include <utility>
 
@@ -217,8 +216,21 @@ int number_of(const BlockSystem& system, const std::string& name) {
     return number < system.n_blocks() ? number : -1;
 }
 
+/// The circle on the page that an arrow takes.
+struct Mark {
+    Vec2 centre;
+    double radius = 0.0;
+
+    [[nodiscard]] bool overlaps(const Mark& other) const {
+        return (centre - other.centre).norm() < radius + other.radius;
+    }
+};
+
+/// Of arrows that would overlap the one of the block furthest from balance is drawn: those of a small wedge of many cells hid it.
 void draw_moving(Canvas& canvas, const Panel& panel, const DrawnBody& body, const std::vector<FallingBlock>& moving) {
-    for (const FallingBlock& each : std::span(moving).first(std::min(moving.size(), most_arrows))) {
+    std::vector<Mark> marks;
+    for (const FallingBlock& each : moving) {
+        if (marks.size() == most_arrows) return;
         const int b = number_of(body.system, each.block);
         if (b < 0) continue;
         const Block& block = body.system.blocks[b];
@@ -227,6 +239,9 @@ void draw_moving(Canvas& canvas, const Panel& panel, const DrawnBody& body, cons
         if (!((within.array() >= 0.0).all() && (within.array() <= panel.size().array()).all()))
             continue; // gone, or no number
         const double size = std::clamp(0.4 * std::sqrt(block.area) * panel.scale, 7.0, 22.0);
+        const Mark mark{centre, size};
+        if (std::ranges::any_of(marks, [&](const Mark& other) { return mark.overlaps(other); })) continue;
+        marks.push_back(mark);
         const Vec2 way(each.direction.x(), -each.direction.y());
         if (way.norm() > 0.0) draw_arrow(canvas, centre - size * way, centre + size * way);
         if (way.norm() == 0.0 && each.turn != 0) draw_turn(canvas, centre, 0.7 * size, each.turn);
@@ -238,7 +253,9 @@ std::vector<LegendEntry> moving_entry(const std::vector<FallingBlock>& moving) {
     const auto arrow = [](Canvas& canvas, const Vec2& middle) {
         draw_arrow(canvas, middle - Vec2(9.0, 0.0), middle + Vec2(9.0, 0.0));
     };
-    return {{"moves on beyond this state", arrow}};
+    std::vector<LegendEntry> entries{{"moves on beyond this state", arrow}};
+    if (moving.size() > 1) entries.push_back({"arrows that would overlap are left out", {}});
+    return entries;
 }
 
 std::vector<LegendEntry> outside_note(int n) {

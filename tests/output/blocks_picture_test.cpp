@@ -94,6 +94,23 @@ TEST(BlocksPicture, MarksWhatMovesOn) {
     EXPECT_EQ(n_strokes(), 2U);
 }
 
+// Hexagons of a row in a picture of 360 by 450 points: those of 0.05 m, 52 points apart, have an arrow each; of those of 0.01 m, 10 points
+// apart, every second one has, for an arrow takes 14 points.
+TEST(BlocksPicture, MarksNoMoreOfWhatMovesOnThanHasRoom) {
+    const auto drawn = [](int columns, int rows, double spacing) {
+        const BlockSystem system = testing::hexagon_grid(columns, rows, spacing);
+        BlocksPlot plot = plot_of("t");
+        for (int b = 0; b < columns; ++b) plot.moving.push_back({.block = std::to_string(b), .direction = {0.0, -1.0}});
+        const auto fields = testing::affine_fields(system, Mat2::Zero(), Mat2::Zero());
+        return draw_blocks(system, fields, plot, PictureFormat::svg);
+    };
+    const std::string purple = "stroke:rgb(55.686275%,14.117647%,66.666667%)"; // one is in the legend
+    EXPECT_EQ(count(drawn(6, 10, 0.05), purple), 7U);
+    const std::string fine = drawn(30, 50, 0.01);
+    EXPECT_EQ(count(fine, purple), 16U);
+    EXPECT_THAT(fine, HasSubstr("arrows that would overlap are left out"));
+}
+
 TEST(BlocksPicture, DrawsABlockWithAHole) {
     const BlockSystem system = testing::block_with_hole();
     const auto fields = testing::affine_fields(system, Mat2::Zero(), Mat2::Zero());
