@@ -480,7 +480,7 @@ int program(int argc, char** argv) {
 
 int main(int argc, char** argv) {
     try {
-        kluft::take_termination();
+        kluft::take_signals();
         kluft::open_standard_streams();
         kluft::leave_writing_to_its_result();
         waits_at_exit = !kluft::end_blas_threads();

@@ -2,6 +2,8 @@
 
 #include <csignal>
 
+#include <unistd.h>
+
 namespace kluft {
 
 std::atomic<bool> stop_requested{false};
@@ -14,22 +16,41 @@ void request_stop(int signal) {
     if (!stop_requested.exchange(true)) first_signal = signal;
 }
 
-/// What was blocked when this program was started.
+/// What was blocked when this program was started, and what became of SIGINT.
 sigset_t blocked_at_start;
+struct sigaction interrupt_at_start;
+
+/// OpenBLAS interrupts its own process where it cannot start its threads.
+void tell_missing_threads(int signal, siginfo_t* information, void* /*context*/) {
+    if (information->si_pid == getpid()) {
+        constexpr char message[] = "out of memory: no room for the threads of the BLAS\n";
+        (void)!write(STDERR_FILENO, message, sizeof message - 1);
+        _exit(static_cast<int>(ExitCode::out_of_resources));
+    }
+    sigaction(SIGINT, &interrupt_at_start, nullptr); // from outside: as if nobody had listened
+    raise(signal);
+}
 
 /// Runs before the libraries start threads of their own, which inherit what is blocked.
-void block_termination() {
+void prepare_for_libraries() {
     sigset_t termination;
     sigemptyset(&termination);
     sigaddset(&termination, SIGTERM);
     sigprocmask(SIG_BLOCK, &termination, &blocked_at_start);
+    struct sigaction action {};
+    action.sa_sigaction = tell_missing_threads;
+    action.sa_flags = SA_SIGINFO;
+    sigaction(SIGINT, &action, &interrupt_at_start);
 }
 
-[[gnu::section(".preinit_array"), gnu::used]] void (*const before_libraries)() = block_termination;
+[[gnu::section(".preinit_array"), gnu::used]] void (*const before_libraries)() = prepare_for_libraries;
 
 } // namespace
 
-void take_termination() { sigprocmask(SIG_SETMASK, &blocked_at_start, nullptr); }
+void take_signals() {
+    sigaction(SIGINT, &interrupt_at_start, nullptr);
+    sigprocmask(SIG_SETMASK, &blocked_at_start, nullptr);
+}
 
 void listen_for_stop() {
     for (const int signal : {SIGINT, SIGTERM})

@@ -11,8 +11,9 @@ namespace kluft {
 extern std::atomic<bool> stop_requested;
 
 /// From now on SIGTERM reaches this thread, for which it has waited since the program's start. The threads that libraries
-/// have started by then never take it: while METIS works it has a handler that must run in the thread of its caller.
-void take_termination();
+/// have started by then never take it: while METIS works it has a handler that must run in the thread of its caller. SIGINT does
+/// again what it did when the program was started; until then it is one of a library that has no memory for its threads.
+void take_signals();
 
 /// From now on SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXCPU, SIGUSR1, SIGUSR2 and SIGALRM set `stop_requested`. Who started
 /// the program with one of the last six ignored, as nohup does, has it ignored.

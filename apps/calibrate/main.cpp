@@ -84,7 +84,7 @@ int main(int argc, char** argv) {
         return static_cast<int>(code);
     };
     try {
-        kluft::take_termination();
+        kluft::take_signals();
         kluft::open_standard_streams();
         kluft::leave_writing_to_its_result();
         waits_at_exit = !kluft::end_blas_threads();

@@ -70,6 +70,7 @@ struct Limits {
     rlim_t file_bytes = 0;
     rlim_t memory_bytes = 0;
     std::map<std::string, std::string> environment = {};
+    rlim_t stack_bytes = 0; ///< also of each thread
     Reader reader = Reader::file;
 };
 
@@ -114,6 +115,7 @@ public:
         send_to(limits.reader);
         limit(RLIMIT_FSIZE, limits.file_bytes);
         limit(RLIMIT_AS, limits.memory_bytes);
+        limit(RLIMIT_STACK, limits.stack_bytes);
         setenv("OPENBLAS_NUM_THREADS", "1", 1);
         for (const auto& [name, value] : limits.environment) setenv(name.c_str(), value.c_str(), 1);
         execv(KLUFT_PROGRAM, arguments.data());
@@ -1523,6 +1525,20 @@ TEST_F(SlowCommandLine, SecondStartWithoutRoomForTheBlasEndsWithExitCode4) {
         if (result.code == 4) ++n_without_room; // else too little to load the libraries
     }
     EXPECT_GE(n_without_room, 4); // 128 MB
+}
+
+// A thread of 2 GB in an address space of 1 GB. The BLAS starts it before the program begins, and interrupts the program where it cannot.
+TEST_F(CommandLine, NoRoomForTheThreadsOfTheBlasEndsWithExitCode4) {
+#ifdef KLUFT_SANITIZED
+    GTEST_SKIP() << "the address sanitizer reserves more address space than any limit";
+#endif
+    if (std::thread::hardware_concurrency() < 2) GTEST_SKIP() << "the BLAS starts no thread on one processor";
+    constexpr rlim_t gigabyte = 1000000000;
+    const Result result =
+        kluft({"--version"},
+              {.memory_bytes = gigabyte, .environment = {{"OPENBLAS_NUM_THREADS", "2"}}, .stack_bytes = 2 * gigabyte});
+    EXPECT_EQ(result.code, 4);
+    EXPECT_THAT(result.err, HasSubstr("out of memory: no room for the threads of the BLAS\n"));
 }
 
 /// The program does not start itself again with another count of allocations.
