@@ -464,6 +464,8 @@ MendLimits mend_limits(const GeometrySpec& spec, const LocalFrame& frame, const 
     MendLimits limits;
     limits.area = least_area(spec);
     limits.edge = resolution(spec, frame);
+    constexpr double crumb_length = 4.0; // over the root of its area: its sides cross at 7 degrees
+    if (lattice_spacing(spec) == 0.0) limits.crumb = crumb_length * std::sqrt(limits.area);
     limits.width = least_width(spec, frame);
     limits.rounding = 4.0 * std::numeric_limits<double>::epsilon() * frame.box.upper.norm();
     limits.first_fracture = numbers.first_fracture;

@@ -310,6 +310,12 @@ private:
         return true;
     }
 
+    bool is_crumb(int face) {
+        return map_.area(face) < limits_.area && std::ranges::all_of(map_.half_edges_of(face), [this](int h) {
+                   return !is_outline(h) && map_.length(h) <= limits_.crumb;
+               });
+    }
+
     bool merge_slivers() {
         using Entry = std::pair<double, int>;
         std::priority_queue<Entry, std::vector<Entry>, std::greater<>> slivers;
@@ -327,6 +333,8 @@ private:
             const int exit = way_out(map_.half_edges_of(face));
             if (exit < 0) continue;
             merged = true;
+            if (is_crumb(face))
+                for (const int h : map_.half_edges_of(face)) sides_of_crumbs_.insert(PlanarMap::edge_of(h));
             if (!take_off(face, exit)) judge(merge_across(exit));
         }
         return merged;
@@ -371,7 +379,8 @@ private:
         std::priority_queue<Entry, std::vector<Entry>, std::greater<>> short_edges;
         const auto judge = [&](int e) {
             const double length = map_.length(2 * e);
-            if (length < limits_.edge) short_edges.emplace(length, e);
+            if (length < limits_.edge || (length <= limits_.crumb && sides_of_crumbs_.contains(e)))
+                short_edges.emplace(length, e);
         };
         for (int e = 0; e < map_.n_edges(); ++e) {
             if (map_.alive[e] != 0) judge(e);
@@ -486,6 +495,7 @@ private:
     PlanarMap& map_;
     MendLimits limits_;
     MendReport report_;
+    std::unordered_set<int> sides_of_crumbs_; ///< edges
     std::map<int, int>
         laid_bare_; ///< edges of fractures that are of the outline since a piece was taken off: their source before
 };

@@ -8,6 +8,7 @@
 #include "kluft/equilibrium/held_friction.hpp"
 #include "kluft/equilibrium/left_over.hpp"
 #include "kluft/simulation/mass_term.hpp"
+#include "kluft/simulation/parts_at_rest.hpp"
 #include "kluft/simulation/whole_body.hpp"
 
 namespace kluft {
@@ -25,11 +26,13 @@ constexpr double share_of_solve = 0.1; ///< of what may be left over on a block:
 constexpr double share_of_change =
     3e-3; ///< of what a change of the loads has put on the blocks: what may be left over of it
 constexpr double small_change = 0.02; ///< of F_ref: of a larger one less is left over anyway
-constexpr double least_change = 1e-7; ///< of F_ref
+constexpr double least_change = 1e-8; ///< of F_ref
 constexpr int rounds_of_change = 6;
 constexpr double falls_by = 0.95;         ///< with each round, of what something holds
-constexpr double share_of_motion = 0.01;  ///< of a load step's: what a round may still move a body that has caught up
-constexpr double eta_of_lag = 1e-4;       ///< of eta: what holds the body back is not what finds how far
+constexpr double share_of_motion = 1e-3;  ///< of a load step's: what a round may still move a body that has caught up
+constexpr double eta_of_lag = 1e-5;       ///< of eta: what holds the body back is not what finds how far
+constexpr double eta_of_others = 1e4;     ///< of eta: they stay while what is followed goes on
+constexpr int patience_with_lag = 3;      ///< solves
 constexpr double tolerance_of_lag = 1e-3; ///< of the tolerance
 
 OpenCloseOptions open_close_options(const SolverOptions& solver) {
@@ -58,7 +61,8 @@ bool slides(const EquilibriumProblem& problem, const Eigen::VectorXd& q) {
     });
 }
 
-/// Whether the mass-like term is more than the iteration leaves, in a state where nothing slides.
+/// Whether the mass-like term is more than the iteration leaves, in a state where nothing slides: in small steps of load what
+/// (27b) allows would be seen beside the growth of the load.
 bool lags_behind(const EquilibriumProblem& problem, const Equilibrium& found, double tolerance) {
     return found.viscous_share > tolerance && !slides(problem, found.displacement);
 }
@@ -69,21 +73,27 @@ bool has_friction(const LoadedBody& body) {
                                [&](const ContactPoint& point) { return (*body.laws)[point.law].tan_friction > 0.0; });
 }
 
-double norm_of(const std::vector<Vec3>& left) {
+/// Of some of the blocks.
+double norm_of(const std::vector<Vec3>& left, const std::vector<char>& of) {
     double sum = 0.0;
-    for (const Vec3& each : left) sum += each.squaredNorm();
+    for (std::size_t b = 0; b < left.size(); ++b)
+        if (of[b] != 0) sum += left[b].squaredNorm();
     return std::sqrt(sum);
 }
 
-/// Root of the integral of the squared displacement over the blocks.
-double motion(const EquilibriumProblem& problem, const Eigen::VectorXd& from, const Eigen::VectorXd& to) {
-    const std::vector<Block>& blocks = problem.body.system->blocks;
+/// Root of the integral of the squared displacement over some of the blocks.
+double motion(const BlockSystem& system, const std::vector<char>& of, const Eigen::VectorXd& moved) {
     double sum = 0.0;
-    for (std::size_t b = 0; b < blocks.size(); ++b) {
-        const Vec6 moved = (to - from).segment<6>(static_cast<Eigen::Index>(6 * b));
-        sum += moved.dot(mass_product(blocks[b], 0.0, moved));
+    for (int b = 0; b < system.n_blocks(); ++b) {
+        const Vec6 own = moved.segment<6>(6 * b);
+        if (of[b] != 0) sum += own.dot(mass_product(system.blocks[b], 0.0, own));
     }
     return std::sqrt(sum);
+}
+
+void scale_mass_term(const std::vector<char>& of, double factor, EquilibriumProblem& problem) {
+    for (std::size_t b = 0; b < problem.eta.size(); ++b)
+        if (of[b] != 0) problem.eta[b] *= factor;
 }
 
 /// Each block and group, and the mass-like term, which holds strains of blocks back too.
@@ -245,21 +255,25 @@ void EquilibriumSearch::settle(EquilibriumProblem& problem, const BlockGoal& bal
         found.summary = summary;
     }
     found.balanced = is_balanced(found, balance);
-    if (found.balanced && lags_behind(problem, found, open_close_.options().tolerance))
-        catch_up(problem, balance, 1.0, found);
+    if (found.balanced && lags_behind(problem, found, open_close_.options().tolerance)) {
+        for (double& eta : problem.eta) eta *= eta_decay;
+        catch_up(problem, balance, 1.0, 1, found);
+    }
 }
 
-/// A body in which nothing slides stands where the mass-like term from its last state, a tenth of it, leaves it: in small steps
-/// of load what (27b) allows would be seen beside the growth of the load.
+/// Solves once more with the problem's mass-like term, from where the body is, and as long as that takes no more than `patience` times the
+/// iterations of a solve.
 bool EquilibriumSearch::catch_up(EquilibriumProblem& problem, const BlockGoal& balance, double tolerance_share,
-                                 Equilibrium& found) {
+                                 int patience, Equilibrium& found) {
     problem.start = found.displacement;
-    for (double& eta : problem.eta) eta *= eta_decay;
     Equilibrium next = found;
-    next.summary =
-        open_close_.solve(problem, pattern_, next.displacement,
-                          {.block_tolerance = share_of_solve * balance.share, .tolerance_share = tolerance_share});
-    found.iterations += next.summary.iterations;
+    for (int attempt = 0; attempt < patience; ++attempt) {
+        next.summary =
+            open_close_.solve(problem, pattern_, next.displacement,
+                              {.block_tolerance = share_of_solve * balance.share, .tolerance_share = tolerance_share});
+        found.iterations += next.summary.iterations;
+        if (next.summary.termination != Termination::max_iterations) break;
+    }
     if (!next.converged()) return false;
     next.iterations = found.iterations;
     next.blocks = block_balance(problem.body, next.displacement);
@@ -274,25 +288,38 @@ bool EquilibriumSearch::catch_up(EquilibriumProblem& problem, const BlockGoal& b
 /// Source: (27e), (27f).
 void EquilibriumSearch::follow_loads(EquilibriumProblem problem, const Eigen::VectorXd& before,
                                      const BlockGoal& balance, Equilibrium& found) {
-    const double change = norm_of(block_balance(problem.body, before).left);
+    const std::vector<char> followed = parts_at_rest(problem, found.displacement);
+    if (std::ranges::find(followed, 1) == followed.end()) return;
+    const double change = norm_of(block_balance(problem.body, before).left, followed);
     const double carried = found.summary.force_scale;
     if (change <= least_change * carried) return;
     const double allowed =
         change < small_change * carried ? share_of_change * change : std::numeric_limits<double>::infinity();
-    for (double& eta : problem.eta) eta *= eta_of_lag;
+    for (double& eta : problem.eta) eta *= eta_of_others;
+    scale_mass_term(followed, eta_of_lag / eta_of_others, problem);
+    const Equilibrium first = found;
     double tolerance_share = 1.0;
-    double left = norm_of(found.blocks.left);
-    bool lags = found.viscous_share > 0.0;
+    double left = norm_of(found.blocks.left, followed);
+    bool lags = !problem.eta.empty();
     for (int round = 0; round < rounds_of_change && (left > allowed || lags); ++round) {
-        if (!found.blocks.free.empty() || slides(problem, found.displacement)) return;
+        if (!found.blocks.free.empty()) return;
         tolerance_share = std::max(std::min(tolerance_of_lag, tolerance_share * sharpening * allowed / left), sharpest);
+        if (round > 0) scale_mass_term(followed, eta_decay, problem);
         Equilibrium next = found;
-        const bool is_balanced = catch_up(problem, balance, tolerance_share, next);
+        const bool is_balanced = catch_up(problem, balance, tolerance_share, patience_with_lag, next);
         found.iterations = next.iterations;
-        const double left_before = std::exchange(left, norm_of(next.blocks.left));
-        if (!is_balanced || left > falls_by * left_before) return; // nothing holds what creeps on
-        lags = motion(problem, found.displacement, next.displacement) >
-               share_of_motion * motion(problem, before, next.displacement);
+        if (!is_balanced || next.displacement == found.displacement ||
+            parts_at_rest(problem, next.displacement) != followed)
+            return;
+        const double left_before = std::exchange(left, norm_of(next.blocks.left, followed));
+        if (left > falls_by * left_before) { // nothing holds what creeps on
+            const int n_spent = found.iterations;
+            found = first;
+            found.iterations = n_spent;
+            return;
+        }
+        lags = motion(*problem.body.system, followed, next.displacement - found.displacement) >
+               share_of_motion * motion(*problem.body.system, followed, next.displacement - before);
         found = std::move(next);
     }
 }

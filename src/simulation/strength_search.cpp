@@ -229,15 +229,25 @@ bool is_without_motion(const Failure& failure) {
     return failure.kind == FailureKind::no_equilibrium && failure.moving.empty();
 }
 
-void warn_of_failed_search(const StepBench& bench, double found, const Failure& failure) {
+/// The sliver that the failure began with, if it was one.
+std::optional<int> sliver_at_fault(const BlockSystem& system, const Failure& failure) {
+    const int first = failure.moving.empty() ? failure.worst_block : failure.moving.front().block;
+    if (first < 0 || system.blocks[first].area >= sliver_area(system)) return std::nullopt;
+    return first;
+}
+
+/// Where no equilibrium was found without a block that was seen to move away, or one that is a sliver.
+void warn_of_doubtful_failure(const StepBench& bench, double found, const Failure& failure) {
     const BlockSystem& system = bench.model.system;
-    std::string warning = fmt::format(
-        "with the strengths divided by {:.6g} no equilibrium was found, and no block was seen to move away either: the "
-        "search failed there, and the factor of safety may be above {:.6g}",
-        failure.strength_factor, found);
-    if (failure.worst_block >= 0 && system.blocks[failure.worst_block].area < sliver_area(system))
+    const std::optional<int> sliver = sliver_at_fault(system, failure);
+    if (!is_without_motion(failure) && !sliver) return;
+    std::string warning =
+        fmt::format("with the strengths divided by {:.6g} no equilibrium was found", failure.strength_factor);
+    if (is_without_motion(failure)) warning += ", and no block was seen to move away either: the search failed there";
+    warning += fmt::format(", and the factor of safety may be above {:.6g}", found);
+    if (sliver)
         warning += fmt::format(". It failed at block {}, a sliver, which `geometry.reference_spacing` leaves out",
-                               block_label(system, failure.worst_block));
+                               block_label(system, *sliver));
     bench.journal.report().warnings.push_back(std::move(warning));
 }
 
@@ -397,7 +407,7 @@ StageEnd find_strength_limit(const StepBench& bench, State& state) {
     }
     const double found = reduction.factor_at(state.at.load_factor);
     if (const std::string said = doubts.warning(found); !said.empty()) bench.journal.report().warnings.push_back(said);
-    if (end.failure && is_without_motion(*end.failure)) warn_of_failed_search(bench, found, *end.failure);
+    if (end.failure) warn_of_doubtful_failure(bench, found, *end.failure);
     if (end.failure) warn_of_unheld_tip(bench, state, *end.failure);
     if (!end.failure) {
         bench.journal.report().warnings.push_back(

@@ -15,6 +15,7 @@ struct MendLimits {
     double area = 0.0;     ///< smallest face (m2)
     double width = 0.0;    ///< smallest width of a face, twice its area over its perimeter (m)
     double edge = 0.0;     ///< smallest edge (m)
+    double crumb = 0.0;    ///< longest edge of a face below `area` that is a point where fractures meet (m)
     double rounding = 0.0; ///< distance below which positions differ by rounding only (m)
     int first_fracture = 0;
     int tessellation = 0;
@@ -45,6 +46,8 @@ struct MendReport {
 ///    has one side less: the edges that go on from that edge up to a sharp turn, or two turns within 2 `limits.edge`.
 ///    Where its other sides lie in the same neighbour they separate nothing any more, and are `freed`.
 ///    A small piece at a free side of the outline all of whose fractures go on beyond it would lock one of them: it is taken off;
+///    What is left of the sides of a face below `limits.area` inside the body that has none longer than `limits.crumb` is collapsed in 2: a tooth
+///    in the neighbour, however small, would lock what slides past it;
 /// 2. each edge below `limits.edge`, shortest first, is collapsed to the end that is worth more (corner of the domain,
 ///    then its outline, then more fracture edges), otherwise to the other, if every face around stays simple and positively oriented, the
 ///    outline keeps its shape and corners, and no two vertices get joined twice;

@@ -90,7 +90,8 @@ private:
     Equilibrium move_held(const EquilibriumProblem& problem, Eigen::VectorXd guess, const BlockGoal& balance,
                           bool unloaded);
     void settle(EquilibriumProblem& problem, const BlockGoal& balance, Equilibrium& found);
-    bool catch_up(EquilibriumProblem& problem, const BlockGoal& balance, double tolerance_share, Equilibrium& found);
+    bool catch_up(EquilibriumProblem& problem, const BlockGoal& balance, double tolerance_share, int patience,
+                  Equilibrium& found);
 
     const Model& model_;
     double viscosity_;
