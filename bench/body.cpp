@@ -54,7 +54,7 @@ Body::Body(const Model& model, Joining joining) : model_(&model), displacement_(
     const BlockSystem& system = model.system;
     State state = state_of(model, joining, displacement_);
     placement_.bonds = placed_bonds(model, state.body);
-    DetectedContacts contacts = detected_contacts(model, state.body);
+    DetectedContacts contacts = detected_contacts(model, state.body, true);
     placement_.contacts = std::move(contacts.points);
     pattern_ = pattern_of(system, std::move(contacts.near_pairs));
 
