@@ -9,7 +9,7 @@ namespace kluft {
 /// pieces. Does nothing where the C library has no call for it.
 void return_freed_memory();
 
-/// From now on pieces of a megabyte and more go back as soon as they are freed, and smaller ones once sixteen megabytes lie free at the
+/// From now on pieces of four megabytes and more go back as soon as they are freed, and smaller ones once sixteen megabytes lie free at the
 /// end of the heap. The GNU allocator would otherwise raise those limits with the largest piece freed so far. Does nothing elsewhere.
 void return_large_pieces();
 
