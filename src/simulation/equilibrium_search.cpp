@@ -306,10 +306,9 @@ void EquilibriumSearch::follow_loads(EquilibriumProblem problem, const Eigen::Ve
         tolerance_share = std::max(std::min(tolerance_of_lag, tolerance_share * sharpening * allowed / left), sharpest);
         if (round > 0) scale_mass_term(followed, eta_decay, problem);
         Equilibrium next = found;
-        const bool is_balanced = catch_up(problem, balance, tolerance_share, patience_with_lag, next);
+        const bool stands = catch_up(problem, balance, tolerance_share, patience_with_lag, next);
         found.iterations = next.iterations;
-        if (!is_balanced || next.displacement == found.displacement ||
-            parts_at_rest(problem, next.displacement) != followed)
+        if (!stands || next.displacement == found.displacement || parts_at_rest(problem, next.displacement) != followed)
             return;
         const double left_before = std::exchange(left, norm_of(next.blocks.left, followed));
         if (left > falls_by * left_before) { // nothing holds what creeps on
