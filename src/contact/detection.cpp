@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <numeric>
 #include <span>
 #include <utility>
 
@@ -155,6 +156,23 @@ std::vector<BlockBox> bounding_boxes(const Surfaces& surfaces) {
     return boxes;
 }
 
+/// Points are large: what is sorted are their numbers, block by block, and each point is copied once.
+std::vector<ContactPoint> sorted_by_key(const std::vector<ContactPoint>& points, int n_blocks) {
+    std::vector<int> first(n_blocks + 1, 0); // of a block's points in the order, and one behind the last block
+    for (const ContactPoint& point : points) ++first[point.block_a + 1];
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    std::vector<int> order(points.size());
+    std::vector<int> next(first);
+    for (int i = 0; i < static_cast<int>(points.size()); ++i) order[next[points[i].block_a]++] = i;
+    for (int b = 0; b < n_blocks; ++b)
+        std::ranges::sort(order.begin() + first[b], order.begin() + first[b + 1], {},
+                          [&](int i) -> const ContactKey& { return points[i].key; });
+    std::vector<ContactPoint> sorted;
+    sorted.reserve(points.size());
+    for (const int i : order) sorted.push_back(points[i]);
+    return sorted;
+}
+
 /// The narrow phase of one pair of blocks.
 class PairDetection {
 public:
@@ -163,10 +181,14 @@ public:
                   const std::vector<ContactMemory>& memory)
         : system_(system), surfaces_(surfaces), q_(q), reach_(reach), memory_(memory) {}
 
-    /// Makes room for the points of so many overlaps.
-    void expect(std::size_t n_overlaps) { points_.reserve(least_overlap_points * n_overlaps); }
+    /// Makes room for so many points.
+    void expect(std::size_t n_points) { points_.reserve(n_points); }
 
-    void run(int a, std::span<const CurrentEdge> edges_a, int b, std::span<const CurrentEdge> edges_b) {
+    /// The boxes are those of all edges.
+    void run(const BlockBox& box_a, std::span<const CurrentEdge> edges_a, const BlockBox& box_b,
+             std::span<const CurrentEdge> edges_b) {
+        const int a = box_a.block;
+        const int b = box_b.block;
         bonded_pair_ = bonded(a, b);
         const double smaller = std::min(system_.blocks[a].size, system_.blocks[b].size);
         deepest_ = -deepest_contact(system_, a, b, false);
@@ -175,34 +197,39 @@ public:
         shallow_ = -least_penetration * smaller;
         overlapping_.clear();
         sunk_beside_.clear();
-        for (const auto& edge_a : edges_a) {
-            for (const auto& edge_b : edges_b) append_overlap(a, edge_a, edges_a, b, edge_b, edges_b);
+        const double distance = std::max(reach_, -deepest_) - doubtful_;
+        choose_near(a, edges_a, box_b, distance, near_a_);
+        choose_near(b, edges_b, box_a, distance, near_b_);
+        for (const int i : near_a_) {
+            for (const int j : near_b_) append_overlap(a, edges_a[i], edges_a, b, edges_b[j], edges_b);
         }
         if (bonded_pair_) return;
-        append_vertices(a, edges_a, b, edges_b, false);
-        append_vertices(b, edges_b, a, edges_a, true);
+        faces_apart_ = are_faces_apart(a, b);
+        append_vertices(a, edges_a, near_a_, b, edges_b, near_b_, false);
+        append_vertices(b, edges_b, near_b_, a, edges_a, near_a_, true);
     }
 
-    /// The points of all pairs so far, sorted by key; for pairs (a, b) in ascending order, a < b. Those of the lower
-    /// block are in its order already.
-    std::vector<ContactPoint> take_points() {
-        const auto same_block = [](const ContactPoint& p, const ContactPoint& q) { return p.block_a == q.block_a; };
-        for (auto first = points_.begin(); first != points_.end();) {
-            auto last = std::find_if_not(first, points_.end(), [&](const auto& p) { return same_block(*first, p); });
-            std::ranges::sort(first, last, {}, &ContactPoint::key);
-            first = last;
-        }
-        std::ranges::sort(points_of_higher_, {}, &ContactPoint::key);
-        const auto middle = static_cast<std::ptrdiff_t>(points_.size());
-        points_.insert(points_.end(), points_of_higher_.begin(), points_of_higher_.end());
-        std::ranges::inplace_merge(points_, points_.begin() + middle, {}, &ContactPoint::key);
-        return std::move(points_);
-    }
+    /// The points of all pairs so far, sorted by key.
+    [[nodiscard]] std::vector<ContactPoint> points_by_key() const { return sorted_by_key(points_, system_.n_blocks()); }
 
     std::vector<UnheldTip> take_unheld_tips() { return std::move(unheld_tips_); }
 
 private:
     [[nodiscard]] const Edge& reference(int block, int edge) const { return system_.blocks[block].edges[edge]; }
+
+    /// The edges that are no farther from another block's box than that, and those of an interface with it.
+    void choose_near(int block, std::span<const CurrentEdge> edges, const BlockBox& other, double distance,
+                     std::vector<int>& near) const {
+        near.clear();
+        for (int i = 0; i < static_cast<int>(edges.size()); ++i) {
+            const CurrentEdge& edge = edges[i];
+            const Vec2 below = other.lower - edge.start.cwiseMax(edge.end);
+            const Vec2 above = edge.start.cwiseMin(edge.end) - other.upper;
+            if (below.cwiseMax(above).maxCoeff() <= distance ||
+                is_shared_with(other.block, reference(block, edge.edge)))
+                near.push_back(i);
+        }
+    }
 
     /// Whether an edge of another block is one side of an interface with this block.
     [[nodiscard]] bool is_shared_with(int block, const Edge& edge) const {
@@ -469,14 +496,11 @@ private:
         return outward.dot(leaving.end - leaving.start) >= 0.0 && outward.dot(leaving.before - leaving.start) >= 0.0;
     }
 
-    /// Whether two neighbours have an interface and no overlap along any: one has turned about a common vertex, or has gone past the
-    /// other. Nothing but this vertex may then keep them apart.
-    [[nodiscard]] bool faces_are_apart(int owner, int target, bool swapped) const {
-        const std::vector<Edge>& edges = system_.blocks[owner].edges;
-        const auto is_shared = [&](const Edge& edge) { return is_shared_with(target, edge); };
-        const auto overlaps = [&](const std::pair<int, int>& pair) {
-            return is_shared(edges[swapped ? pair.second : pair.first]);
-        };
+    /// Of the present pair, once its overlaps are known.
+    [[nodiscard]] bool are_faces_apart(int a, int b) const {
+        const std::vector<Edge>& edges = system_.blocks[a].edges;
+        const auto is_shared = [&](const Edge& edge) { return is_shared_with(b, edge); };
+        const auto overlaps = [&](const EdgePair& pair) { return is_shared(edges[pair.first]); };
         return std::ranges::any_of(edges, is_shared) && std::ranges::none_of(overlapping_, overlaps);
     }
 
@@ -571,12 +595,14 @@ private:
         return x.dot(y) < 0.0 && std::abs(cross(x, y)) <= flush * x.norm() * y.norm();
     }
 
-    /// Vertices of `owner` (the start of each of its edges) against the edges of `target`; `swapped` if the owner is the
+    /// Vertices of `owner` (the start of each of its near edges) against the near edges of `target`; `swapped` if the owner is the
     /// higher block.
-    void append_vertices(int owner, std::span<const CurrentEdge> leaving_edges, int target,
-                         std::span<const CurrentEdge> edges, bool swapped) {
-        for (const auto& leaving : leaving_edges) {
-            for (const auto& edge : edges) {
+    void append_vertices(int owner, std::span<const CurrentEdge> leaving_edges, const std::vector<int>& near_leaving,
+                         int target, std::span<const CurrentEdge> edges, const std::vector<int>& near, bool swapped) {
+        for (const int i : near_leaving) {
+            const CurrentEdge& leaving = leaving_edges[i];
+            for (const int j : near) {
+                const CurrentEdge& edge = edges[j];
                 const Vec2 from_edge = leaving.start - edge.start;
                 const double gap = right_normal(edge.direction).dot(from_edge);
                 if (gap > reach_ || gap < deepest_) continue;
@@ -607,11 +633,11 @@ private:
         if (beyond > 0.0 && !below_end && (gap >= shallow_ || !is_in_notch(leaving.start, edge, s < 0.0, edges)))
             return;
         if (!points_at(leaving, outward)) return;
-        if (is_common && !beside_void && !faces_are_apart(owner, target, swapped) &&
-            (is_ground || !held_it_last(owner, leaving, target, edge, swapped)))
-            return;
         if (has_side_in(overlapping_, leaving, edge.edge, swapped)) return;
         if (has_side_in(sunk_beside_, leaving, edge.edge, swapped)) return;
+        if (is_common && !beside_void && !faces_apart_ &&
+            (is_ground || !held_it_last(owner, leaving, target, edge, swapped)))
+            return;
         if (!below_end && is_held_by_another_face(leaving, edge, gap, edges, swapped)) return;
         if (gap < shallow_ && !below_end && !is_inside(target, leaving.start)) return; // what takes longest comes last
         ContactPoint point = point_between(owner, leaving, target, edge);
@@ -619,7 +645,7 @@ private:
             CutEdge(system_, reference(target, edge.edge)).at(s), leaving.length);
         point.weight = vertex_weight * std::min(edge.length, system_.blocks[owner].size);
         finish(point, -edge.direction);
-        (swapped ? points_of_higher_ : points_).push_back(point);
+        points_.push_back(point);
     }
 
     const BlockSystem& system_;
@@ -628,9 +654,12 @@ private:
     double reach_;
     const std::vector<ContactMemory>& memory_;
     std::vector<UnheldTip> unheld_tips_;
-    std::vector<ContactPoint> points_;           ///< with block_a the lower block of the pair
-    std::vector<ContactPoint> points_of_higher_; ///< vertices of the higher block
+    std::vector<ContactPoint> points_; ///< in the order in which they were found
+    std::vector<int> near_a_, near_b_; ///< edges of the present pair that may touch the other block, by number
     bool bonded_pair_ = false;
+    /// Whether two neighbours have an interface and no overlap along any: one has turned about a common vertex, or has gone past the
+    /// other. Nothing but this vertex may then keep them apart.
+    bool faces_apart_ = false;
     double deepest_ = 0.0;
     double deepest_own_ = 0.0; ///< of the two faces of an interface
     double doubtful_ = 0.0;
@@ -731,19 +760,21 @@ DetectedContacts detect_contacts(const BlockSystem& system, const ContactSurface
                                  double reach, const std::vector<ContactMemory>& memory) {
     const Surfaces all = current_surfaces(system, surfaces, q);
     DetectedContacts result;
-    const auto pairs = meeting_boxes(bounding_boxes(all), reach);
+    const std::vector<BlockBox> boxes = bounding_boxes(all);
+    const auto pairs = meeting_boxes(boxes, reach);
     result.near_pairs.reserve(pairs.size());
     PairDetection pair_detection(system, surfaces, q, reach, memory);
-    pair_detection.expect(all.edges.size() / 2);
+    pair_detection.expect(std::max(least_overlap_points * all.edges.size() / 2, memory.size() + memory.size() / 4));
     for (const auto& [a, b] : pairs) {
         const Surface& surface_a = all.all[all.of_block[a]];
         const Surface& surface_b = all.all[all.of_block[b]];
         if (!surface_a.separated && !surface_b.separated) continue;
         if (system.blocks[a].fixed && system.blocks[b].fixed) continue;
         result.near_pairs.emplace_back(a, b);
-        pair_detection.run(a, all.edges_of(surface_a), b, all.edges_of(surface_b));
+        pair_detection.run(boxes[all.of_block[a]], all.edges_of(surface_a), boxes[all.of_block[b]],
+                           all.edges_of(surface_b));
     }
-    result.points = pair_detection.take_points();
+    result.points = pair_detection.points_by_key();
     result.unheld_tips = pair_detection.take_unheld_tips();
     transfer_histories(system, q, memory, result.points);
     return result;

@@ -42,9 +42,13 @@ bool is_held_anew(const StepInProgress& p, double share = large_imbalance) {
     const Model& model = p.bench.model;
     const BodyState& body = p.step.end.body;
     if (body.contacts.empty()) return true;
-    const Placement placement = placed_anew(model, body, p.from.at.stage);
+    DetectedContacts detected = detect(p);
+    Placement placement{placed_bonds(model, body), std::move(detected.points)};
     const LoadsAt at = p.loads_at(p.load_factor());
-    return verdict_anew(loaded_body(model, placement, at), body.displacement, share).balanced();
+    const bool is_held = verdict_anew(loaded_body(model, placement, at), body.displacement, share).balanced();
+    detected.points = std::move(placement.contacts);
+    keep(p, std::move(detected));
+    return is_held;
 }
 
 /// Whether a tip has sunk into the ground before it that holds it no more, by contacts detected anew, under a platen: what a large load step carries it past

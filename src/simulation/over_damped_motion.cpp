@@ -216,7 +216,7 @@ void restart(Motion& motion) {
 
 PseudoStep solve_step(StepInProgress& p, const PlacedState& placed, const Motion& motion,
                       const Eigen::VectorXd& guess) {
-    const auto& [model, cracks, solver, loads, search, journal, stop] = p.bench;
+    const auto& [model, cracks, solver, loads, search, last_detection, journal, stop] = p.bench;
     if (stop) throw Interrupted{};
     require_memory();
     const double eta = 1.0 / motion.step;

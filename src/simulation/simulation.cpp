@@ -169,12 +169,13 @@ RunReport run_simulation(const Model& model, const CrackOptions& cracks, const S
                          StepObserver& observer, const std::atomic<bool>& stop) {
     const OwnThreads of_run(1); // those of the BLAS would wait for work in a loop, and take as much time as the run
     EquilibriumSearch search(model, solver);
+    LastDetection last_detection;
     Journal journal(model, state, observer, solver.accuracy > 0.0 ? 0 : number_of_steps(model), &search);
     RunReport report = report_of(journal, [&] {
         if (state.at.step > 0) search.order_for(state.memory.near_pairs);
         for (bool begins = true;; begins = false) {
             const StageLoads loads = begin_stage(model, solver, search, state);
-            const StepBench bench{model, cracks, solver, loads, search, journal, stop};
+            const StepBench bench{model, cracks, solver, loads, search, last_detection, journal, stop};
             if (begins) begin_run(bench, state);
             StageEnd end = run_stage(bench, state);
             const bool last = state.at.stage + 1 == static_cast<int>(model.loads.stages.size());

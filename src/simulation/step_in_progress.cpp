@@ -23,15 +23,6 @@ namespace {
 
 constexpr double kept_motion = 5e-3; ///< of a block, after which contact points are not kept (relative_motion)
 
-/// Detects the contacts of surfaces that may touch.
-DetectedContacts detect(StepInProgress& p) {
-    RunReport& report = p.bench.journal.report();
-    const Stopwatch watch(report.costs.seconds.detection);
-    ++report.detections;
-    const Model& model = p.bench.model;
-    return detected_contacts(model, p.step.end.body, ground_holds_tips(model, p.from.at.stage));
-}
-
 /// Vertices that have come near a platen become points of it.
 void watch_platens(StepInProgress& p) {
     if (p.hold.points.empty()) return;
@@ -42,7 +33,7 @@ void watch_platens(StepInProgress& p) {
 
 /// Bonds in the frames of the state beside the given contacts.
 PlacedState placed_with(StepInProgress& p, DetectedContacts contacts) {
-    const auto& [model, cracks, solver, loads, search, journal, stop] = p.bench;
+    const auto& [model, cracks, solver, loads, search, last_detection, journal, stop] = p.bench;
     const BodyState& body = p.step.end.body;
     PlacedState placed;
     {
@@ -93,6 +84,23 @@ Step finished(StepInProgress p) {
     return std::move(step);
 }
 
+DetectedContacts detect(const StepInProgress& p) {
+    const Model& model = p.bench.model;
+    const BodyState& body = p.step.end.body;
+    RunReport& report = p.bench.journal.report();
+    const Stopwatch watch(report.costs.seconds.detection);
+    const bool hold_tips = ground_holds_tips(model, p.from.at.stage);
+    LastDetection last = std::exchange(p.bench.last_detection, {});
+    if (holds(last, body, hold_tips)) return std::move(last.contacts);
+    ++report.detections;
+    return detected_contacts(model, body, hold_tips);
+}
+
+void keep(const StepInProgress& p, DetectedContacts contacts) {
+    const bool hold_tips = ground_holds_tips(p.bench.model, p.from.at.stage);
+    p.bench.last_detection = {std::move(contacts), p.step.end.body, hold_tips, true};
+}
+
 PlacedState place(StepInProgress& p) {
     SolverMemory& memory = p.step.end.memory;
     memory.steps_since_detection = 0;
@@ -132,7 +140,7 @@ Eigen::VectorXd predicted(const StepInProgress& p, double load_factor) {
 }
 
 Equilibrium find_at(StepInProgress& p, const PlacedState& placed, double load_factor, Eigen::VectorXd guess) {
-    const auto& [model, cracks, solver, loads, search, journal, stop] = p.bench;
+    const auto& [model, cracks, solver, loads, search, last_detection, journal, stop] = p.bench;
     if (stop) throw Interrupted{};
     require_memory();
     State& state = p.step.end;
@@ -196,7 +204,7 @@ void reach(StepInProgress& p, PlacedState placed, const Equilibrium& found) {
 }
 
 Measured measure(const StepInProgress& p, const PlacedState& placed, const LoadsAt& at, const Equilibrium& found) {
-    const auto& [model, cracks, solver, loads, search, journal, stop] = p.bench;
+    const auto& [model, cracks, solver, loads, search, last_detection, journal, stop] = p.bench;
     const EquilibriumProblem problem{loaded_body(model, placed.placement, at), {}, 0.0, {}};
     Measured result;
     result.forces = search.forces(problem, found.displacement);

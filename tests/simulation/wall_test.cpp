@@ -60,6 +60,13 @@ TEST(SlowWall, ComesToRestWithoutAMotion) {
     }
 }
 
+// What tells that a load step may end, contacts detected where it stands, is what the next one begins with.
+TEST(SlowWall, EachLoadStepDetectsItsContactsOnce) {
+    const SceneRun run = run_scene(wall(4, 5, 50.0, 10));
+    EXPECT_TRUE(stands(run));
+    EXPECT_EQ(run.report.detections, 10 + 2); // the body at rest, and where the first load step begins
+}
+
 // Rounding decides which way a search goes: stiffnesses that differ by a millionth stand for it.
 TEST(SlowWall, OfAThousandBricksComesToRestWithoutAMotionWhateverTheLastDigits) {
     for (const double stiffness : {50.0, 50.00005, 50.00015}) {

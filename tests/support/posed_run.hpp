@@ -138,7 +138,7 @@ public:
         leave_stage(model, *loads, step.in_place.at.loads, state);
         enter();
     }
-    [[nodiscard]] StepBench bench() { return {model, cracks, options, *loads, search, journal, stop}; }
+    [[nodiscard]] StepBench bench() { return {model, cracks, options, *loads, search, last_detection, journal, stop}; }
     [[nodiscard]] Step take(double load_factor, bool checks_cracks = true) {
         begin_load_step(bench());
         return take_step(bench(), state, goal_at(bench(), load_factor, checks_cracks));
@@ -150,6 +150,7 @@ public:
     State state;
     Told told;
     EquilibriumSearch search;
+    LastDetection last_detection;
     Journal journal;
     std::optional<StageLoads> loads;
     std::atomic<bool> stop{false};
@@ -157,12 +158,8 @@ public:
 
 /// Bit for bit, but for the costs.
 inline bool same(const BodyState& a, const BodyState& b) {
-    const auto same_memory = [](const ContactMemory& x, const ContactMemory& y) {
-        return x.key == y.key && x.history.shear_trial == y.history.shear_trial &&
-               x.history.dilation == y.history.dilation;
-    };
     return a.displacement == b.displacement && a.interfaces == b.interfaces && a.bond_shear == b.bond_shear &&
-           std::ranges::equal(a.contacts, b.contacts, same_memory);
+           a.contacts == b.contacts;
 }
 
 } // namespace kluft::posed

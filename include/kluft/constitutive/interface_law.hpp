@@ -26,6 +26,8 @@ struct InterfaceLaw {
 struct PointHistory {
     double shear_trial = 0.0; ///< shear traction before rounding, clipped at the limit of the rounding (Pa)
     double dilation = 0.0;    ///< opening that plastic slip has forced so far (m)
+
+    bool operator==(const PointHistory&) const = default;
 };
 
 /// The piece of an overlap whose cohesion a point carries: [from, to] from the point, over the overlap's length. Along it

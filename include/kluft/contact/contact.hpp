@@ -34,6 +34,8 @@ struct ContactKey {
 struct ContactMemory {
     ContactKey key;
     PointHistory history;
+
+    bool operator==(const ContactMemory&) const = default;
 };
 
 /// By how much the two points of a pair move on along the whole overlap, and the piece of it that the pair stands for.

@@ -33,6 +33,17 @@ inline constexpr double contact_reach = 0.1;
 /// Contacts of the unbonded surfaces, with the histories of the state.
 [[nodiscard]] DetectedContacts detected_contacts(const Model& model, const BodyState& body, bool ground_holds_tips);
 
+/// The contacts that were detected last, and the body that they are of.
+struct LastDetection {
+    DetectedContacts contacts;
+    BodyState of;
+    bool ground_holds_tips = false;
+    bool is_kept = false; ///< whether nobody has taken them
+};
+
+/// Whether they are those of the body as it stands now.
+[[nodiscard]] bool holds(const LastDetection& last, const BodyState& body, bool ground_holds_tips);
+
 /// Bonds and contacts of the state where it stands, as a load step of that stage would begin with.
 [[nodiscard]] Placement placed_anew(const Model& model, const BodyState& body, int stage);
 

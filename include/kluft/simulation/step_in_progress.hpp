@@ -10,6 +10,7 @@
 #include "kluft/simulation/event_search.hpp"
 #include "kluft/simulation/journal.hpp"
 #include "kluft/simulation/model.hpp"
+#include "kluft/simulation/placement.hpp"
 #include "kluft/simulation/simulation_options.hpp"
 #include "kluft/simulation/stage_loads.hpp"
 #include "kluft/simulation/state.hpp"
@@ -37,6 +38,7 @@ struct StepBench {
     const SolverOptions& solver;
     const StageLoads& loads;
     EquilibriumSearch& search;
+    LastDetection& last_detection;
     Journal& journal; ///< counts what is spent, for steps that are kept and for others
     const std::atomic<bool>& stop;
 
@@ -75,6 +77,11 @@ struct PlacedState {
     Placement placement;
     std::vector<double> eta; ///< of the mass-like term per block (Pa/m2); empty where nothing needs it
 };
+/// Contacts of surfaces that may touch where the step stands: those that were kept, or detected anew.
+[[nodiscard]] DetectedContacts detect(const StepInProgress& in_progress);
+/// For who asks for them next, if the body still stands there: a load step begins with what has told that the one before may end.
+void keep(const StepInProgress& in_progress, DetectedContacts contacts);
+
 /// Detects contacts and gives them their memory; at the start of a load step the contacts may be those of the step before.
 [[nodiscard]] PlacedState place(StepInProgress& in_progress);
 [[nodiscard]] PlacedState place_for_load_step(StepInProgress& in_progress);
