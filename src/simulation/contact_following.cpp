@@ -47,7 +47,7 @@ bool is_held_anew(const StepInProgress& p, double share = large_imbalance) {
     const LoadsAt at = p.loads_at(p.load_factor());
     const bool is_held = verdict_anew(loaded_body(model, placement, at), body.displacement, share).balanced();
     detected.points = std::move(placement.contacts);
-    keep(p, std::move(detected));
+    keep_detected(p, std::move(detected));
     return is_held;
 }
 

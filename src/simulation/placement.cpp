@@ -56,8 +56,8 @@ DetectedContacts detected_contacts(const Model& model, const BodyState& body, bo
     return detect_contacts(model.system, surfaces, body.displacement, reach, body.contacts);
 }
 
-bool holds(const LastDetection& last, const BodyState& body, bool ground_holds_tips) {
-    return last.is_kept && last.ground_holds_tips == ground_holds_tips && last.of.displacement == body.displacement &&
+bool is_of(const LastDetection& last, const BodyState& body, bool ground_holds_tips) {
+    return last.ground_holds_tips == ground_holds_tips && last.of.displacement == body.displacement &&
            last.of.interfaces == body.interfaces && last.of.contacts == body.contacts;
 }
 

@@ -1,5 +1,6 @@
 #include "kluft/simulation/simulation.hpp"
 
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -169,7 +170,7 @@ RunReport run_simulation(const Model& model, const CrackOptions& cracks, const S
                          StepObserver& observer, const std::atomic<bool>& stop) {
     const OwnThreads of_run(1); // those of the BLAS would wait for work in a loop, and take as much time as the run
     EquilibriumSearch search(model, solver);
-    LastDetection last_detection;
+    std::optional<LastDetection> last_detection;
     Journal journal(model, state, observer, solver.accuracy > 0.0 ? 0 : number_of_steps(model), &search);
     RunReport report = report_of(journal, [&] {
         if (state.at.step > 0) search.order_for(state.memory.near_pairs);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -90,15 +91,15 @@ DetectedContacts detect(const StepInProgress& p) {
     RunReport& report = p.bench.journal.report();
     const Stopwatch watch(report.costs.seconds.detection);
     const bool hold_tips = ground_holds_tips(model, p.from.at.stage);
-    LastDetection last = std::exchange(p.bench.last_detection, {});
-    if (holds(last, body, hold_tips)) return std::move(last.contacts);
+    std::optional<LastDetection> last = std::exchange(p.bench.last_detection, std::nullopt);
+    if (last && is_of(*last, body, hold_tips)) return std::move(last->contacts);
     ++report.detections;
     return detected_contacts(model, body, hold_tips);
 }
 
-void keep(const StepInProgress& p, DetectedContacts contacts) {
+void keep_detected(const StepInProgress& p, DetectedContacts contacts) {
     const bool hold_tips = ground_holds_tips(p.bench.model, p.from.at.stage);
-    p.bench.last_detection = {std::move(contacts), p.step.end.body, hold_tips, true};
+    p.bench.last_detection = LastDetection{std::move(contacts), p.step.end.body, hold_tips};
 }
 
 PlacedState place(StepInProgress& p) {

@@ -204,5 +204,31 @@ TEST(LoadStep, StopsBetweenTwoSolvesWhenAsked) {
     EXPECT_EQ(work.state.at.load_factor, 0.0);
 }
 
+// Contacts that were kept are those of one body: whatever of it changes that detection looks at, they are detected anew.
+TEST(LoadStep, KeptContactsAreOfNoOtherBody) {
+    Workplace work(posed::block_on_a_plane(20.0 * posed::degree, 30.0 * posed::degree));
+    const StepBench bench = work.bench();
+    const StepGoal goal = goal_at(bench, 1.0, false);
+    const auto is_detected = [&](StepInProgress& p) {
+        const int before = work.journal.report().detections;
+        keep_detected(p, detect(p));
+        return work.journal.report().detections > before;
+    };
+    StepInProgress p = begin_step(bench, work.state, goal);
+    BodyState& body = p.step.end.body;
+    EXPECT_TRUE(is_detected(p));
+    EXPECT_FALSE(is_detected(p));
+    body.displacement(7) += 1e-15;
+    EXPECT_TRUE(is_detected(p));
+    body.contacts.push_back({.key = {}, .history = {.shear_trial = 1.0}});
+    EXPECT_TRUE(is_detected(p));
+    body.contacts.back().history.dilation = 1e-6;
+    EXPECT_TRUE(is_detected(p));
+    EXPECT_FALSE(is_detected(p));
+    body.interfaces.front() = InterfaceStatus::potential_crack;
+    EXPECT_TRUE(is_detected(p));
+    EXPECT_FALSE(is_detected(p));
+}
+
 } // namespace
 } // namespace kluft

@@ -150,7 +150,7 @@ public:
     State state;
     Told told;
     EquilibriumSearch search;
-    LastDetection last_detection;
+    std::optional<LastDetection> last_detection;
     Journal journal;
     std::optional<StageLoads> loads;
     std::atomic<bool> stop{false};

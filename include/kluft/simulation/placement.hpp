@@ -38,11 +38,10 @@ struct LastDetection {
     DetectedContacts contacts;
     BodyState of;
     bool ground_holds_tips = false;
-    bool is_kept = false; ///< whether nobody has taken them
 };
 
-/// Whether they are those of the body as it stands now.
-[[nodiscard]] bool holds(const LastDetection& last, const BodyState& body, bool ground_holds_tips);
+/// Whether the body stands as it did then: all that detection asks of it is the same.
+[[nodiscard]] bool is_of(const LastDetection& last, const BodyState& body, bool ground_holds_tips);
 
 /// Bonds and contacts of the state where it stands, as a load step of that stage would begin with.
 [[nodiscard]] Placement placed_anew(const Model& model, const BodyState& body, int stage);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <optional>
 #include <utility>
 
 #include <Eigen/Core>
@@ -38,8 +39,8 @@ struct StepBench {
     const SolverOptions& solver;
     const StageLoads& loads;
     EquilibriumSearch& search;
-    LastDetection& last_detection;
-    Journal& journal; ///< counts what is spent, for steps that are kept and for others
+    std::optional<LastDetection>& last_detection; ///< until somebody takes it
+    Journal& journal;                             ///< counts what is spent, for steps that are kept and for others
     const std::atomic<bool>& stop;
 
     [[nodiscard]] const Stage& stage(const State& state) const { return model.loads.stages[state.at.stage]; }
@@ -79,8 +80,8 @@ struct PlacedState {
 };
 /// Contacts of surfaces that may touch where the step stands: those that were kept, or detected anew.
 [[nodiscard]] DetectedContacts detect(const StepInProgress& in_progress);
-/// For who asks for them next, if the body still stands there: a load step begins with what has told that the one before may end.
-void keep(const StepInProgress& in_progress, DetectedContacts contacts);
+/// For who detects next, if the body still stands there: a load step begins with what has told that the one before may end.
+void keep_detected(const StepInProgress& in_progress, DetectedContacts contacts);
 
 /// Detects contacts and gives them their memory; at the start of a load step the contacts may be those of the step before.
 [[nodiscard]] PlacedState place(StepInProgress& in_progress);
