@@ -553,8 +553,23 @@ private:
                });
     }
 
+    /// Whether two edges lie on one and the same third block, of which neither is a part, along no net: as those of a wedge and of the ground
+    /// do beside a joint from the foot of a valley, with another wedge behind the joint.
+    [[nodiscard]] bool lie_on_one_block(int owner, const Edge& edge, int target, const Edge& side) const {
+        const auto is_fracture = [&](const Edge& each) {
+            return each.interface >= 0 && surfaces_.bonded[each.interface] == 0 &&
+                   system_.interfaces[each.interface].origin != EdgeOrigin::tessellation;
+        };
+        if (!is_fracture(edge) || !is_fracture(side)) return false;
+        const auto across = [&](int block, const Edge& each) {
+            const Interface& interface = system_.interfaces[each.interface];
+            return interface.block_a == block ? interface.block_b : interface.block_a;
+        };
+        return across(owner, edge) == across(target, side);
+    }
+
     /// Whether the target's edge is ground before a tip of which no count is taken: the tip stood at the foot of the edge as cut, with a void between
-    /// the two and its other face on a block; the edge rises before that face; and the tip leans away from it, by its bisector, as a sharp
+    /// the two, or a third block that lies on both, and its other face on a block; the edge rises before that face; and the tip leans away from it, by its bisector, as a sharp
     /// wedge does whose plane comes out where the ground before a slope begins. What presses on it from there would bend it off, or have it
     /// ride over; a tip that leans over the edge, as the toe of a dam does over a riser, is pressed into its block.
     [[nodiscard]] bool is_ground_before(int owner, const CurrentEdge& leaving, int target,
@@ -569,8 +584,10 @@ private:
         const double smaller = std::min(system_.blocks[owner].size, system_.blocks[target].size);
         if (std::min(from_start, from_end) > at_the_foot * smaller) return false;
         const bool at_end = from_end < from_start;
-        if (!are_outlines(side, at_end ? going_on : arriving)) return false;
-        if ((at_end ? arriving : going_on).interface < 0) return false;
+        const Edge& sliding = at_end ? arriving : going_on;
+        const Edge& other = at_end ? going_on : arriving;
+        if (sliding.interface < 0) return false;
+        if (!are_outlines(side, other) && !lie_on_one_block(owner, other, target, side)) return false;
         const Vec2 before = (edge_start(system_, arriving) - tip).normalized();
         const Vec2 after = (edge_end(system_, going_on) - tip).normalized();
         const Vec2 along_side = (edge_end(system_, side) - edge_start(system_, side)).normalized();
@@ -582,7 +599,7 @@ private:
     /// Whether a face of an interface has such a tip at one of its ends, and the target's edge is the ground before it.
     [[nodiscard]] bool slides_onto_ground(int owner, const CurrentEdge& face, std::span<const CurrentEdge> faces,
                                           int target, const CurrentEdge& edge) const {
-        if (surfaces_.ground_holds_tips || reference(target, edge.edge).interface >= 0) return false;
+        if (surfaces_.ground_holds_tips) return false;
         if (reference(owner, face.edge).interface < 0) return false;
         return std::ranges::any_of(faces, [&](const CurrentEdge& leaving) {
             return (leaving.edge == face.edge || leaving.arriving == face.edge) &&
@@ -624,7 +641,7 @@ private:
         const Vec2 outward = right_normal(edge.direction);
         const bool is_common = have_common_vertex(owner, leaving, target, edge);
         const bool is_ground = is_ground_before(owner, leaving, target, edge);
-        if (is_ground && gap < shallow_) unheld_tips_.push_back({owner, target, -gap, leaving.start});
+        if (is_ground && gap < shallow_) unheld_tips_.push_back({owner, target, edge.edge, -gap, leaving.start});
         if (is_ground && !is_common) return;
         const bool beside_void = is_common && are_beside_a_void(owner, leaving, target, edge);
         const double beyond = beyond_end(s, edge);

@@ -43,7 +43,10 @@ RunAnswer factor_of_safety(const RunFacts& facts) {
     if (facts.summary && facts.summary->results.factor_of_safety) {
         answer.value = fmt::format("{:.4g}", *facts.summary->results.factor_of_safety);
         answer.sentence = "The strengths divided by it are those with which the body just stands." + rest;
-        answer.firm = true;
+        answer.firm = !facts.summary->results.undoubted_factor;
+        if (!answer.firm)
+            answer.sentence +=
+                fmt::format(" It is in doubt above {:.4g}: see the warning.", *facts.summary->results.undoubted_factor);
         return answer;
     }
     if (facts.stood) {

@@ -72,11 +72,13 @@ std::vector<double> acting_on_blocks(const LoadedBody& body, const Overlaps& ove
     return acting;
 }
 
-/// Whether it is one of the tip's block with the outline of the ground before it.
+/// Whether it is one of the tip's block with the ground before it: the outline, or the edge into which the tip has sunk.
 bool is_with_ground(const BlockSystem& system, const Overlap& overlap, const UnheldTip& tip) {
-    const auto is_outline = [&](int edge) { return system.blocks[tip.ground].edges[edge].interface < 0; };
-    if (overlap.block_a == tip.block && overlap.block_b == tip.ground) return is_outline(overlap.edge_b);
-    if (overlap.block_a == tip.ground && overlap.block_b == tip.block) return is_outline(overlap.edge_a);
+    const auto is_before_tip = [&](int edge) {
+        return edge == tip.ground_edge || system.blocks[tip.ground].edges[edge].interface < 0;
+    };
+    if (overlap.block_a == tip.block && overlap.block_b == tip.ground) return is_before_tip(overlap.edge_b);
+    if (overlap.block_a == tip.ground && overlap.block_b == tip.block) return is_before_tip(overlap.edge_a);
     return false;
 }
 

@@ -276,6 +276,8 @@ void warn_of_earlier_jump(const StepBench& bench, const State& state) {
                     jump));
 }
 
+std::string four_digits(double factor) { return fmt::format("{:.4g}", factor); }
+
 /// What lies against a factor that is found: it may be that of a body which has moved into another place, as cut it has a lower
 /// one.
 class Doubts {
@@ -296,6 +298,11 @@ public:
     /// `factor`: found.
     [[nodiscard]] std::string warning(double factor) const {
         return said_.empty() ? std::string{} : doubt_in_words(said_, factor, without_);
+    }
+
+    /// The last factor before what lies against the one that is found; none where that does not change four digits.
+    [[nodiscard]] std::optional<double> factor_without(double factor) const {
+        return said_.empty() || four_digits(without_) == four_digits(factor) ? std::nullopt : std::optional(without_);
     }
 
 private:
@@ -341,8 +348,8 @@ private:
 } // namespace
 
 std::string doubt_in_words(const std::string& said, double factor, double without) {
-    const std::string before = fmt::format("{:.4g}", without);
-    if (before == fmt::format("{:.4g}", factor))
+    const std::string before = four_digits(without);
+    if (before == four_digits(factor))
         return fmt::format("{}: without that the factor of safety is the same to four digits", said);
     return fmt::format(
         "{}: the factor of safety may be lower without that; {} is the factor of the last load step before", said,
@@ -416,7 +423,9 @@ StageEnd find_strength_limit(const StepBench& bench, State& state) {
         return end;
     }
     end.step = state.at.step + 1;
-    if (end.failure->kind != FailureKind::too_many_solves) end.factor_of_safety = found;
+    if (end.failure->kind == FailureKind::too_many_solves) return end;
+    end.factor_of_safety = found;
+    end.undoubted_factor = doubts.factor_without(found);
     return end;
 }
 

@@ -63,6 +63,10 @@ TEST(RunAnswer, OfAReductionOfSomeStrengthsNamesThem) {
     facts.summary->results.factor_of_safety = 1.5;
     EXPECT_EQ(run_answer(facts).value, "1.5");
     EXPECT_THAT(run_answer(facts).sentence, HasSubstr("All other interfaces keep theirs."));
+    EXPECT_TRUE(run_answer(facts).firm);
+    facts.summary->results.undoubted_factor = 1.25;
+    EXPECT_FALSE(run_answer(facts).firm);
+    EXPECT_THAT(run_answer(facts).sentence, HasSubstr("in doubt above 1.25"));
 }
 
 TEST(RunAnswer, HasTheEstimatedErrorAsItsBand) {

@@ -39,6 +39,7 @@ struct ContactSurfaces {
 struct UnheldTip {
     int block = 0;
     int ground = 0;            ///< a block
+    int ground_edge = 0;       ///< of it
     double depth = 0.0;        ///< m
     Vec2 place = Vec2::Zero(); ///< local coordinates, as it lies (m)
 };

@@ -14,13 +14,16 @@ namespace kluft {
 /// Numbers that only some runs have.
 struct RunResults {
     std::optional<double> factor_of_safety; ///< by a stage that reduces the strengths, if that found the limit
-    std::optional<double> estimated_error;  ///< of the history up to its peak, where an accuracy was asked for
+    std::optional<double>
+        undoubted_factor; ///< the last one before that which speaks against the factor of safety (a warning)
+    std::optional<double> estimated_error; ///< of the history up to its peak, where an accuracy was asked for
 };
 
 /// Calls visit(name, member) for each of them, by its name in summary.json and in the tables of a study. `results`:
 /// RunResults, const or not.
 template <class Results, class Visit> void visit_results(Results& results, Visit&& visit) {
     visit("factor_of_safety", results.factor_of_safety);
+    visit("undoubted_factor", results.undoubted_factor);
     visit("estimated_error", results.estimated_error);
 }
 

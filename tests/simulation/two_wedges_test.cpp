@@ -1,0 +1,115 @@
+// The factor of safety of a dam on two wedges of rock in a valley, with a joint between them from its foot.
+#include <cmath>
+#include <string>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "kluft/core/units.hpp"
+#include "kluft/core/vector.hpp"
+#include "support/scene_run.hpp"
+
+namespace kluft {
+namespace {
+
+constexpr double weight_density = 2600.0 * 9.81; // N/m3, of rock
+constexpr double dam_weight = 180.0 * 2400.0 * 9.81;
+constexpr double water_push = 1962000.0; // N/m
+constexpr double friction_angle = 35.0;
+
+/// A plane goes down from the heel of the dam, (20, 20), to (34, 20 - depth), below its toe, another one up from there to the surface. Between the two wedges
+/// a joint goes up to the surface.
+struct TwoWedges {
+    double depth = 4.0;         ///< m
+    double length = 16.0;       ///< of the second wedge (m)
+    double lean = 0.0;          ///< of the joint's upper end downstream (m)
+    bool ground_is_cut = false; ///< the joint goes on down through the ground
+    bool mirrored = false;
+};
+
+SceneRun run_dam(const TwoWedges& body) {
+    const double sign = body.mirrored ? -1.0 : 1.0;
+    const auto at = [&](double x, double y) { return fmt::format("[{:.17g}, {:.17g}]", sign * x, y); };
+    const std::string foot = at(34, 20.0 - body.depth);
+    const std::string below =
+        body.ground_is_cut ? fmt::format("    - {{trace: [{}, {}], interface: joint}}\n", foot, at(34, 0)) : "";
+    return run_scene(fmt::format(
+        R"(kluft: 1
+analysis: {{gravity: 9.81}}
+materials:
+  concrete: {{density: 2400, youngs_modulus: 20 GPa, poissons_ratio: 0.2}}
+  rock: {{density: 2600, youngs_modulus: 20 GPa, poissons_ratio: 0.25}}
+interfaces:
+  contact: {{kind: fracture, normal_stiffness: 20 GPa/m, shear_stiffness: 10 GPa/m, friction_angle: 45 deg}}
+  joint: {{kind: fracture, normal_stiffness: 20 GPa/m, shear_stiffness: 10 GPa/m, friction_angle: {} deg}}
+geometry:
+  material: rock
+  regions: [{{material: concrete, polygon: [{}, {}, {}, {}]}}]
+  domain: {{polygon: [{}, {}, {}, {}, {}, {}, {}, {}]}}
+  fractures:
+    - {{trace: [{}, {}], interface: contact}}
+    - {{trace: [{}, {}], interface: joint}}
+    - {{trace: [{}, {}], interface: joint}}
+    - {{trace: [{}, {}], interface: joint}}
+{}boundaries:
+  bottom: {{sides: [0], support: fixed}}
+  left: {{sides: [7], support: smooth}}
+  right: {{sides: [1], support: smooth}}
+stages:
+  - {{}}
+  - {{forces: {{water: {{point: {}, force: [{}, 0]}}}}, steps: 5}}
+  - {{strength_reduction: {{from: 1, to: 6}}}}
+)",
+        friction_angle, at(19, 20), at(36, 20), at(36, 41), at(19, 41), at(0, 0), at(60, 0), at(60, 20), at(34, 20),
+        at(24, 40), at(20, 40), at(20, 20), at(0, 20), at(20, 20), at(34, 20), at(20, 20), foot, foot,
+        at(34.0 + body.length, 20), foot, at(34.0 + body.lean, 20), below, at(20, 26.6667), sign * water_push));
+}
+
+/// What resists on the second plane beyond the push that the first wedge leaves to it (N/m), with strengths divided by a factor: limit
+/// equilibrium of two wedges that slide on all three faces.
+double resistance_left(const TwoWedges& body, double factor) {
+    const double tan_friction = std::tan(friction_angle / degrees) / factor;
+    const Vec2 first = Vec2(14.0, -body.depth).normalized(); // as the first wedge slides
+    const Vec2 second = Vec2(body.length, body.depth).normalized();
+    const Vec2 joint = Vec2(body.lean, body.depth).normalized(); // upwards
+    const Vec2 across(joint.y(), -joint.x());                    // from the first wedge to the second one
+    const auto on_wedge = [&](const Vec2& slip) {
+        return Vec2(-slip.y() - tan_friction * slip.x(), slip.x() - tan_friction * slip.y());
+    };
+    const Vec2 of_joint = across - tan_friction * joint; // on the second wedge, for a normal force of one
+    const Vec2 loads(water_push, -dam_weight - 0.5 * (14.0 + body.lean) * body.depth * weight_density);
+    Mat2 faces;
+    faces << on_wedge(first), -of_joint;
+    const double normal_force = faces.inverse().row(1).dot(-loads);
+    const Vec2 weight(0.0, -0.5 * (body.length - body.lean) * body.depth * weight_density);
+    const Vec2 left = normal_force * of_joint + weight;
+    return cross(on_wedge(second), left);
+}
+
+double factor_of_limit_equilibrium(const TwoWedges& body) {
+    double stands = 0.5, falls = 9.0;
+    for (int i = 0; i < 60; ++i) {
+        const double middle = 0.5 * (stands + falls);
+        (resistance_left(body, middle) > 0.0 ? stands : falls) = middle;
+    }
+    return stands;
+}
+
+// The tip of the first wedge, at the foot of the valley, slides below the second one. The face of the valley behind the joint held it: 2.0 to 3.2.
+TEST(TwoWedges, AreNotHeldByTheTipThatSlidesBelowTheSecondOne) {
+    for (const TwoWedges& body :
+         {TwoWedges{}, TwoWedges{.mirrored = true}, TwoWedges{.ground_is_cut = true}, TwoWedges{.lean = 1.0},
+          TwoWedges{.lean = 2.0}, TwoWedges{.depth = 2.0}, TwoWedges{.depth = 3.0, .length = 12.0},
+          TwoWedges{.length = 8.0}, TwoWedges{.depth = 5.0, .length = 20.0}}) {
+        const SceneRun run = run_dam(body);
+        const double expected = factor_of_limit_equilibrium(body);
+        SCOPED_TRACE(fmt::format("{} {} {} {}", body.depth, body.length, body.lean, body.ground_is_cut));
+        ASSERT_TRUE(run.report.results.factor_of_safety) << run.report.diagnosis;
+        EXPECT_NEAR(*run.report.results.factor_of_safety, expected, 1e-3 * expected);
+        EXPECT_THAT(run.report.warnings, testing::Contains(testing::HasSubstr("leans away from the ground before it")));
+    }
+}
+
+} // namespace
+} // namespace kluft
