@@ -14,10 +14,10 @@
 #include <gmp.h>
 
 #include "blas_kernels.hpp"
+#include "blas_threads.hpp"
 #include "commands.hpp"
 #include "completion.hpp"
 #include "failure.hpp"
-#include "kluft/assembly/blas.hpp"
 #include "kluft/core/nearest_name.hpp"
 #include "kluft/core/version.hpp"
 #include "kluft/maps/gdal.hpp"
@@ -34,11 +34,8 @@ constexpr int most_threads = 4096;
 
 using Command = std::function<ExitCode()>; ///< what the command line asks for
 
-/// OpenBLAS waits in its exit handler for threads that wait for memory.
-bool waits_at_exit = false;
-
 int exit_with(ExitCode code) {
-    if (waits_at_exit || code == ExitCode::out_of_resources) kluft::leave_without_handlers(code);
+    if (code == ExitCode::out_of_resources) kluft::leave_without_handlers(code);
     return static_cast<int>(code);
 }
 
@@ -483,7 +480,7 @@ int main(int argc, char** argv) {
         kluft::take_signals();
         kluft::open_standard_streams();
         kluft::leave_writing_to_its_result();
-        waits_at_exit = !kluft::end_blas_threads();
+        kluft::do_without_blas_threads(argv);
         kluft::choose_blas_kernels(argv);
         mp_set_memory_functions(gmp_allocate, gmp_reallocate, nullptr);
         load_unwinder();

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "blas_threads.hpp"
 #include "commands.hpp"
 #include "failure.hpp"
 #include "kluft/assembly/blas.hpp"
@@ -78,16 +79,15 @@ kluft::ExitCode run(const std::vector<std::string>& words) {
 } // namespace
 
 int main(int argc, char** argv) {
-    bool waits_at_exit = false; // OpenBLAS in its exit handler, for threads that wait for memory
-    const auto exit_with = [&](ExitCode code) {
-        if (waits_at_exit || code == ExitCode::out_of_resources) kluft::leave_without_handlers(code);
+    const auto exit_with = [](ExitCode code) {
+        if (code == ExitCode::out_of_resources) kluft::leave_without_handlers(code);
         return static_cast<int>(code);
     };
     try {
         kluft::take_signals();
         kluft::open_standard_streams();
         kluft::leave_writing_to_its_result();
-        waits_at_exit = !kluft::end_blas_threads();
+        kluft::do_without_blas_threads(argv);
         const ExitCode code = run({argv, argv + argc});
         const std::string lost = kluft::lost_output();
         if (lost.empty()) return exit_with(code);

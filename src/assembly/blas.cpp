@@ -192,8 +192,9 @@ OwnThreads::~OwnThreads() {
 bool end_blas_threads() {
     const std::lock_guard lock(own_threads_mutex);
     if (has_no_threads) return true;
-    if (!has_room_for_work_spaces(openblas_get_num_threads())) return false;
-    if (n_own_threads == 0) threads_before = openblas_get_num_threads();
+    const int n_threads = openblas_get_num_threads(); // with that of the program
+    if (n_threads > 1 && !has_room_for_work_spaces(n_threads)) return false;
+    if (n_own_threads == 0) threads_before = n_threads;
     openblas_set_num_threads(1);
     if (blas_thread_shutdown_ != nullptr) blas_thread_shutdown_();
     has_no_threads = true;

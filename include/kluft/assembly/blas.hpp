@@ -42,7 +42,7 @@ private:
 /// For a program, at its start: ends the threads that OpenBLAS starts when it is loaded. They wait for work in a loop, a tenth
 /// of a second of processor time, and a run gives them none. From then on each call of the BLAS is computed by the thread that
 /// calls; blas_threads() stays what it was. False, and nothing is done, where there is no address space for their work spaces: they
-/// try for ever to take it, and OpenBLAS waits for them at the end of the program.
+/// try for ever to take it, and OpenBLAS waits for them before it starts another process (fork) and at the end of the program.
 [[nodiscard]] bool end_blas_threads();
 
 /// Number of threads for the whole process: of a large factorization, and of the BLAS (OpenBLAS) where there are no OwnThreads
