@@ -339,7 +339,8 @@ void add_study_command(CLI::App& app, Command& command) {
                   "Replace results of another scene, of other settings and files that no study made");
     sub->add_flag("--quiet", arguments->quiet, "No progress");
     sub->footer("Cases that have ended are not run again; interrupted ones go on from their saved states.\n"
-                "Exit codes: 0 all cases ended, 1 some failed or are missing, 2 bad input, 4 out of disk or memory, "
+                "Exit codes: 0 all cases ended, 1 some failed or are missing, 2 bad input, 4 out of disk or memory "
+                "(also a case), "
                 "128 + n stopped by signal n (130: Ctrl-C).\n"
                 "Examples:\n"
                 "  kluft study models/studies/steps.yaml --jobs 4\n"

@@ -146,6 +146,7 @@ void print_closing(const StudyTable& table) {
 
 ExitCode exit_code(const StudyTable& table) {
     if (stop_requested) return exit_code_of_stop();
+    if (std::ranges::any_of(table.cases, &StudyCase::out_of_resources)) return ExitCode::out_of_resources;
     const bool missing = n_with(table, CaseStatus::failed) + n_with(table, CaseStatus::waiting) > 0;
     return missing ? ExitCode::missed : ExitCode::done;
 }

@@ -127,6 +127,7 @@ void judge_outcome(const Study& study, const CaseOutcome& outcome, const fs::pat
         result.reason = message;
     } else if (outcome.exit_code == out_of_resources) {
         result.reason = "out of disk or memory" + why;
+        result.out_of_resources = true;
     } else if (outcome.exit_code > of_signals || stopped_early) {
         result.status = CaseStatus::waiting;
         result.reason = "interrupted";
@@ -255,6 +256,7 @@ StudyCase row_of(const Study& study, const PlannedCase& one, const CaseResult& r
     row.replica = one.replica;
     row.status = result.status;
     row.reason = result.reason;
+    row.out_of_resources = result.out_of_resources;
     row.quantities = result.quantities;
     row.quantities.resize(study.quantities.size());
     row.errors.resize(study.quantities.size());

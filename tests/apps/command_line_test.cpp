@@ -1541,6 +1541,29 @@ TEST_F(CommandLine, NoRoomForTheThreadsOfTheBlasEndsWithExitCode4) {
     EXPECT_THAT(result.err, HasSubstr("out of memory: no room for the threads of the BLAS\n"));
 }
 
+// The BLAS's thread tries for ever to get a work space of 128 MB where the system refuses it, and OpenBLAS waits for the thread
+// before it starts another process: with the least address space in which the program says its version there is no room for it.
+// The same study, where there is room, goes on with the cases that failed.
+TEST_F(SlowCommandLine, StudyWithoutRoomForTheBlasEndsWithExitCode4AndGoesOnLater) {
+#ifdef KLUFT_SANITIZED
+    GTEST_SKIP() << "the address sanitizer reserves more address space than any limit";
+#endif
+    write("tiny.yaml", tiny_scene);
+    write("study.yaml", "scene: tiny.yaml\nvary: {stages.1.steps: [4, 8]}\n");
+    constexpr rlim_t megabyte = 1000000;
+    Limits limits{.memory_bytes = 64 * megabyte, .environment = {{"OPENBLAS_NUM_THREADS", "2"}}};
+    while (limits.memory_bytes < 4000 * megabyte && kluft({"--version"}, limits).code != 0)
+        limits.memory_bytes += 16 * megabyte;
+    limits.memory_bytes += 16 * megabyte;
+    const Words study{"study", "study.yaml", "-o", "s", "--jobs", "1", "--quiet"};
+    const Result result = kluft(study, limits);
+    EXPECT_EQ(result.code, 4);
+    EXPECT_THAT(result.err, HasSubstr("failed: out of disk or memory: out of memory: no address space for the work"));
+    EXPECT_THAT(result.out, StartsWith("2 cases: 0 done, 2 failed"));
+    EXPECT_EQ(kluft(with(study, {"--collect"})).code, 4);
+    EXPECT_EQ(kluft(study).code, 0);
+}
+
 /// The program does not start itself again with another count of allocations.
 const std::map<std::string, std::string> one_kernel{{"OPENBLAS_CORETYPE", "Haswell"}};
 

@@ -26,6 +26,7 @@ struct CaseOutcome {
 struct CaseResult {
     CaseStatus status = CaseStatus::waiting;
     std::string reason;
+    bool out_of_resources = false; ///< failed for lack of disk or memory
     std::vector<std::optional<double>> quantities;
     std::vector<Vec2> curve; ///< differential stress over axial strain
     std::optional<double> cpu_s;

@@ -25,6 +25,7 @@ struct StudyCase {
     int replica = 0;                   ///< from 0; cases that differ in nothing else are copies
     CaseStatus status = CaseStatus::waiting;
     std::string reason;                            ///< why it did not end as done; empty otherwise
+    bool out_of_resources = false;                 ///< whether it failed for lack of disk or memory
     std::vector<std::optional<double>> quantities; ///< per quantity of the table
     std::vector<std::optional<double>> errors;     ///< the same against the reference, relative; with sign
     std::optional<double> curve_error; ///< L2 distance of the curve to that of the reference, relative to its L2 norm
