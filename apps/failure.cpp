@@ -131,7 +131,11 @@ void require_possible_output(const std::string& path) {
     fs::path place = fs::absolute(path).parent_path(); // or the next one above it that is there
     std::error_code error;
     while (!fs::exists(place, error) && place.has_relative_path()) place = place.parent_path();
-    if (access(place.c_str(), W_OK | X_OK) != 0) refuse(errno);
+    if (access(place.c_str(), W_OK | X_OK) == 0) return;
+    if (errno == EACCES || errno == EROFS)
+        throw ResourceError(
+            fmt::format("{}: cannot write in {}: {}", path, place.string(), std::generic_category().message(errno)));
+    refuse(errno);
 }
 
 void require_own_file(const std::string& file, std::string_view what,

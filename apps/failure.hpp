@@ -16,9 +16,9 @@ namespace kluft {
 /// Ends the program without the exit handlers of libraries, and flushes what it has said.
 [[noreturn]] void leave_without_handlers(ExitCode code);
 
-/// Throws InputError where nothing can be made at `path`, which the option -o names: a part of it is too long or is a file, or the
-/// nearest directory above it may not be written to; where it or one above it is a link to what is not there; or where a pipe is
-/// there, which would wait for a reader.
+/// Throws InputError where nothing can be made at `path`, which the option -o names: a part of it is too long or is a file; where it
+/// or one above it is a link to what is not there; or where a pipe is there, which would wait for a reader. Throws ResourceError
+/// where the nearest directory above it may not be written to or is on a read-only file system.
 void require_possible_output(const std::string& path);
 
 /// Throws InputError where what is to be the directory of the results is a file, or it or one above it a link to what is not there.
