@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -60,10 +62,23 @@ std::string without_its_name(const std::string& message) {
     return message.starts_with('[') && end != std::string::npos ? message.substr(end + 2) : message;
 }
 
+/// JSON of objects that have each key once: of two values the parser would keep the last one.
+json parse_with_single_keys(const std::string& text, const std::filesystem::path& file) {
+    std::vector<std::set<std::string>> keys; // of the objects that are open
+    return json::parse(text, [&](int /*depth*/, json::parse_event_t event, json& parsed) {
+        if (event == json::parse_event_t::object_start) keys.emplace_back();
+        if (event == json::parse_event_t::object_end) keys.pop_back();
+        if (event == json::parse_event_t::key && !keys.back().insert(parsed.get<std::string>()).second)
+            throw InputError(fmt::format("{}: expected each key of an object once, found {} twice", file.string(),
+                                         quoted(parsed.get<std::string>())));
+        return true;
+    });
+}
+
 json parse_file(const std::filesystem::path& file) {
     const std::string text = read_input_file(file, "a GeoJSON file", largest_file);
     try {
-        return json::parse(text);
+        return parse_with_single_keys(text, file);
     } catch (const json::exception& error) {
         if (!names_geojson(file)) refuse_format(file);
         throw InputError(

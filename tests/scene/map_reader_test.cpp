@@ -74,6 +74,17 @@ TEST_F(GeoJson, ListsInListsToAnyDepthAreRefusedInFewWords) {
     }
 }
 
+TEST_F(GeoJson, AKeyThatAnObjectHasTwiceIsRefused) {
+    const std::string twice =
+        R"({"type": "LineString", "coordinates": [[0, 0], [1, 2]], "coordinates": [[0, 0], [3, 4]]})";
+    for (const std::string& text : {twice, feature(twice), collection(feature(line) + ", " + feature(twice))}) {
+        const auto file = written(text);
+        EXPECT_EQ(message_of([&] { return read_map_traces({.file = file}); }),
+                  file.string() + ": expected each key of an object once, found 'coordinates' twice");
+    }
+    EXPECT_EQ(read_map_traces({.file = written(collection(feature(line) + ", " + feature(line)))}).traces.size(), 2U);
+}
+
 TEST_F(GeoJson, ADirectoryIsNoFile) {
     const std::filesystem::path directory = testing::TempDir();
     EXPECT_NE(message_of([&] { return read_map_area({.file = directory}); }).find("found a directory"),
