@@ -22,6 +22,7 @@
 #include "kluft/core/version.hpp"
 #include "kluft/maps/gdal.hpp"
 #include "kluft/output/blocks_picture.hpp"
+#include "kluft/scene/scene_text.hpp"
 #include "manual.hpp"
 #include "standard_output.hpp"
 #include "stop_request.hpp"
@@ -121,8 +122,12 @@ int say_help(const CLI::App& app, const CLI::Success& help) {
     return finished(ExitCode::done);
 }
 
-/// An empty name, as of a shell variable that is not set, is a mistake and not the default.
-std::string flaw_of_name(const std::string& name) { return name.empty() ? "expected a name, found none" : ""; }
+/// An empty name, as of a shell variable that is not set, is a mistake and not the default. Tables, pages and scripts that name the
+/// results are UTF-8.
+std::string flaw_of_name(const std::string& name) {
+    if (name.empty()) return "expected a name, found none";
+    return kluft::is_utf8(name) ? "" : "expected a name in UTF-8, found one with other bytes";
+}
 
 void add_run_command(CLI::App& app, Command& command) {
     auto arguments = std::make_shared<kluft::RunArguments>();

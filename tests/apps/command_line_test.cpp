@@ -1983,6 +1983,17 @@ TEST_F(CommandLine, AnEmptyNameOfTheResultsIsNotTheDefault) {
         expect_refused({command, "a", "b", "-o", ""}, HasSubstr("--output: expected a name, found none"));
 }
 
+// 0xFC is the letter u with two dots in Latin 1, and nothing in UTF-8.
+TEST_F(CommandLine, NameOfTheResultsThatIsNoUtf8IsRefused) {
+    write("tiny.yaml", tiny_scene);
+    for (const Words& words : {Words{"run", "tiny.yaml", "-o"}, Words{"study", "step-size", "tiny.yaml", "-o"},
+                               Words{"draw", "tiny.yaml", "-o"}})
+        expect_refused(with(words, {"S\xFC"
+                                    "d.png"}),
+                       HasSubstr("expected a name in UTF-8, found one with other bytes"));
+    EXPECT_EQ(kluft({"draw", "tiny.yaml", "-o", "S\u00FCd.png"}).code, 0);
+}
+
 TEST_F(CommandLine, EnvelopeRefusesBadTables) {
     write("good.csv", "sigma_3,sigma_1\n0,1e6\n1e6,5e6\n");
     write("bad.csv", "sigma_3,sigma_1\n0,1e6\n1e6,high\n");
