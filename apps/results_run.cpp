@@ -13,6 +13,7 @@
 #include "kluft/output/history_table.hpp"
 #include "kluft/output/kept_states.hpp"
 #include "kluft/output/summary.hpp"
+#include "kluft/report/run_of_results.hpp"
 #include "kluft/scene/quantity.hpp"
 #include "kluft/studies/finished_run.hpp"
 #include "standard_output.hpp"
@@ -36,7 +37,10 @@ RunCurve read_curve(const fs::path& directory, const std::string& label) {
     RunCurve curve;
     curve.label = label;
     curve.history = read_history(directory / "history.csv");
-    if (curve.history.empty()) throw InputError((directory / "history.csv").string() + ": no load step in it yet");
+    if (curve.history.empty()) {
+        require_saved_state(directory);
+        throw InputError((directory / "history.csv").string() + ": no load step in it yet");
+    }
     if (fs::exists(directory / "equilibria.csv")) curve.equilibria = read_history(directory / "equilibria.csv");
     curve.platen_stage = heading_of(directory).platen_stage;
     return curve;
@@ -68,8 +72,10 @@ int peak_step(const fs::path& directory) {
 
 int step_asked_for(const std::string& text, const fs::path& directory) {
     const std::vector<int> steps = kept_steps(directory);
-    if (steps.empty())
+    if (steps.empty()) {
+        require_saved_state(directory);
         throw InputError(directory.string() + ": expected fields of a load step, found none (output.fields: true)");
+    }
     if (text.empty() || text == "last") return steps.back();
     if (text == "peak") {
         const int peak = peak_step(directory);

@@ -10,12 +10,18 @@
 
 namespace kluft {
 
-RunOfResults run_of_results(const std::filesystem::path& directory) {
-    const std::filesystem::path saved = directory / "state.h5";
-    if (!std::filesystem::exists(saved))
+void require_saved_state(const std::filesystem::path& directory) {
+    if (std::filesystem::exists(directory / "state.h5")) return;
+    if (std::filesystem::exists(directory / "history.csv"))
         throw InputError(directory.string() +
-                         ": expected a directory of results, found no state.h5 in it, which has the scene as "
-                         "run");
+                         ": expected a run that has saved a state, found one that has saved none yet (no state.h5)");
+    throw InputError(directory.string() +
+                     ": expected a directory of results, found no state.h5 in it, which has the scene as run");
+}
+
+RunOfResults run_of_results(const std::filesystem::path& directory) {
+    require_saved_state(directory);
+    const std::filesystem::path saved = directory / "state.h5";
     RunOfResults run;
     run.scene = read_scene_text(read_state_scene(saved), {}, saved);
     if (const std::string difference = difference_from_scene_file(directory, run.scene); !difference.empty())

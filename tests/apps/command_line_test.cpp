@@ -1825,6 +1825,22 @@ TEST_F(CommandLine, DrawRefusesWhatItCannotDraw) {
     EXPECT_FALSE(fs::exists(path("tiny.gif")));
 }
 
+// A run that was killed before its first state leaves its scene and tables without rows.
+TEST_F(CommandLine, RunThatHasSavedNoStateYetIsSaidToBeOne) {
+    write("tiny.yaml", tiny_scene);
+    ASSERT_EQ(kluft({"run", "tiny.yaml", "-o", "r", "--quiet", "--set", "output.pictures=false"}).code, 0);
+    fs::create_directory(path("killed"));
+    fs::copy(path("r/scene.yaml"), path("killed/scene.yaml"));
+    write("killed/history.csv", lines_of(content_of(path("r/history.csv"))).front() + "\n");
+    for (const Words& words :
+         {Words{"draw", "killed", "--step", "last"}, Words{"draw", "killed", "--blocks"}, Words{"draw", "killed"},
+          Words{"report", "killed"}, Words{"export", "killed", "-o", "x.geojson"}}) {
+        if (words[0] == "export" && !gdal_problem().empty()) continue;
+        expect_refused(words,
+                       StartsWith("killed: expected a run that has saved a state, found one that has saved none yet"));
+    }
+}
+
 TEST_F(CommandLine, DrawNamesTheOptionThatDoesNotFitThePicture) {
     write("tiny.yaml", tiny_scene);
     ASSERT_EQ(kluft({"run", "tiny.yaml", "-o", "r", "--quiet", "--set", "output.pictures=false"}).code, 0);

@@ -8,6 +8,9 @@
 
 namespace kluft {
 
+/// Throws InputError where there is no saved state in a directory of results: of a run that has saved none yet, or of none.
+void require_saved_state(const std::filesystem::path& directory);
+
 /// The scene and the body of a run.
 struct RunOfResults {
     Scene scene;
