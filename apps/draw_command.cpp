@@ -84,7 +84,8 @@ PlottedReference reference_of(const std::string& mark, const std::vector<std::st
 double limit_of(const std::string& text) {
     const QuantityReading reading = read_quantity(text, Measure::stress);
     if (!reading.value || !(*reading.value > 0.0)) {
-        throw InputError(fmt::format("--limit: expected a stress above 0 as in '5 MPa', found '{}'", text));
+        throw InputError(
+            fmt::format("--limit: expected a stress above 0 as in '5 MPa', found '{}'{}", text, reading.problem));
     }
     return *reading.value / mega;
 }

@@ -56,7 +56,7 @@ void check_finite(const std::vector<Vec2>& points, const std::string& what) {
 
 void check_polygon(const Polygon& polygon, const std::string& what) {
     if (polygon.size() < 3) {
-        throw InputError(fmt::format("{}: expected a polygon of at least 3 points, got {}", what, polygon.size()));
+        throw InputError(fmt::format("{}: expected a polygon of at least 3 points, found {}", what, polygon.size()));
     }
     check_finite(polygon, what);
 }
@@ -69,7 +69,7 @@ std::vector<int> boundary_of_sides(const GeometrySpec& spec) {
         const BoundarySides& named = spec.boundaries[k];
         for (const int side : named.sides) {
             if (side < 0 || side >= n_sides) {
-                throw InputError(fmt::format("boundaries.{}: the domain and its holes have sides 0 to {}, got {}",
+                throw InputError(fmt::format("boundaries.{}: the domain and its holes have sides 0 to {}, found {}",
                                              named.name, n_sides - 1, side));
             }
             if (boundary[side] >= 0 && boundary[side] != k) {
@@ -94,7 +94,7 @@ void check_spec(const GeometrySpec& spec) {
                         trace.name.empty() ? "" : fmt::format(" ({})", trace.name));
         if (trace.points.size() < 2) {
             throw InputError(
-                fmt::format("{}: expected a trace of at least 2 points, got {}", what, trace.points.size()));
+                fmt::format("{}: expected a trace of at least 2 points, found {}", what, trace.points.size()));
         }
         check_finite(trace.points, what);
     }
@@ -106,10 +106,11 @@ void check_spec(const GeometrySpec& spec) {
     }
     if (!(minimum_area_share(spec) >= 0.0 && minimum_area_share(spec) < 1.0)) {
         throw InputError(
-            fmt::format("geometry.minimum_area: expected a fraction 0 <= f < 1, got {}", minimum_area_share(spec)));
+            fmt::format("geometry.minimum_area: expected a fraction 0 <= f < 1, found {}", minimum_area_share(spec)));
     }
     if (!(spec.reference_spacing >= 0.0) || !std::isfinite(spec.reference_spacing)) {
-        throw InputError(fmt::format("geometry.reference_spacing: expected a length, got {}", spec.reference_spacing));
+        throw InputError(
+            fmt::format("geometry.reference_spacing: expected a length, found {}", spec.reference_spacing));
     }
 }
 

@@ -84,12 +84,12 @@ bool boxes_meet(const Box& box, const Vec2& a, const Vec2& b) {
 
 void check(const HexagonLattice& lattice) {
     if (!(lattice.spacing > 0.0) || !std::isfinite(lattice.spacing)) {
-        throw InputError(
-            fmt::format("geometry.tessellation.hexagons.spacing: expected a length above 0, got {}", lattice.spacing));
+        throw InputError(fmt::format("geometry.tessellation.hexagons.spacing: expected a length above 0, found {}",
+                                     lattice.spacing));
     }
     if (!(lattice.jitter >= 0.0 && lattice.jitter < 0.25)) {
-        throw InputError(
-            fmt::format("geometry.tessellation.hexagons.jitter: expected 0 <= jitter < 0.25, got {}", lattice.jitter));
+        throw InputError(fmt::format("geometry.tessellation.hexagons.jitter: expected 0 <= jitter < 0.25, found {}",
+                                     lattice.jitter));
     }
     if (!std::isfinite(lattice.rotation) || !lattice.offset.allFinite()) {
         throw InputError("geometry.tessellation.hexagons: rotation and offset must be finite numbers");
@@ -97,7 +97,7 @@ void check(const HexagonLattice& lattice) {
     constexpr double farthest = 1e9;
     if (lattice.offset.cwiseAbs().maxCoeff() > farthest * lattice.spacing) {
         throw InputError(
-            fmt::format("geometry.tessellation.hexagons.offset: expected at most {:.0g} spacings, got ({}, "
+            fmt::format("geometry.tessellation.hexagons.offset: expected at most {:.0g} spacings, found ({}, "
                         "{}) m",
                         farthest, lattice.offset.x(), lattice.offset.y()));
     }

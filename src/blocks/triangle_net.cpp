@@ -476,19 +476,20 @@ void refuse(const char* key, const std::string& message) {
 
 void check_length(const char* key, double length) {
     if (!(length > 0.0) || !std::isfinite(length))
-        refuse(key, fmt::format("expected a length above 0, got {}", length));
+        refuse(key, fmt::format("expected a length above 0, found {}", length));
 }
 
 void check_net(const TriangleNet& net) {
     check_length("spacing", net.spacing);
     if (net.relaxation < 0 || net.relaxation > most_triangle_relaxation)
-        refuse("relaxation", fmt::format("expected 0 to {} passes, got {}", most_triangle_relaxation, net.relaxation));
+        refuse("relaxation",
+               fmt::format("expected 0 to {} passes, found {}", most_triangle_relaxation, net.relaxation));
     const TriangleGrading& grading = net.grading;
     if (grading.fractures != 0.0) check_length("grading.fractures", grading.fractures);
     if (grading.openings != 0.0) check_length("grading.openings", grading.openings);
     if (!grading.region.empty()) check_length("grading.region_spacing", grading.region_spacing);
     if (!(grading.growth > 0.0) || !std::isfinite(grading.growth))
-        refuse("grading.growth", fmt::format("expected a number above 0, got {}", grading.growth));
+        refuse("grading.growth", fmt::format("expected a number above 0, found {}", grading.growth));
 }
 
 std::vector<SegmentGrid::Segment> sides_of(const Polygon& polygon) {

@@ -168,11 +168,11 @@ void check(const VoronoiCells& cells, const Box& box) {
     constexpr double most_in_a_row = 6e4;
     constexpr double most_in_box = 5.0 * most_cells; // of which the body may fill a part
     const double d = cells.spacing;
-    if (!(d > 0.0) || !std::isfinite(d)) refuse("spacing", fmt::format("expected a length above 0, got {}", d));
+    if (!(d > 0.0) || !std::isfinite(d)) refuse("spacing", fmt::format("expected a length above 0, found {}", d));
     if (cells.relaxation < 0 || cells.relaxation > most_relaxation)
-        refuse("relaxation", fmt::format("expected 0 to {} passes, got {}", most_relaxation, cells.relaxation));
+        refuse("relaxation", fmt::format("expected 0 to {} passes, found {}", most_relaxation, cells.relaxation));
     if (!cells.offset.allFinite() || cells.offset.cwiseAbs().maxCoeff() > farthest * d)
-        refuse("offset", fmt::format("expected at most {:.0g} spacings, got ({}, {}) m", farthest, cells.offset.x(),
+        refuse("offset", fmt::format("expected at most {:.0g} spacings, found ({}, {}) m", farthest, cells.offset.x(),
                                      cells.offset.y()));
     const Vec2 n = (box.upper - box.lower) / side_of_squares(d);
     if (n.maxCoeff() > most_in_a_row || n.prod() > most_in_box)

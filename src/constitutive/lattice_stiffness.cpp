@@ -14,9 +14,9 @@ namespace {
 
 void require_elastic(double youngs_modulus, double poissons_ratio) {
     if (!(youngs_modulus > 0.0) || !std::isfinite(youngs_modulus))
-        throw InputError(fmt::format("youngs_modulus: expected a value in Pa > 0, got {:g}", youngs_modulus));
+        throw InputError(fmt::format("youngs_modulus: expected a value in Pa > 0, found {:g}", youngs_modulus));
     if (!(poissons_ratio > -1.0 && poissons_ratio < 0.5))
-        throw InputError(fmt::format("poissons_ratio: expected a value > -1 and < 0.5, got {:g}", poissons_ratio));
+        throw InputError(fmt::format("poissons_ratio: expected a value > -1 and < 0.5, found {:g}", poissons_ratio));
 }
 
 double bulk_modulus(const ElasticModuli& moduli) { return moduli.lambda + moduli.mu; }
@@ -73,12 +73,12 @@ void require_one_way(const InterfaceType& type) {
         int(given_in_pascal_per_metre(type)) + int(given_times_spacing(type)) + int(type.stiffness_ratio.has_value());
     if (ways > 1)
         reject(type,
-               "expected one of normal_stiffness, normal_stiffness_times_spacing and stiffness_ratio, got several");
+               "expected one of normal_stiffness, normal_stiffness_times_spacing and stiffness_ratio, found several");
     if (type.shear_stiffness && !type.normal_stiffness) reject(type, "shear_stiffness needs normal_stiffness");
     if (type.shear_stiffness_times_spacing && !type.normal_stiffness_times_spacing)
         reject(type, "shear_stiffness_times_spacing needs normal_stiffness_times_spacing");
     if (type.shear_ratio && (type.shear_stiffness || type.shear_stiffness_times_spacing))
-        reject(type, "expected a shear stiffness or shear_ratio, got both");
+        reject(type, "expected a shear stiffness or shear_ratio, found both");
 }
 
 double required_spacing(const InterfaceType& type, double spacing) {
@@ -201,7 +201,7 @@ double smallest_stiffness_ratio(double poissons_ratio_of_rock, Plane plane, doub
 ElasticModuli block_moduli(double youngs_modulus_of_rock, double poissons_ratio_of_rock, Plane plane,
                            double stiffness_ratio, double shear_ratio, const Net& net) {
     if (!(shear_ratio >= 0.0) || (shear_ratio == 0.0 && net.kind == NetKind::triangles))
-        throw InputError(fmt::format("shear_ratio: expected a value {} 0, got {:g}",
+        throw InputError(fmt::format("shear_ratio: expected a value {} 0, found {:g}",
                                      net.kind == NetKind::triangles ? ">" : ">=", shear_ratio));
     const ElasticModuli rock = plane_moduli(youngs_modulus_of_rock, poissons_ratio_of_rock, plane);
     const double smallest = smallest_stiffness_ratio(poissons_ratio_of_rock, plane, shear_ratio, net);
@@ -226,9 +226,9 @@ InterfaceStiffness resolve_stiffness(const InterfaceType& type, const Net& net, 
     const double normal = normal_stiffness(type, net, youngs_modulus_of_rock);
     const double shear = shear_stiffness(type, net.spacing, normal);
     if (!(normal > 0.0) || !std::isfinite(normal))
-        reject(type, fmt::format("expected a normal stiffness in Pa/m > 0, got {:g}", normal));
+        reject(type, fmt::format("expected a normal stiffness in Pa/m > 0, found {:g}", normal));
     if (!(shear >= 0.0) || !std::isfinite(shear))
-        reject(type, fmt::format("expected a shear stiffness in Pa/m >= 0, got {:g}", shear));
+        reject(type, fmt::format("expected a shear stiffness in Pa/m >= 0, found {:g}", shear));
     return {.normal = normal, .shear = shear};
 }
 

@@ -138,10 +138,10 @@ const json& coordinates_of(const json& geometry, const Place& place) {
 Vec2 point_of(const json& position, const Place& place) {
     const bool sound =
         position.is_array() && position.size() >= 2 && position[0].is_number() && position[1].is_number();
-    if (!sound) place.fail(fmt::format("expected a position [x, y], got {}", text_of(position)));
+    if (!sound) place.fail(fmt::format("expected a position [x, y], found {}", text_of(position)));
     const Vec2 point(position[0].get<double>(), position[1].get<double>());
     if (!(point.lpNorm<Eigen::Infinity>() <= farthest_position))
-        place.fail(fmt::format("expected a position within {:g} m, got {}", farthest_position, text_of(position)));
+        place.fail(fmt::format("expected a position within {:g} m, found {}", farthest_position, text_of(position)));
     return point;
 }
 

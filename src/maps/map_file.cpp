@@ -134,7 +134,7 @@ std::vector<Vec2> path_of(OGRGeometryH geometry) {
     for (std::size_t i = 0; i < x.size(); ++i) {
         path.emplace_back(x[i], y[i]);
         if (!(path.back().lpNorm<Eigen::Infinity>() <= farthest_position))
-            throw InputError(fmt::format("expected a position within {:g} m or degrees, got [{:g}, {:g}]",
+            throw InputError(fmt::format("expected a position within {:g} m or degrees, found [{:g}, {:g}]",
                                          farthest_position, x[i], y[i]));
     }
     return path;

@@ -232,12 +232,12 @@ MappedArea read_map_area(const MapRequest& request) {
         const MapPlace place{request.file.string(), feature.id};
         if (feature.type.empty()) continue;
         if (feature.type != "Polygon" && feature.type != "MultiPolygon")
-            place.fail(fmt::format("expected a Polygon, got {}", in_quotes(feature.type)));
+            place.fail(fmt::format("expected a Polygon, found {}", in_quotes(feature.type)));
         for (const auto& rings : feature.polygons) areas.push_back(area_of_rings(rings, place));
     }
     if (areas.size() != 1)
         throw InputError(
-            fmt::format("{}: expected one polygon, the domain, got {}", request.file.string(), areas.size()));
+            fmt::format("{}: expected one polygon, the domain, found {}", request.file.string(), areas.size()));
     areas.front().crs = coordinates.crs;
     areas.front().remark = coordinates.remark;
     return std::move(areas.front());
@@ -251,7 +251,7 @@ MappedTraces read_map_traces(const MapRequest& request) {
         const MapPlace place{request.file.string(), feature.id};
         if (feature.type.empty()) continue;
         if (feature.type != "LineString" && feature.type != "MultiLineString")
-            place.fail(fmt::format("expected a LineString or a MultiLineString, got {}", in_quotes(feature.type)));
+            place.fail(fmt::format("expected a LineString or a MultiLineString, found {}", in_quotes(feature.type)));
         std::optional<std::string> value;
         if (field && !std::holds_alternative<std::monostate>(feature.values[*field]))
             value = map_value_text(feature.values[*field]);

@@ -1853,6 +1853,7 @@ TEST_F(CommandLine, DrawNamesTheOptionThatDoesNotFitThePicture) {
     expect_refused({"draw", "r", "--limit", "5 MPa", "--step", "last"}, HasSubstr("found one of a curve"));
     expect_refused({"draw", "tiny.yaml", "--limit", "5 MPa"}, HasSubstr("expected a directory of results"));
     expect_refused({"draw", "r", "--limit", "0", "--curve"}, HasSubstr("--limit: expected a stress above 0"));
+    expect_refused({"draw", "r", "--limit", "5 m", "--curve"}, HasSubstr("found '5 m', which is in m\n"));
     expect_refused({"draw", "r", "--mark", "nope:x=1 MPa", "--curve"},
                    AllOf(StartsWith("--mark 'nope:x=1 MPa': "), HasSubstr("found 'nope' where the runs are r")));
     for (const char* mark : {"r:x=1 MPa", "test 3: peak=1 MPa"})

@@ -251,7 +251,7 @@ TEST(ResolveStiffness, RejectsWhatIsMissingOrContradictory) {
     EXPECT_THAT(error({.normal_stiffness = 1e9, .stiffness_ratio = 10.0}, 0.05, 1e9), testing::HasSubstr("several"));
     EXPECT_THAT(error({.shear_stiffness = 1e9}, 0.05, 1e9), testing::HasSubstr("needs normal_stiffness"));
     EXPECT_THAT(error({.normal_stiffness = 1e9, .shear_stiffness = 1e9, .shear_ratio = 0.5}, 0.05, 1e9),
-                testing::HasSubstr("got both"));
+                testing::HasSubstr("found both"));
     EXPECT_THAT(error({.normal_stiffness = 0.0}, 0.05, 1e9), testing::HasSubstr("> 0"));
     EXPECT_THAT(error({.normal_stiffness = 1e9, .shear_stiffness = -1.0}, 0.05, 1e9), testing::HasSubstr(">= 0"));
 }

@@ -69,7 +69,7 @@ TEST_F(GeoJson, ListsInListsToAnyDepthAreRefusedInFewWords) {
     for (const std::string& position : {deep, "[" + deep + ", 1]", "[1, {\"a\": " + deep + "}]"}) {
         const auto file = written(R"({"type": "LineString", "coordinates": [)" + position + "]}");
         const std::string message = message_of([&] { return read_map_traces({.file = file}); });
-        EXPECT_NE(message.find("expected a position [x, y], got a list of "), std::string::npos);
+        EXPECT_NE(message.find("expected a position [x, y], found a list of "), std::string::npos);
         EXPECT_LT(message.size(), 500U);
     }
 }
@@ -161,8 +161,8 @@ TEST_F(GeoJson, ErrorsNameTheFileAndTheFeature) {
               std::string::npos);
     EXPECT_NE(in_traces(R"({"type": "LineString", "coordinates": [[0, 0], [1e999, 0]]})"), "accepted");
     EXPECT_NE(in_area(collection(feature(line))).find("feature 0: expected a Polygon"), std::string::npos);
-    EXPECT_NE(in_area(collection(feature(polygon) + "," + feature(polygon))).find("got 2"), std::string::npos);
-    EXPECT_NE(in_area(collection("")).find("got 0"), std::string::npos);
+    EXPECT_NE(in_area(collection(feature(polygon) + "," + feature(polygon))).find("found 2"), std::string::npos);
+    EXPECT_NE(in_area(collection("")).find("found 0"), std::string::npos);
     EXPECT_NE(in_area(R"({"type": "Polygon", "coordinates": [[[0, 0], [1, 0], [1, 1], [0, 1]]]})").find("does not end"),
               std::string::npos);
     EXPECT_NE(in_area(R"({"type": "Polygon", "coordinates": [[[0, 0], [1, 0], [0, 0]]]})").find("three different"),
