@@ -88,7 +88,7 @@ double product(const Mat4& matrix, const Eigen::VectorXd& a, const Eigen::Vector
 Eigen::VectorXd by_properties(const Model& model, const std::vector<Bond>& bonds, const Eigen::VectorXd& a,
                               const Eigen::VectorXd& b) {
     const auto n_laws = static_cast<Eigen::Index>(model.laws.size());
-    Eigen::VectorXd result = Eigen::VectorXd::Zero(2 * n_laws + 2 * static_cast<Eigen::Index>(model.moduli.size()));
+    Eigen::VectorXd result = Eigen::VectorXd::Zero(2 * n_laws + 2 * static_cast<Eigen::Index>(model.moduli.size()) + 1);
     for (const Bond& bond : bonds) {
         for (int k = 0; k < n_bond_points; ++k) {
             const Vec2 of_a = relative_displacement(bond, k, a);
@@ -118,6 +118,7 @@ void set_properties(const Eigen::VectorXd& properties, Model& model) {
         moduli.lambda = properties[next++];
         moduli.mu = properties[next++];
     }
+    if (model.compliance_across) model.compliance_across = properties[next];
 }
 
 /// The slopes of the test and their derivatives.
@@ -127,6 +128,23 @@ struct Slopes {
     Eigen::VectorXd axial_gradient;
     Eigen::VectorXd lateral_gradient;
 };
+
+/// docs/theory.md, (41a).
+ElasticResponse constants_with_fractures(const Slopes& slopes, double compliance_across) {
+    ElasticResponse body;
+    const double lateral = slopes.lateral / slopes.axial; // compliance
+    body.youngs_modulus = 1.0 / (1.0 / slopes.axial + compliance_across);
+    body.poissons_ratio = (lateral - compliance_across) * body.youngs_modulus;
+    const Eigen::Index n = slopes.axial_gradient.size();
+    Eigen::VectorXd compliance_gradient = -slopes.axial_gradient / (slopes.axial * slopes.axial);
+    Eigen::VectorXd lateral_gradient = slopes.lateral_gradient / slopes.axial + slopes.lateral * compliance_gradient;
+    compliance_gradient[n - 1] += 1.0; // the last property is the compliance across
+    lateral_gradient[n - 1] -= 1.0;
+    body.modulus_gradient = -body.youngs_modulus * body.youngs_modulus * compliance_gradient;
+    body.ratio_gradient =
+        body.youngs_modulus * lateral_gradient + (lateral - compliance_across) * body.modulus_gradient;
+    return body;
+}
 
 ElasticResponse rock_constants(const Slopes& slopes, Plane plane) {
     if (plane == Plane::stress) return {slopes.axial, slopes.lateral, slopes.axial_gradient, slopes.lateral_gradient};
@@ -144,7 +162,7 @@ ElasticResponse rock_constants(const Slopes& slopes, Plane plane) {
 } // namespace
 
 Eigen::VectorXd elastic_properties(const Model& model) {
-    Eigen::VectorXd properties(static_cast<Eigen::Index>(2 * (model.laws.size() + model.moduli.size())));
+    Eigen::VectorXd properties(static_cast<Eigen::Index>(2 * (model.laws.size() + model.moduli.size()) + 1));
     Eigen::Index next = 0;
     for (const InterfaceLaw& law : model.laws) {
         properties[next++] = law.normal_stiffness;
@@ -154,6 +172,7 @@ Eigen::VectorXd elastic_properties(const Model& model) {
         properties[next++] = moduli.lambda;
         properties[next++] = moduli.mu;
     }
+    properties[next] = model.compliance_across.value_or(0.0);
     return properties;
 }
 
@@ -254,7 +273,9 @@ ElasticBody::~ElasticBody() = default;
 
 ElasticResponse ElasticBody::response(const Eigen::VectorXd& properties) {
     set_properties(properties, specimen_->model);
-    return rock_constants(specimen_->slopes(), specimen_->model.plane);
+    const Slopes slopes = specimen_->slopes();
+    const auto& across = specimen_->model.compliance_across;
+    return across ? constants_with_fractures(slopes, *across) : rock_constants(slopes, specimen_->model.plane);
 }
 
 } // namespace kluft

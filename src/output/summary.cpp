@@ -249,6 +249,8 @@ bool is_flat(const std::vector<std::pair<double, double>>& curve) {
     return largest - least <= flat_rise * std::max(std::abs(least), std::abs(largest));
 }
 
+bool is_ratio_of_rock(double nu) { return nu >= -ratio_slack && nu <= 0.5 + ratio_slack; }
+
 void add_elastic_constants(const Rows& equilibria, const Rows& history, int platen_stage, Plane plane,
                            CurveNumbers& numbers) {
     const Rows balanced = balanced_rows(platen_rows(history, platen_stage));
@@ -270,7 +272,7 @@ void add_elastic_constants(const Rows& equilibria, const Rows& history, int plat
     const double ratio = *numbers.lateral_ratio;
     const double nu = plane == Plane::strain ? ratio / (1.0 + ratio) : ratio;
     const double modulus = plane == Plane::strain ? *numbers.axial_modulus * (1.0 - nu * nu) : *numbers.axial_modulus;
-    if (!(nu >= -ratio_slack && nu <= 0.5 + ratio_slack) || !std::isfinite(modulus)) return;
+    if (!is_ratio_of_rock(nu) || !std::isfinite(modulus)) return;
     numbers.youngs_modulus = modulus;
     numbers.poissons_ratio = nu;
 }
@@ -502,6 +504,16 @@ void clear_round_off(double modulus, CurveNumbers& numbers) {
     for (std::optional<double>* const constant :
          {&numbers.axial_modulus, &numbers.lateral_ratio, &numbers.youngs_modulus, &numbers.poissons_ratio})
         constant->reset();
+}
+
+void read_with_fractures(double compliance_across, CurveNumbers& numbers) {
+    clear_elastic_constants(numbers);
+    if (!numbers.axial_modulus || !numbers.lateral_ratio) return;
+    const double modulus = 1.0 / (1.0 / *numbers.axial_modulus + compliance_across); // (41a)
+    const double nu = (*numbers.lateral_ratio / *numbers.axial_modulus - compliance_across) * modulus;
+    if (!(modulus > 0.0) || !std::isfinite(modulus)) return;
+    numbers.youngs_modulus = modulus;
+    if (is_ratio_of_rock(nu)) numbers.poissons_ratio = nu;
 }
 
 void clear_elastic_constants(CurveNumbers& numbers) {

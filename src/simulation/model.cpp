@@ -527,6 +527,28 @@ void warn_of_unmeasured_sides(Model& model) {
     }
 }
 
+bool has_fractures_of_scene(const BlockSystem& system) {
+    return std::ranges::any_of(system.interfaces, [](const Interface& each) {
+        return each.origin == EdgeOrigin::fracture || each.origin == EdgeOrigin::given;
+    });
+}
+
+/// docs/theory.md, (41a). Blocks without a deformation of their own, whose net has none of it either, yield in their joints alone.
+std::optional<double> compliance_across(const BlockSystem& system, const ModelInput& input) {
+    if (!has_fractures_of_scene(system)) return std::nullopt;
+    const bool is_undeformable = input.kinematics == Kinematics::rigid && !has_rigid_net(input);
+    if (input.plane == Plane::stress || is_undeformable) return 0.0;
+    double sum = 0.0;
+    double area = 0.0;
+    for (const Block& block : system.blocks) {
+        if (block.fixed) continue;
+        const Material& rock = input.materials[block.material];
+        sum += block.area * rock.poissons_ratio * rock.poissons_ratio / rock.youngs_modulus;
+        area += block.area;
+    }
+    return area > 0.0 ? sum / area : 0.0;
+}
+
 } // namespace
 
 Model build_model(BlockSystem system, const ModelInput& input) {
@@ -544,6 +566,7 @@ Model build_model(BlockSystem system, const ModelInput& input) {
     require_resistance(system, model.gravity, model.loads);
     const double boundary_stress = largest_boundary_stress(system, input, model.force_points);
     model.net = net_of_body(system, input);
+    model.compliance_across = compliance_across(system, input);
     const LawBench bench{.system = system,
                          .input = input,
                          .boundary_stress = boundary_stress,

@@ -75,6 +75,7 @@ RunWriterOptions run_writer_options(const Scene& scene, const Model& model) {
     const int platen_stage = make_gauges(model).first_platen_stage;
     if (platen_stage >= 0) options.platen_stage = platen_stage;
     options.plane = scene.plane;
+    options.compliance_across = model.compliance_across;
     options.modulus = largest_modulus(scene.materials);
     options.has_elastic_constants = has_elastic_constants(model);
     options.elastic_constants_warning = elastic_constants_warning(model);

@@ -1,6 +1,10 @@
 // E and nu of a body: the closed form of the lattice, the run of the same body, derivatives against differences.
 #include "kluft/calibration/elastic_body.hpp"
 
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "calibration/calibration_scenes.hpp"
@@ -68,11 +72,50 @@ TEST(ElasticBody, AgreesWithARunOfTheSameBodyAtSmallStrain) {
             run_scene(scene, {"stages.1.strain.value=1e-7", "stages.1.steps=4", "interfaces.joint.friction_angle=89.9",
                               "solver.tolerance=1e-10", "interfaces.joint.contact_rounding=1e-6",
                               "stages.0.pressure.left=100 Pa", "stages.0.pressure.right=100 Pa"});
-        const CurveNumbers numbers = curve_numbers(run.equilibria, run.history, 1, Plane::strain);
+        CurveNumbers numbers = curve_numbers(run.equilibria, run.history, 1, Plane::strain);
+        read_with_fractures(run.model.compliance_across.value_or(0.0), numbers);
         const ElasticResponse found = response_of(run.model);
         ASSERT_TRUE(numbers.youngs_modulus) << net;
         EXPECT_NEAR(found.youngs_modulus / *numbers.youngs_modulus, 1.0, 1e-4) << net;
         EXPECT_NEAR(found.poissons_ratio, *numbers.poissons_ratio, 1e-4) << net;
+    }
+}
+
+// A joint at an angle b to the platens, from side to side, carries sigma cos^2 b across and sigma sin b cos b along itself. It moves what
+// lies above it down by u = sigma cos b (cos^2 b/k_n + sin^2 b/k_s) and aside by w = sigma sin b cos^2 b (1/k_s - 1/k_n), and the mean
+// places of the sides apart by the share tan b W/H of w. Over the length H and the width W that adds to 1/E and nu/E of the rock.
+TEST(ElasticBody, OneJointFromSideToSideAddsItsOwnComplianceInEitherPlane) {
+    for (const double angle : {30.0, 50.0, 60.0}) {
+        const double b = angle * std::numbers::pi / 180.0, c = std::cos(b), s = std::sin(b), rise = std::tan(b);
+        const double axial = 1.0 / 10e9 + c * (c * c / 100e9 + s * s / 10e9) / 0.2;
+        const double lateral = 0.25 / 10e9 + s * c * c * (1.0 / 10e9 - 1.0 / 100e9) / 0.1 * (rise * 0.1 / 0.2);
+        for (const std::string plane : {"strain", "stress"}) {
+            const SceneRun run = run_scene(fmt::format(R"(
+kluft: 1
+analysis: {{plane: {}}}
+materials:
+  rock: {{density: 2500, youngs_modulus: 10 GPa, poissons_ratio: 0.25}}
+interfaces:
+  joint: {{kind: fracture, normal_stiffness: 100 GPa/m, shear_stiffness: 10 GPa/m, friction_angle: 30, cohesion: 5 MPa}}
+geometry:
+  domain: {{rectangle: {{width: 0.1, height: 0.2}}}}
+  fractures: [{{trace: [[-0.05, {}], [0.15, {}]], interface: joint}}]
+boundaries:
+  bottom: {{support: pinned}}
+stages: [{{name: axial, strain: {{boundary: top, value: 0.001 %}}, steps: 4}}]
+)",
+                                                       plane, 0.1 - 0.1 * rise, 0.1 + 0.1 * rise));
+            CurveNumbers numbers = curve_numbers(run.equilibria, run.history, 0, run.model.plane);
+            read_with_fractures(run.model.compliance_across.value(), numbers);
+            const ElasticResponse found = response_of(run.model);
+            EXPECT_NEAR(found.youngs_modulus * axial, 1.0, 1e-6) << plane << angle;
+            EXPECT_NEAR(found.poissons_ratio, lateral / axial, 1e-6) << plane << angle;
+            EXPECT_NEAR(numbers.youngs_modulus.value_or(0.0) * axial, 1.0, 1e-3) << plane << angle;
+            if (lateral > 0.5 * axial) // no rock has this ratio
+                EXPECT_FALSE(numbers.poissons_ratio) << plane << angle;
+            else
+                EXPECT_NEAR(numbers.poissons_ratio.value_or(0.0), lateral / axial, 1e-3) << plane << angle;
+        }
     }
 }
 

@@ -62,6 +62,24 @@ TEST(Summary, FindsPeakResidualAndConstantsOfATriangle) {
     EXPECT_EQ(numbers.unbalanced_steps, 0);
 }
 
+// Rock of E = 100 MPa and nu = 0.3, whose slopes in plane strain are E/(1 - nu^2) and nu/(1 - nu), has these constants also when it is read with
+// its own c = nu^2/E (docs/theory.md, (41a)). A ratio of 0.7 is none of a rock, and leaves E.
+TEST(Summary, ReadsRockItselfWithAndWithoutFractures) {
+    const Rows rows = triangle(100e6 / 0.91, 0.3 / 0.7);
+    auto numbers = curve_numbers(rows, rows, 1, Plane::strain);
+    for (const bool with_fractures : {false, true}) {
+        if (with_fractures) read_with_fractures(0.09 / 100e6, numbers);
+        EXPECT_NEAR(*numbers.youngs_modulus, 100e6, 1e-3);
+        EXPECT_NEAR(*numbers.poissons_ratio, 0.3, 1e-12);
+    }
+    const Rows wide = triangle(100e6, 0.7);
+    auto sliding = curve_numbers(wide, wide, 1, Plane::stress);
+    EXPECT_FALSE(sliding.youngs_modulus || sliding.poissons_ratio);
+    read_with_fractures(0.0, sliding);
+    EXPECT_NEAR(sliding.youngs_modulus.value_or(0.0), 100e6, 1e-3);
+    EXPECT_FALSE(sliding.poissons_ratio);
+}
+
 // Pressed by pressures alone: the stress is one that is given, and strains follow from it (docs/files.md).
 TEST(Summary, HasNoPeakWithoutAPlaten) {
     const Rows pulled{row(0, 0, 0, 0, 0, 0), row(1, 0, -1e-4, -0.5e6, 0, 0), row(2, 0, -5e-4, -2.4e6, 0, 0)};

@@ -11,7 +11,7 @@
 namespace kluft {
 
 /// What the elasticity of a body depends on, one after the other: k_n and k_s (Pa/m) of each law, then lambda and mu (Pa) of
-/// each material. Size 2 n_laws + 2 n_materials.
+/// each material, and what Model::compliance_across is (1/Pa), 0 without it. Size 2 n_laws + 2 n_materials + 1.
 [[nodiscard]] Eigen::VectorXd elastic_properties(const Model& model);
 
 /// The rock's constants that a specimen in uniaxial compression shows, and their derivatives by the elastic properties.

@@ -34,9 +34,10 @@ struct RunWriterOptions {
     std::optional<int> resumed_step; ///< load step of the saved state that the run goes on from; none: a new run
     std::optional<int> platen_stage; ///< the first stage that moves a platen
     Plane plane = Plane::strain;
-    double modulus = 0.0;                  ///< Young's, of the stiffest material (Pa)
-    bool has_elastic_constants = true;     ///< else the summary has none
-    std::string elastic_constants_warning; ///< of the summary, where they could be computed
+    std::optional<double> compliance_across; ///< of the model
+    double modulus = 0.0;                    ///< Young's, of the stiffest material (Pa)
+    bool has_elastic_constants = true;       ///< else the summary has none
+    std::string elastic_constants_warning;   ///< of the summary, where they could be computed
     std::vector<std::string> material_names;
     std::vector<std::string> interface_type_names;
     std::vector<std::string> fracture_names;  ///< mapped ones

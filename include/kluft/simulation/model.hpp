@@ -1,6 +1,7 @@
 // The body with its mechanics resolved to numbers: what a run needs and never changes.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,9 @@ struct Model {
     std::vector<MaterialPoint> force_points; ///< where LoadProgram::forces act
     /// E of the body (at least half of E/(1 - nu^2)), or of its softest joint, k_n H, for the mass-like term (Pa).
     double effective_modulus = 0.0;
+    /// By how much more a body with fractures yields under a stress in plane stress than in plane strain, the mean of nu^2/E over its
+    /// blocks (1/Pa); 0 in plane stress. None of a body without fractures that are mapped or lie between given blocks (docs/theory.md, (41a)).
+    std::optional<double> compliance_across;
     std::vector<HistoryGauge> histories;
     bool has_potential_cracks = false;
     std::vector<std::string> warnings;
