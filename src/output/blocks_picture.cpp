@@ -61,6 +61,11 @@ Stroke sample(InterfaceLook look) {
     return stroke_of(look, block_size, 0.4);
 }
 
+bool has_given_blocks(const DrawnBody& body) {
+    return std::ranges::any_of(body.system.interfaces,
+                               [](const Interface& each) { return each.origin == EdgeOrigin::given; });
+}
+
 std::vector<LegendEntry> interface_entries(const DrawnBody& before, const DrawnBody& after) {
     std::vector<LegendEntry> entries;
     const auto add = [&](InterfaceLook look, const char* label) {
@@ -68,7 +73,7 @@ std::vector<LegendEntry> interface_entries(const DrawnBody& before, const DrawnB
     };
     add(InterfaceLook::mapped_fracture, "mapped fracture");
     add(InterfaceLook::mapped_bond, "mapped, still bonded");
-    add(InterfaceLook::joint, "fracture of the net");
+    add(InterfaceLook::joint, has_given_blocks(before) ? "joint" : "fracture of the net");
     add(InterfaceLook::bond, "potential crack");
     if (does(after, Motion::sliding))
         entries.push_back(line_entry("sliding fracture", stroke_of(Motion::sliding, 12.0, 0.3)));

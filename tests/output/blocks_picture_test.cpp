@@ -111,6 +111,16 @@ TEST(BlocksPicture, MarksNoMoreOfWhatMovesOnThanHasRoom) {
     EXPECT_THAT(fine, HasSubstr("arrows that would overlap are left out"));
 }
 
+// Text is drawn as shapes: another label makes another picture.
+TEST(BlocksPicture, NamesJointsOfGivenBlocksOtherwiseThanThoseOfANet) {
+    BlockSystem system = testing::hexagon_grid(6, 10, 0.05);
+    BlocksPlot plot = plot_of("t");
+    plot.bonded_types = {false};
+    const std::string of_net = draw_geometry(system, plot, PictureFormat::svg);
+    for (Interface& each : system.interfaces) each.origin = EdgeOrigin::given;
+    EXPECT_NE(draw_geometry(system, plot, PictureFormat::svg), of_net);
+}
+
 TEST(BlocksPicture, DrawsABlockWithAHole) {
     const BlockSystem system = testing::block_with_hole();
     const auto fields = testing::affine_fields(system, Mat2::Zero(), Mat2::Zero());
