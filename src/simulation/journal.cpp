@@ -42,6 +42,19 @@ std::string remark_on_drop(const Stage& stage, const State& state) {
                        100.0 * *stage.stop_after_drop);
 }
 
+/// Whether a block that moves as a whole leaves all blocks that it met as cut, and what is at rest: nothing rubs on it then.
+bool leaves_all_others(const Model& model, const MovingBlock& moving) {
+    constexpr double along = 1e-3; // cosine: less is a motion along a face
+    const BlockSystem& system = model.system;
+    if (moving.turn != 0 || moving.direction == Vec2::Zero()) return false;
+    return std::ranges::all_of(system.blocks[moving.block].edges, [&](const Edge& edge) {
+        const bool is_held = edge.boundary >= 0 && model.loads.supports[edge.boundary] != Support::none;
+        if (edge.interface < 0 && !is_held) return true;
+        const Vec2 outward = right_normal(edge_end(system, edge) - edge_start(system, edge)).normalized();
+        return outward.dot(moving.direction) < -along;
+    });
+}
+
 /// Of a body that does not stand with the strengths that a reduction begins with. Not where a platen of given travel may have moved it, and
 /// not where its loads are at fault.
 std::string remark_on_first_factor(const Model& model, int stage, const StageEnd& end) {
@@ -56,6 +69,12 @@ std::string remark_on_first_factor(const Model& model, int stage, const StageEnd
         return model.system.blocks[each.block].area < sliver_area(model.system);
     });
     const bool is_of_sliver = sliver != end.failure->moving.end();
+    const auto unheld = std::ranges::find_if(end.failure->moving,
+                                             [&](const MovingBlock& each) { return leaves_all_others(model, each); });
+    if (unheld != end.failure->moving.end())
+        return fmt::format("; block {} moves off all that it touches, which no strength holds: a smaller "
+                           "stages.{}.strength_reduction.from finds no factor of safety",
+                           block_label(model.system, unheld->block), reduced - stages.begin());
     return fmt::format(
         "; {}its factor of safety is below stages.{}.strength_reduction.from, {:g}, with which the body was "
         "loaded: a smaller `from` finds it, if the body stands with any",

@@ -99,6 +99,28 @@ TEST(StrengthSearch, FailsWhereTheStateBeforeItDoesNotStand) {
               std::string::npos);
 }
 
+// A block that hangs below a roof falls off it, whatever the friction there. One that slides on its plane of 35 degrees may be held by more of it.
+TEST(StrengthSearch, NoSmallerFactorIsPromisedToABlockThatNothingHolds) {
+    const auto message = [](const std::string& block) {
+        return run_scene(read_scene_text(R"(kluft: 1
+analysis: {gravity: [-5.735764364, -8.191520443]}
+materials: {rock: {density: 2600, youngs_modulus: 20 GPa, poissons_ratio: 0.25}}
+interfaces: {joint: {kind: fracture, normal_stiffness: 10 GPa/m, shear_stiffness: 5 GPa/m, friction_angle: 20}}
+geometry:
+  blocks:
+    - {name: plane, polygon: [[-50, 0], [50, 0], [50, 1], [-50, 1]], support: fixed}
+    - {name: block, polygon: )" + block + R"(}
+stages: [{}, {strength_reduction: {from: 1, to: 3}}]
+)",
+                                         {}, "held.yaml"))
+            .report.diagnosis;
+    };
+    const std::string hung = message("[[0, -1], [2, -1], [2, 0], [0, 0]]");
+    EXPECT_NE(hung.find("finds no factor of safety"), std::string::npos) << hung;
+    const std::string slid = message("[[0, 1], [2, 1], [2, 2], [0, 2]]");
+    EXPECT_NE(slid.find("a smaller `from` finds it"), std::string::npos) << slid;
+}
+
 /// A block on a plane of 35 degrees with a friction angle of 40, 0.3 m above a ledge that it can come to rest on.
 SceneRun block_above_a_ledge(int steps) {
     return run_scene(read_scene_text(R"(kluft: 1
