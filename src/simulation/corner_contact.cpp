@@ -160,8 +160,9 @@ std::string corner_contact_warning(const Model& model, const State& state) {
     if (model.has_potential_cracks) return {};
     const auto corners = corner_contacts(model, state);
     if (corners.empty()) return {};
-    return description(model, corners.front()) + ": blocks without potential cracks keep their corners, and where "
-                                                 "joints cross these may carry what rock would not";
+    return description(model, corners.front()) +
+           ": blocks without potential cracks keep their corners, and one, as "
+           "at the toe of a block that turns over or where joints cross, may carry what rock would not";
 }
 
 void TipWatch::step(const StepRecord& record, const State& state) {
