@@ -1,9 +1,9 @@
 #include "kluft/simulation/stability.hpp"
 
-#include <numeric>
 #include <utility>
 #include <vector>
 
+#include "kluft/assembly/block_columns.hpp"
 #include "kluft/assembly/lu_factor.hpp"
 #include "kluft/equilibrium/equilibrium_problem.hpp"
 #include "kluft/equilibrium/newton_increment.hpp"
@@ -45,9 +45,8 @@ bool is_unstable(const Model& model, const State& state) {
         BlockMatrix tangent;
         evaluator.tangent(q, TangentKind::exact, tangent);
         make_free(body.loads->constraints, tangent);
-        std::vector<int> position(model.system.blocks.size());
-        std::iota(position.begin(), position.end(), 0);
         LuFactor factor;
+        const std::vector<int> position = elimination_order(pattern); // blocks change places whole: the sign stays
         factor.analyze(pattern, position);
         factor.gather(tangent);
         unstable = factor.factorize() && factor.has_negative_determinant();
