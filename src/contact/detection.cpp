@@ -553,23 +553,20 @@ private:
                });
     }
 
-    /// Whether two edges lie on one and the same third block, of which neither is a part, along no net: as those of a wedge and of the ground
-    /// do beside a joint from the foot of a valley, with another wedge behind the joint.
-    [[nodiscard]] bool lie_on_one_block(int owner, const Edge& edge, int target, const Edge& side) const {
+    /// Whether other blocks lie between an edge of the owner and one of the target that go out from one place, each along a fracture and no
+    /// net: as above the foot of a valley, between the wedge that slides into it and its other face.
+    [[nodiscard]] bool have_blocks_between(int owner, const Edge& edge, int target, const Edge& side) const {
         const auto is_fracture = [&](const Edge& each) {
             return each.interface >= 0 && surfaces_.bonded[each.interface] == 0 &&
                    system_.interfaces[each.interface].origin != EdgeOrigin::tessellation;
         };
         if (!is_fracture(edge) || !is_fracture(side)) return false;
-        const auto across = [&](int block, const Edge& each) {
-            const Interface& interface = system_.interfaces[each.interface];
-            return interface.block_a == block ? interface.block_b : interface.block_a;
-        };
-        return across(owner, edge) == across(target, side);
+        const Interface& interface = system_.interfaces[edge.interface];
+        return (interface.block_a == owner ? interface.block_b : interface.block_a) != target;
     }
 
-    /// Whether the target's edge is ground before a tip of which no count is taken: the tip stood at the foot of the edge as cut, with a void between
-    /// the two, or a third block that lies on both, and its other face on a block; the edge rises before that face; and the tip leans away from it, by its bisector, as a sharp
+    /// Whether the target's edge is ground before a tip of which no count is taken: the tip stood at the foot of the edge as cut, its other face on a
+    /// block; the edge rises before that face; and there are other blocks between the two, or a void, and the tip leans away from the edge, by its bisector, as a sharp
     /// wedge does whose plane comes out where the ground before a slope begins. What presses on it from there would bend it off, or have it
     /// ride over; a tip that leans over the edge, as the toe of a dam does over a riser, is pressed into its block.
     [[nodiscard]] bool is_ground_before(int owner, const CurrentEdge& leaving, int target,
@@ -587,13 +584,14 @@ private:
         const Edge& sliding = at_end ? arriving : going_on;
         const Edge& other = at_end ? going_on : arriving;
         if (sliding.interface < 0) return false;
-        if (!are_outlines(side, other) && !lie_on_one_block(owner, other, target, side)) return false;
+        const bool is_below_others = have_blocks_between(owner, other, target, side);
+        if (!is_below_others && !are_outlines(side, other)) return false;
         const Vec2 before = (edge_start(system_, arriving) - tip).normalized();
         const Vec2 after = (edge_end(system_, going_on) - tip).normalized();
         const Vec2 along_side = (edge_end(system_, side) - edge_start(system_, side)).normalized();
         const Vec2 from_tip = at_end ? -along_side : along_side;
         const bool rises = right_normal(at_end ? -before : after).dot(from_tip) < -flush;
-        return rises && (before + after).normalized().dot(from_tip) < -straight;
+        return rises && (is_below_others || (before + after).normalized().dot(from_tip) < -straight);
     }
 
     /// Whether a face of an interface has such a tip at one of its ends, and the target's edge is the ground before it.

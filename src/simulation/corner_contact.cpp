@@ -134,11 +134,10 @@ std::vector<UnheldTip> unheld_tips(const Model& model, const State& state) {
 }
 
 std::string description(const Model& model, const UnheldTip& tip) {
-    return fmt::format(
-        "the tip of block {} at {} leans away from the ground before it, block {}, which is not taken to "
-        "hold it while strengths are reduced: rock would break there, or ride over",
-        block_label(model.system, tip.block), place_text(model.system.origin + tip.place),
-        block_label(model.system, tip.ground));
+    return fmt::format("the tip of block {} at {} goes into the ground before it, block {}, which is not taken to "
+                       "hold it while strengths are reduced: rock would break there, or ride over",
+                       block_label(model.system, tip.block), place_text(model.system.origin + tip.place),
+                       block_label(model.system, tip.ground));
 }
 
 std::string description(const Model& model, const CornerContact& corner) {

@@ -201,7 +201,6 @@ RunReport Journal::ended(const State& state, const StageEnd& end) const {
     RunReport report = cut_short(end.factor_of_safety || past_limit ? RunStatus::collapsed : RunStatus::no_equilibrium,
                                  std::move(why));
     report.results.factor_of_safety = end.factor_of_safety;
-    report.results.undoubted_factor = end.undoubted_factor;
     report.reduced_alone = reduced;
     report.falling = falling_blocks(model_, state, all_moving(*end.failure));
     return report;

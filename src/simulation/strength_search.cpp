@@ -414,6 +414,7 @@ StageEnd find_strength_limit(const StepBench& bench, State& state) {
     }
     const double found = reduction.factor_at(state.at.load_factor);
     if (const std::string said = doubts.warning(found); !said.empty()) bench.journal.report().warnings.push_back(said);
+    bench.journal.report().results.undoubted_factor = doubts.factor_without(found);
     if (end.failure) warn_of_doubtful_failure(bench, found, *end.failure);
     if (end.failure) warn_of_unheld_tip(bench, state, *end.failure);
     if (!end.failure) {
@@ -425,7 +426,6 @@ StageEnd find_strength_limit(const StepBench& bench, State& state) {
     end.step = state.at.step + 1;
     if (end.failure->kind == FailureKind::too_many_solves) return end;
     end.factor_of_safety = found;
-    end.undoubted_factor = doubts.factor_without(found);
     return end;
 }
 

@@ -32,7 +32,6 @@ struct StageEnd {
     std::optional<Failure> failure;         ///< the run ends here
     int step = 0;                           ///< the load step that failed, through all stages
     std::optional<double> factor_of_safety; ///< the failure is what was looked for
-    std::optional<double> undoubted_factor; ///< the last one before that which speaks against it
     std::vector<std::string> causes;        ///< of an end out of balance that are likely, in words
     bool has_dropped = false;               ///< the axial stress, by stop_after_drop of the stage: the run ends here
 
