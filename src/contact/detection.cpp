@@ -594,11 +594,43 @@ private:
         return rises && (is_below_others || (before + after).normalized().dot(from_tip) < -straight);
     }
 
-    /// Whether a face of an interface has such a tip at one of its ends, and the target's edge is the ground before it.
+    /// Whether one block slides past the side of another one that comes up below its toe, of which no count is taken: as cut, the toe, the lower end of `face`,
+    /// an outline, stood at the upper end of `side`, other blocks lay between this and the first one's base, and the base goes on straight in the outline of the
+    /// second one. As of a dam whose toe stands on the end of a joint in its ground: it would catch on what the block below it has sunk.
+    [[nodiscard]] bool slides_past_side(int owner, const Edge& face, int target, const Edge& side) const {
+        if (surfaces_.ground_holds_tips || face.interface >= 0 || side.interface < 0) return false;
+        const bool at_start = face.start == side.start;
+        if (!at_start && face.end != side.end) return false;
+        const Edge& base = edge_beside(owner, face, at_start);
+        const Edge& top = edge_beside(target, side, at_start);
+        return top.interface < 0 && have_blocks_between(owner, base, target, side) &&
+               go_on_straight(edge_end(system_, base) - edge_start(system_, base),
+                              edge_end(system_, top) - edge_start(system_, top));
+    }
+
+    /// The same of a vertex that two blocks have in common, whichever of them has the toe.
+    [[nodiscard]] bool slide_past_each_other(int owner, const CurrentEdge& leaving, int target,
+                                             const CurrentEdge& edge) const {
+        const Edge& of_target = reference(target, edge.edge);
+        const bool at_start = reference(owner, leaving.edge).start == of_target.start;
+        const Edge& of_owner = reference(owner, at_start ? leaving.edge : leaving.arriving);
+        return slides_past_side(owner, of_owner, target, of_target) ||
+               slides_past_side(target, of_target, owner, of_owner);
+    }
+
+    /// The edge of a block that meets the given one at its start, or at its end.
+    [[nodiscard]] const Edge& edge_beside(int block, const Edge& edge, bool at_start) const {
+        const std::vector<Edge>& edges = system_.blocks[block].edges;
+        return at_start ? *std::ranges::find(edges, edge.start, &Edge::end)
+                        : *std::ranges::find(edges, edge.end, &Edge::start);
+    }
+
+    /// Whether a face has such a tip at one of its ends, and the target's edge is the ground before it, or one of the two slides past the other.
     [[nodiscard]] bool slides_onto_ground(int owner, const CurrentEdge& face, std::span<const CurrentEdge> faces,
                                           int target, const CurrentEdge& edge) const {
         if (surfaces_.ground_holds_tips) return false;
-        if (reference(owner, face.edge).interface < 0) return false;
+        if (reference(owner, face.edge).interface < 0)
+            return slides_past_side(owner, reference(owner, face.edge), target, reference(target, edge.edge));
         return std::ranges::any_of(faces, [&](const CurrentEdge& leaving) {
             return (leaving.edge == face.edge || leaving.arriving == face.edge) &&
                    is_ground_before(owner, leaving, target, edge);
@@ -651,7 +683,8 @@ private:
         if (has_side_in(overlapping_, leaving, edge.edge, swapped)) return;
         if (has_side_in(sunk_beside_, leaving, edge.edge, swapped)) return;
         if (is_common && !beside_void && !faces_apart_ &&
-            (is_ground || !held_it_last(owner, leaving, target, edge, swapped)))
+            (is_ground || !held_it_last(owner, leaving, target, edge, swapped) ||
+             slide_past_each_other(owner, leaving, target, edge)))
             return;
         if (!below_end && is_held_by_another_face(leaving, edge, gap, edges, swapped)) return;
         if (gap < shallow_ && !below_end && !is_inside(target, leaving.start)) return; // what takes longest comes last
