@@ -273,11 +273,8 @@ std::vector<LegendEntry> outside_note(int n) {
 std::string after_title(const std::vector<StepRecord>& history, bool moves_platen,
                         const std::optional<RunSummary>& summary) {
     if (summary && summary->results.factor_of_safety)
-        return fmt::format("after, {} {:.4g}{}", factor_name(summary->reduced_alone),
-                           *summary->results.factor_of_safety,
-                           summary->results.undoubted_factor
-                               ? fmt::format(" (in doubt above {:.4g})", *summary->results.undoubted_factor)
-                               : "");
+        return "after, " + factor_in_words(summary->reduced_alone, *summary->results.factor_of_safety,
+                                           summary->results.undoubted_factor, 4);
     if (history.empty() || !moves_platen) return "after";
     return fmt::format("after, axial strain {:.2f} %", 100.0 * history.back().axial_strain);
 }

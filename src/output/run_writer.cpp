@@ -315,8 +315,8 @@ RunSummary RunWriter::summary_of(const RunOutcome& outcome, const Rows& history,
     RunSummary summary;
     summary.status = outcome.report.status;
     summary.title = options_.title;
-    summary.numbers = curve_numbers(equilibria, history, options_.platen_stage, options_.plane);
-    if (options_.compliance_across) read_with_fractures(*options_.compliance_across, summary.numbers);
+    summary.numbers =
+        curve_numbers(equilibria, history, options_.platen_stage, options_.plane, options_.compliance_across);
     clear_round_off(options_.modulus, summary.numbers);
     if (!outcome.report.remark.empty()) summary.numbers.residual_stress.reset(); // it ends while the stress falls
     summary.platen_stage = options_.platen_stage;

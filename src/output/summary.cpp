@@ -481,15 +481,26 @@ void add_peak_numbers(const Rows& all, const Rows& history, int platen_stage, Cu
     if (numbers.peak_reached) numbers.residual_stress = residual_stress(history, platen_stage, peak->axial_strain);
 }
 
+void read_with_fractures(double compliance_across, CurveNumbers& numbers) {
+    clear_elastic_constants(numbers);
+    if (!numbers.axial_modulus || !numbers.lateral_ratio) return;
+    const double modulus = 1.0 / (1.0 / *numbers.axial_modulus + compliance_across); // (41a)
+    const double nu = (*numbers.lateral_ratio / *numbers.axial_modulus - compliance_across) * modulus;
+    if (!(modulus > 0.0) || !std::isfinite(modulus)) return;
+    numbers.youngs_modulus = modulus;
+    if (is_ratio_of_rock(nu)) numbers.poissons_ratio = nu;
+}
+
 } // namespace
 
 CurveNumbers curve_numbers(const std::vector<StepRecord>& equilibria, const std::vector<StepRecord>& history,
-                           std::optional<int> platen_stage, Plane plane) {
+                           std::optional<int> platen_stage, Plane plane, std::optional<double> compliance_across) {
     CurveNumbers numbers;
     const Rows& all = equilibria.empty() ? history : equilibria;
     if (platen_stage) {
         add_peak_numbers(all, history, *platen_stage, numbers);
         add_elastic_constants(all, history, *platen_stage, plane, numbers);
+        if (compliance_across) read_with_fractures(*compliance_across, numbers);
     }
     add_counts(history, numbers);
     return numbers;
@@ -504,16 +515,6 @@ void clear_round_off(double modulus, CurveNumbers& numbers) {
     for (std::optional<double>* const constant :
          {&numbers.axial_modulus, &numbers.lateral_ratio, &numbers.youngs_modulus, &numbers.poissons_ratio})
         constant->reset();
-}
-
-void read_with_fractures(double compliance_across, CurveNumbers& numbers) {
-    clear_elastic_constants(numbers);
-    if (!numbers.axial_modulus || !numbers.lateral_ratio) return;
-    const double modulus = 1.0 / (1.0 / *numbers.axial_modulus + compliance_across); // (41a)
-    const double nu = (*numbers.lateral_ratio / *numbers.axial_modulus - compliance_across) * modulus;
-    if (!(modulus > 0.0) || !std::isfinite(modulus)) return;
-    numbers.youngs_modulus = modulus;
-    if (is_ratio_of_rock(nu)) numbers.poissons_ratio = nu;
 }
 
 void clear_elastic_constants(CurveNumbers& numbers) {

@@ -245,8 +245,7 @@ RunFacts facts_of(const fs::path& directory, const Rows& history, const Rows& eq
     RunFacts facts;
     const int stage = make_gauges(model).first_platen_stage;
     if (stage >= 0) facts.platen_stage = stage;
-    facts.numbers = curve_numbers(equilibria, history, facts.platen_stage, scene.plane);
-    if (model.compliance_across) read_with_fractures(*model.compliance_across, facts.numbers);
+    facts.numbers = curve_numbers(equilibria, history, facts.platen_stage, scene.plane, model.compliance_across);
     if (fs::exists(directory / "summary.json")) facts.summary = read_summary(directory / "summary.json");
     clear_round_off(largest_modulus(scene.materials), facts.numbers);
     if (!has_elastic_constants(model)) clear_elastic_constants(facts.numbers);

@@ -10,4 +10,11 @@ std::string factor_name(const std::vector<std::string>& reduced_alone) {
     return fmt::format("factor of safety of {} alone", fmt::join(reduced_alone, ", "));
 }
 
+std::string factor_in_words(const std::vector<std::string>& reduced_alone, double factor,
+                            const std::optional<double>& undoubted_factor, int digits) {
+    std::string text = fmt::format("{} {:.{}g}", factor_name(reduced_alone), factor, digits);
+    if (undoubted_factor) text += fmt::format(" (in doubt above {:.4g})", *undoubted_factor);
+    return text;
+}
+
 } // namespace kluft

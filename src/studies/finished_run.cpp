@@ -125,8 +125,8 @@ FinishedRun read_finished_run(const fs::path& directory, const std::string& name
     }
     // of a body that is not known its tables are taken for those of a platen
     const std::optional<int> of_platen = run.model ? run.platen_stage : 0;
-    run.numbers = curve_numbers(run.equilibria, run.history, of_platen, plane);
-    if (run.model && run.model->compliance_across) read_with_fractures(*run.model->compliance_across, run.numbers);
+    run.numbers = curve_numbers(run.equilibria, run.history, of_platen, plane,
+                                run.model ? run.model->compliance_across : std::nullopt);
     if (run.model && !has_elastic_constants(*run.model)) clear_elastic_constants(run.numbers);
     if (!run.model) { // of which stage is not known
         CurveNumbers& numbers = run.numbers;

@@ -203,10 +203,8 @@ std::string closing_line(const RunReport& report, const RunSummary& summary, con
     }
     if (!report.remark.empty()) text += ", " + report.remark;
     if (report.results.factor_of_safety)
-        text += fmt::format(", {} {:.6g}{}", factor_name(report.reduced_alone), *report.results.factor_of_safety,
-                            report.results.undoubted_factor
-                                ? fmt::format(" (in doubt above {:.4g})", *report.results.undoubted_factor)
-                                : "");
+        text += ", " + factor_in_words(report.reduced_alone, *report.results.factor_of_safety,
+                                       report.results.undoubted_factor, 6);
     if (summary.results.estimated_error)
         text += fmt::format(", estimated error {:.2g} %", 100.0 * *summary.results.estimated_error);
     const std::string work = report.motion ? fmt::format("{} time steps", report.motion->time_steps)

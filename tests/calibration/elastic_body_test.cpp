@@ -72,8 +72,8 @@ TEST(ElasticBody, AgreesWithARunOfTheSameBodyAtSmallStrain) {
             run_scene(scene, {"stages.1.strain.value=1e-7", "stages.1.steps=4", "interfaces.joint.friction_angle=89.9",
                               "solver.tolerance=1e-10", "interfaces.joint.contact_rounding=1e-6",
                               "stages.0.pressure.left=100 Pa", "stages.0.pressure.right=100 Pa"});
-        CurveNumbers numbers = curve_numbers(run.equilibria, run.history, 1, Plane::strain);
-        read_with_fractures(run.model.compliance_across.value_or(0.0), numbers);
+        const CurveNumbers numbers =
+            curve_numbers(run.equilibria, run.history, 1, Plane::strain, run.model.compliance_across.value_or(0.0));
         const ElasticResponse found = response_of(run.model);
         ASSERT_TRUE(numbers.youngs_modulus) << net;
         EXPECT_NEAR(found.youngs_modulus / *numbers.youngs_modulus, 1.0, 1e-4) << net;
@@ -105,8 +105,8 @@ boundaries:
 stages: [{{name: axial, strain: {{boundary: top, value: 0.001 %}}, steps: 4}}]
 )",
                                                        plane, 0.1 - 0.1 * rise, 0.1 + 0.1 * rise));
-            CurveNumbers numbers = curve_numbers(run.equilibria, run.history, 0, run.model.plane);
-            read_with_fractures(run.model.compliance_across.value(), numbers);
+            const CurveNumbers numbers =
+                curve_numbers(run.equilibria, run.history, 0, run.model.plane, run.model.compliance_across.value());
             const ElasticResponse found = response_of(run.model);
             EXPECT_NEAR(found.youngs_modulus * axial, 1.0, 1e-6) << plane << angle;
             EXPECT_NEAR(found.poissons_ratio, lateral / axial, 1e-6) << plane << angle;

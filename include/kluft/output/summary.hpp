@@ -72,20 +72,17 @@ struct CurveNumbers {
 /// the last before more than 1 % of what is closed slides, or of all joints have opened, or the platen has left the body; where those are fewer than three, over the rows up to 30 % of the peak differential stress, of
 /// which the last is interpolated where they are fewer than two. In plane stress E = slope, nu = ratio; in plane
 /// strain the slopes are E' = E/(1 - nu^2) and nu' = nu/(1 - nu), hence nu = nu'/(1 + nu') and E = E' (1 - nu^2). A body whose nu is not between 0 and 0.5 has no such
-/// constants; those of a body with fractures come from read_with_fractures.
+/// constants. Those of a body with fractures, of which the model knows a `compliance_across` (1/Pa), are the ones that it has in
+/// plane stress (docs/theory.md, (41a)), without a nu that no rock has.
 /// `platen_stage`: the first stage that moves a platen; without one there are no peak and no elastic constants, since
 /// the axial stress is that of a load.
 [[nodiscard]] CurveNumbers curve_numbers(const std::vector<StepRecord>& equilibria,
                                          const std::vector<StepRecord>& history, std::optional<int> platen_stage,
-                                         Plane plane);
+                                         Plane plane, std::optional<double> compliance_across = std::nullopt);
 
 /// Takes stresses for zero that are round-off beside E times the strain at the peak, as those of a body that is cut through and
 /// pulled; it has no elastic constants then. `modulus`: E of the stiffest material (Pa).
 void clear_round_off(double modulus, CurveNumbers& numbers);
-
-/// E and nu of a body with fractures from its own modulus and ratio (docs/theory.md, (41a)): those that it has in plane stress, and
-/// no nu that no rock has. `compliance_across`: of the model (1/Pa).
-void read_with_fractures(double compliance_across, CurveNumbers& numbers);
 
 /// Leaves no constants of the rock where the body is none to have them from (rock_constants.hpp); its own modulus and ratio stay.
 void clear_elastic_constants(CurveNumbers& numbers);

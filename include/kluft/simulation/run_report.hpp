@@ -30,6 +30,11 @@ template <class Results, class Visit> void visit_results(Results& results, Visit
 /// "factor of safety", and of what: "factor of safety of joint alone".
 [[nodiscard]] std::string factor_name(const std::vector<std::string>& reduced_alone);
 
+/// The name and value of a factor of safety to this many digits, and above what it is in doubt, if it is:
+/// "factor of safety 1.43 (in doubt above 1.25)".
+[[nodiscard]] std::string factor_in_words(const std::vector<std::string>& reduced_alone, double factor,
+                                          const std::optional<double>& undoubted_factor, int digits);
+
 /// A block that moves where the run has ended.
 struct FallingBlock {
     std::string block; ///< its name, or its number
