@@ -33,6 +33,11 @@ constexpr double straight = 1e-4;
 constexpr double flush = 0.02;
 /// A tip whose plane comes out within this part of the smaller block beside the foot of what rises before it stands at that foot.
 constexpr double at_the_foot = 0.02;
+/// A toe that has sunk by less than this part of the smaller block below the face that it slides onto meets the side below that face by what
+/// joints and blocks have given way; one that has sunk more is held by it.
+constexpr double sunk_under_loads = 5e-4;
+/// A face that goes on in another one rises or falls there by less than this (rad).
+constexpr double flat = std::numbers::pi / 4.0;
 /// A corner is round over this part of the shorter edge: where two corners meet, the direction in which they touch is between the faces'.
 constexpr double corner_rounding = 1e-3;
 /// Two points of a fracture that were nearer than this part of its edge were one point; what is between is round-off.
@@ -595,27 +600,53 @@ private:
     }
 
     /// Whether one block slides past the side of another one that comes up below its toe, of which no count is taken: as cut, the toe, the lower end of `face`,
-    /// an outline, stood at the upper end of `side`, other blocks lay between this and the first one's base, and the base goes on straight in the outline of the
-    /// second one. As of a dam whose toe stands on the end of a joint in its ground: it would catch on what the block below it has sunk.
-    [[nodiscard]] bool slides_past_side(int owner, const Edge& face, int target, const Edge& side) const {
-        if (surfaces_.ground_holds_tips || face.interface >= 0 || side.interface < 0) return false;
+    /// an outline, stood at the upper end of `side`, other blocks lay between this and the first one's base, and the base goes on more nearly straight in the
+    /// outline of the second one than the side does in `face`. As of a dam whose toe stands on the end of a joint in its ground: it would catch on what the
+    /// block below it has sunk. Where it is so: how far the toe lies below that outline (m).
+    [[nodiscard]] std::optional<double> toe_beside_side(int owner, const Edge& face, int target,
+                                                        const Edge& side) const {
+        if (surfaces_.ground_holds_tips || face.interface >= 0 || side.interface < 0) return std::nullopt;
         const bool at_start = face.start == side.start;
-        if (!at_start && face.end != side.end) return false;
+        if (!at_start && face.end != side.end) return std::nullopt;
         const Edge& base = edge_beside(owner, face, at_start);
         const Edge& top = edge_beside(target, side, at_start);
-        return top.interface < 0 && have_blocks_between(owner, base, target, side) &&
-               go_on_straight(edge_end(system_, base) - edge_start(system_, base),
-                              edge_end(system_, top) - edge_start(system_, top));
+        if (top.interface >= 0 || !have_blocks_between(owner, base, target, side)) return std::nullopt;
+        const double rise = turn_at_end(as_cut(base), as_cut(top));
+        if (rise > flat || rise > turn_at_end(as_cut(side), as_cut(face)) + flush) return std::nullopt;
+        const double sunk = depth_below(target, top, owner, at_start ? face.start : face.end);
+        const double smaller = std::min(system_.blocks[owner].size, system_.blocks[target].size);
+        if (sunk > sunk_under_loads * smaller) return std::nullopt;
+        return sunk;
     }
 
-    /// The same of a vertex that two blocks have in common, whichever of them has the toe.
-    [[nodiscard]] bool slide_past_each_other(int owner, const CurrentEdge& leaving, int target,
-                                             const CurrentEdge& edge) const {
-        const Edge& of_target = reference(target, edge.edge);
-        const bool at_start = reference(owner, leaving.edge).start == of_target.start;
-        const Edge& of_owner = reference(owner, at_start ? leaving.edge : leaving.arriving);
-        return slides_past_side(owner, of_owner, target, of_target) ||
-               slides_past_side(target, of_target, owner, of_owner);
+    [[nodiscard]] Vec2 as_cut(const Edge& edge) const { return edge_end(system_, edge) - edge_start(system_, edge); }
+
+    /// The angle by which one goes on into the other of two edges that both end, or both start, in one point (rad).
+    [[nodiscard]] static double turn_at_end(const Vec2& x, const Vec2& y) {
+        return std::atan2(std::abs(cross(x, y)), -x.dot(y));
+    }
+
+    /// How far a vertex of a block lies behind an edge of another one (m), as they lie.
+    [[nodiscard]] double depth_below(int target, const Edge& edge, int block, int vertex) const {
+        const Vec2 start = current_position(system_, q_, target, edge.start);
+        const Vec2 along = current_position(system_, q_, target, edge.end) - start;
+        return -right_normal(along.normalized()).dot(current_position(system_, q_, block, vertex) - start);
+    }
+
+    /// The same of a vertex that is an end of the target's edge too.
+    [[nodiscard]] std::optional<double> toe_beside_side(int owner, const CurrentEdge& leaving, int target,
+                                                        const CurrentEdge& edge) const {
+        const Edge& side = reference(target, edge.edge);
+        const bool at_start = reference(owner, leaving.edge).start == side.start;
+        return toe_beside_side(owner, reference(owner, at_start ? leaving.edge : leaving.arriving), target, side);
+    }
+
+    /// Whether the end of the target's edge, an outline, is a toe that stands beside the side of the owner that comes up there.
+    [[nodiscard]] bool is_below_toe(int owner, const CurrentEdge& leaving, int target, const CurrentEdge& edge) const {
+        const Edge& face = reference(target, edge.edge);
+        const bool at_start = reference(owner, leaving.edge).start == face.start;
+        const Edge& side = reference(owner, at_start ? leaving.edge : leaving.arriving);
+        return toe_beside_side(target, face, owner, side).has_value();
     }
 
     /// The edge of a block that meets the given one at its start, or at its end.
@@ -630,7 +661,8 @@ private:
                                           int target, const CurrentEdge& edge) const {
         if (surfaces_.ground_holds_tips) return false;
         if (reference(owner, face.edge).interface < 0)
-            return slides_past_side(owner, reference(owner, face.edge), target, reference(target, edge.edge));
+            return toe_beside_side(owner, reference(owner, face.edge), target, reference(target, edge.edge))
+                .has_value();
         return std::ranges::any_of(faces, [&](const CurrentEdge& leaving) {
             return (leaving.edge == face.edge || leaving.arriving == face.edge) &&
                    is_ground_before(owner, leaving, target, edge);
@@ -673,6 +705,9 @@ private:
         const bool is_ground = is_ground_before(owner, leaving, target, edge);
         if (is_ground && gap < shallow_) unheld_tips_.push_back({owner, target, edge.edge, -gap, leaving.start});
         if (is_ground && !is_common) return;
+        const auto sunk_toe = is_common ? toe_beside_side(owner, leaving, target, edge) : std::nullopt;
+        if (sunk_toe && *sunk_toe > -shallow_ && gap < shallow_)
+            unheld_tips_.push_back({owner, target, edge.edge, -gap, leaving.start});
         const bool beside_void = is_common && are_beside_a_void(owner, leaving, target, edge);
         const double beyond = beyond_end(s, edge);
         const bool at_end = reference(owner, leaving.edge).start == reference(target, edge.edge).end;
@@ -683,8 +718,8 @@ private:
         if (has_side_in(overlapping_, leaving, edge.edge, swapped)) return;
         if (has_side_in(sunk_beside_, leaving, edge.edge, swapped)) return;
         if (is_common && !beside_void && !faces_apart_ &&
-            (is_ground || !held_it_last(owner, leaving, target, edge, swapped) ||
-             slide_past_each_other(owner, leaving, target, edge)))
+            (is_ground || !held_it_last(owner, leaving, target, edge, swapped) || sunk_toe ||
+             is_below_toe(owner, leaving, target, edge)))
             return;
         if (!below_end && is_held_by_another_face(leaving, edge, gap, edges, swapped)) return;
         if (gap < shallow_ && !below_end && !is_inside(target, leaving.start)) return; // what takes longest comes last
