@@ -104,6 +104,12 @@ double angle_of(const Corner& at) {
     return std::numbers::pi - std::atan2(cross(at.arriving, at.leaving), at.arriving.dot(at.leaving));
 }
 
+/// Whether a direction lies between two that are less than a straight angle apart.
+bool is_between(const Vec2& x, const Vec2& first, const Vec2& second) {
+    const double sense = cross(first, second);
+    return sense * cross(first, x) > 0.0 && sense * cross(x, second) > 0.0;
+}
+
 /// Whether the block has a notch there, and not a corner or a vertex on a straight side.
 bool is_notch(const Corner& at) {
     const double turn = cross(at.arriving, at.leaving);
@@ -385,7 +391,7 @@ private:
 
     /// Along the faces that the corners at the two ends of an overlap touch: at its start the corner of b on the face of a where b begins
     /// `later` along a (m), that of a on the face of b where it is less than zero; at its end the corner of b where a goes on `farther`. The vertex
-    /// of a notch touches nothing: there the face itself counts. Of two corners that were one point beside a void the sharper one touches the face of the blunter one.
+    /// of a notch touches nothing: there the face itself counts. Of two corners that were one point beside a void share_of_first says which one touches the face of the other.
     [[nodiscard]] std::pair<Vec2, Vec2> directions_at_ends(int a, const CurrentEdge& edge_a, int b,
                                                            const CurrentEdge& edge_b, double later,
                                                            double farther) const {
@@ -393,17 +399,18 @@ private:
         const Edge& side_a = reference(a, edge_a.edge);
         const Edge& side_b = reference(b, edge_b.edge);
         const bool beside_void = are_outlines(side_a, side_b);
-        const auto along = [&](double on_a, bool is_common, const Corner& of_a, const Corner& of_b) -> Vec2 {
+        const auto along = [&](double on_a, bool is_common, const Corner& of_a, const Corner& of_b,
+                               bool begins) -> Vec2 {
             double share_of_a = std::clamp(0.5 + 0.5 * on_a / rounding, 0.0, 1.0);
             if (is_notch(of_a) != is_notch(of_b)) share_of_a = is_notch(of_a) ? 1.0 : 0.0;
             if (is_common && beside_void) {
-                const double blunter = angle_of(of_a) - angle_of(of_b);
-                if (std::abs(blunter) > straight) share_of_a = blunter > 0.0 ? 1.0 : 0.0;
+                const double of_first = share_of_first(a, side_a, of_a, b, side_b, of_b, begins);
+                if (std::abs(of_first) > straight) share_of_a = of_first > 0.0 ? 1.0 : 0.0;
             }
             return (share_of_a * edge_a.direction - (1.0 - share_of_a) * edge_b.direction).normalized();
         };
-        return {along(later, side_a.start == side_b.end, corner_at_start(edge_a), corner_at_end(edge_b)),
-                along(farther, side_a.end == side_b.start, corner_at_end(edge_a), corner_at_start(edge_b))};
+        return {along(later, side_a.start == side_b.end, corner_at_start(edge_a), corner_at_end(edge_b), true),
+                along(farther, side_a.end == side_b.start, corner_at_end(edge_a), corner_at_start(edge_b), false)};
     }
 
     /// The pieces of an overlap are as long as the weights of its points (15).
@@ -536,17 +543,37 @@ private:
         return vertex == reference(target, edge.edge).start || vertex == reference(target, edge.edge).end;
     }
 
+    /// Of two corners that are one point beside a void, where the face of the first one begins and that of the second one ends, or the other way round (`begins`
+    /// false): by how much the face of the first one is the one that the other corner touches (rad), negative for the second one's. That is the blunter one's;
+    /// but where strengths are reduced and the side of each, with other blocks between them, goes on into the other one, it is the sharper one's, onto which
+    /// the blunter one slides up the more easily.
+    [[nodiscard]] double share_of_first(int first, const Edge& face, const Corner& corner, int second,
+                                        const Edge& other_face, const Corner& other_corner, bool begins) const {
+        const double blunter = angle_of(corner) - angle_of(other_corner);
+        if (surfaces_.ground_holds_tips || !have_blocks_between(first, edge_beside(first, face, begins), second,
+                                                                edge_beside(second, other_face, !begins)))
+            return blunter;
+        const Vec2 along = begins ? corner.leaving : Vec2(-corner.arriving);
+        const Vec2 side = begins ? Vec2(-corner.arriving) : corner.leaving;
+        const Vec2 other_along = begins ? Vec2(-other_corner.arriving) : other_corner.leaving;
+        const Vec2 other_side = begins ? other_corner.leaving : Vec2(-other_corner.arriving);
+        const bool go_on_inside = is_between(-side, other_along, other_side) && is_between(-other_side, along, side);
+        return go_on_inside ? -blunter : blunter;
+    }
+
     /// Whether a vertex that is an end of the target's edge too has a void between the one and the other, as the toe of a dam that ends
-    /// at a riser. Of two corners at one point the sharper one touches the face of the blunter one, and goes on to where it is pressed a
+    /// at a riser. Of two corners at one point the sharper one (see share_of_first) touches the face of the blunter one, and goes on to where it is pressed a
     /// little below its end; where both stand free, tip against tip, or a face of the one goes on straight in one of the other, neither does.
     [[nodiscard]] bool are_beside_a_void(int owner, const CurrentEdge& leaving, int target,
                                          const CurrentEdge& edge) const {
         const Edge& side = reference(target, edge.edge);
         const int vertex = reference(owner, leaving.edge).start;
         const bool at_end = vertex == side.end;
-        if (!are_outlines(side, reference(owner, at_end ? leaving.edge : leaving.arriving))) return false;
+        const Edge& face = reference(owner, at_end ? leaving.edge : leaving.arriving);
+        if (!are_outlines(side, face)) return false;
         const Corner of_target = at_end ? corner_at_end(edge) : corner_at_start(edge);
-        if (angle_of(corner_at_start(leaving)) > angle_of(of_target) + straight) return false;
+        if (share_of_first(owner, face, corner_at_start(leaving), target, side, of_target, at_end) > straight)
+            return false;
         const Vec2 arriving = leaving.start - leaving.before;
         const Vec2 other_side = at_end ? of_target.leaving : of_target.arriving;
         if (go_on_straight(at_end ? arriving : leaving.direction, edge.direction) ||
@@ -707,7 +734,7 @@ private:
         if (is_ground && !is_common) return;
         const auto sunk_toe = is_common ? toe_beside_side(owner, leaving, target, edge) : std::nullopt;
         if (sunk_toe && *sunk_toe > -shallow_ && gap < shallow_)
-            unheld_tips_.push_back({owner, target, edge.edge, -gap, leaving.start});
+            unheld_tips_.push_back({owner, target, edge.edge, std::min(-gap, *sunk_toe), leaving.start});
         const bool beside_void = is_common && are_beside_a_void(owner, leaving, target, edge);
         const double beyond = beyond_end(s, edge);
         const bool at_end = reference(owner, leaving.edge).start == reference(target, edge.edge).end;

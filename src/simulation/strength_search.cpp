@@ -251,12 +251,13 @@ void warn_of_doubtful_failure(const StepBench& bench, double found, const Failur
     bench.journal.report().warnings.push_back(std::move(warning));
 }
 
-/// What would have held a block that falls, if rock were rigid.
-void warn_of_unheld_tip(const StepBench& bench, const State& state, const Failure& failure) {
+/// What would have held the blocks that fall, if rock were rigid; the deepest three.
+void warn_of_unheld_tips(const StepBench& bench, const State& state, const Failure& failure) {
+    int left = 3;
     for (const UnheldTip& tip : unheld_tips(bench.model, state)) {
         if (std::ranges::find(failure.moving, tip.block, &MovingBlock::block) == failure.moving.end()) continue;
         bench.journal.report().warnings.push_back(description(bench.model, tip) + "; rigid blocks may stand with more");
-        return;
+        if (--left == 0) return;
     }
 }
 
@@ -371,7 +372,7 @@ StageEnd find_strength_limit(const StepBench& bench, State& state) {
     std::vector<StepRecord> before; // equilibria that are not told yet
     if (state.at.load_factor == 0.0) end.failure = find_initial_equilibrium(bench, state, before);
     if (end.failure) {
-        warn_of_unheld_tip(bench, state, *end.failure);
+        warn_of_unheld_tips(bench, state, *end.failure);
         return {.failure = end.failure, .step = state.at.step + 1};
     }
     if (state.at.load_factor == 0.0) {
@@ -416,7 +417,7 @@ StageEnd find_strength_limit(const StepBench& bench, State& state) {
     if (const std::string said = doubts.warning(found); !said.empty()) bench.journal.report().warnings.push_back(said);
     bench.journal.report().results.undoubted_factor = doubts.factor_without(found);
     if (end.failure) warn_of_doubtful_failure(bench, found, *end.failure);
-    if (end.failure) warn_of_unheld_tip(bench, state, *end.failure);
+    if (end.failure) warn_of_unheld_tips(bench, state, *end.failure);
     if (!end.failure) {
         bench.journal.report().warnings.push_back(
             fmt::format("the {} is above {:g}, the largest strength factor of stage {}",

@@ -29,11 +29,16 @@ struct TwoWedges {
     double foot = 34.0;         ///< where the planes meet (m)
     double water_push = 1962e3; ///< N/m
     double stiffness = 20.0;    ///< of the joints (GPa/m)
+    double rise = 0.0;          ///< of the ground from the toe (degrees)
 };
+
+/// The ground at x, from the toe on.
+Vec2 on_ground(const TwoWedges& body, double x) { return {x, 20.0 + (x - 34.0) * std::tan(body.rise / degrees)}; }
 
 SceneRun run_dam(const TwoWedges& body) {
     const double sign = body.mirrored ? -1.0 : 1.0;
     const auto at = [&](double x, double y) { return fmt::format("[{:.17g}, {:.17g}]", sign * x, y); };
+    const auto on_top = [&](double x) { return at(x, on_ground(body, x).y()); };
     const std::string foot = at(body.foot, 20.0 - body.depth);
     const std::string end_of_cut = body.cut == "down" ? at(body.foot, 0) : at(60, 20.0 - body.depth);
     const std::string below =
@@ -68,8 +73,8 @@ stages:
   - {{strength_reduction: {{from: 1, to: 6}}}}
 )",
         stiffnesses, stiffnesses, friction_angle, at(19, 20), at(36, 20), at(36, 41), at(19, 41), at(0, 0), at(60, 0),
-        at(60, 20), at(34, 20), at(24, 40), at(20, 40), at(20, 20), at(0, 20), at(20, 20), at(34, 20), at(20, 20), foot,
-        foot, at(34.0 + body.length, 20), foot, at(34.0 + body.lean, 20), below, at(20, 26.6667),
+        on_top(60), at(34, 20), at(24, 40), at(20, 40), at(20, 20), at(0, 20), at(20, 20), at(34, 20), at(20, 20), foot,
+        foot, on_top(34.0 + body.length), foot, on_top(34.0 + body.lean), below, at(20, 26.6667),
         sign * body.water_push));
 }
 
@@ -77,19 +82,24 @@ stages:
 /// equilibrium of two wedges that slide on all three faces.
 double resistance_left(const TwoWedges& body, double factor) {
     const double tan_friction = std::tan(friction_angle / degrees) / factor;
-    const Vec2 first = Vec2(body.foot - 20.0, -body.depth).normalized(); // as the first wedge slides
-    const Vec2 second = Vec2(34.0 + body.length - body.foot, body.depth).normalized();
-    const Vec2 joint = Vec2(34.0 + body.lean - body.foot, body.depth).normalized(); // upwards
+    const Vec2 foot(body.foot, 20.0 - body.depth);
+    const Vec2 end = on_ground(body, 34.0 + body.length);
+    const Vec2 top = on_ground(body, 34.0 + body.lean); // of the joint
+    const Vec2 heel(20.0, 20.0), toe(34.0, 20.0);
+    const Vec2 first = (foot - heel).normalized(); // as the first wedge slides
+    const Vec2 second = (end - foot).normalized();
+    const Vec2 joint = (top - foot).normalized();
     const Vec2 across(joint.y(), -joint.x()); // from the first wedge to the second one
     const auto on_wedge = [&](const Vec2& slip) {
         return Vec2(-slip.y() - tan_friction * slip.x(), slip.x() - tan_friction * slip.y());
     };
     const Vec2 of_joint = across - tan_friction * joint; // on the second wedge, for a normal force of one
-    const Vec2 loads(body.water_push, -dam_weight - 0.5 * (14.0 + body.lean) * body.depth * weight_density);
+    const double first_area = 0.5 * (cross(foot - heel, top - heel) + cross(top - heel, toe - heel));
+    const Vec2 loads(body.water_push, -dam_weight - first_area * weight_density);
     Mat2 faces;
     faces << on_wedge(first), -of_joint;
     const double normal_force = faces.inverse().row(1).dot(-loads);
-    const Vec2 weight(0.0, -0.5 * (body.length - body.lean) * body.depth * weight_density);
+    const Vec2 weight(0.0, -0.5 * cross(end - foot, top - foot) * weight_density);
     const Vec2 left = normal_force * of_joint + weight;
     return cross(on_wedge(second), left);
 }
@@ -137,6 +147,20 @@ TEST(TwoWedges, DoNotHoldTheToeOfADamBelowWhichTheyMeet) {
                 ASSERT_TRUE(run.report.results.factor_of_safety) << run.report.diagnosis;
                 EXPECT_NEAR(*run.report.results.factor_of_safety, factor, 1e-3 * factor);
             }
+}
+
+// The ground rises by 10 degrees from the toe, and the joint below it leans under that ground: with the first wedge the dam goes down along the joint, whose upper
+// edge bites on its face and held it for good (above 6). Where strengths are reduced rock would break there.
+TEST(TwoWedges, DoNotHoldTheFaceOfADamByTheEdgeOfTheGround) {
+    for (const double foot : {38.0, 40.0, 42.0})
+        for (const bool mirrored : {false, true}) {
+            const TwoWedges body{.length = 26.0, .mirrored = mirrored, .foot = foot, .stiffness = 100.0, .rise = 10.0};
+            const double expected = factor_of_limit_equilibrium(body);
+            const SceneRun run = run_dam(body);
+            SCOPED_TRACE(fmt::format("{} {}", foot, mirrored));
+            ASSERT_TRUE(run.report.results.factor_of_safety) << run.report.diagnosis;
+            EXPECT_NEAR(*run.report.results.factor_of_safety, expected, 2e-3 * expected);
+        }
 }
 
 TEST(TwoWedges, NameTheTipThatIsNotHeld) {
