@@ -251,11 +251,25 @@ void warn_of_doubtful_failure(const StepBench& bench, double found, const Failur
     bench.journal.report().warnings.push_back(std::move(warning));
 }
 
+/// Whether the block of a tip moves on into the ground before it, and not along it or away.
+bool moves_into_ground(const BlockSystem& system, const UnheldTip& tip, const std::vector<MovingBlock>& moving) {
+    constexpr double into = 0.05; // of the motion, across the ground
+    const auto direction_of = [&](int block) -> Vec2 {
+        const auto found = std::ranges::find(moving, block, &MovingBlock::block);
+        return found == moving.end() ? Vec2::Zero() : found->direction;
+    };
+    const Edge& ground = system.blocks[tip.ground].edges[tip.ground_edge];
+    const Vec2 outward = right_normal((edge_end(system, ground) - edge_start(system, ground)).normalized());
+    const Vec2 relative = direction_of(tip.block) - direction_of(tip.ground);
+    return relative.isZero() || outward.dot(relative) < -into * relative.norm();
+}
+
 /// What would have held the blocks that fall, if rock were rigid; the deepest three.
 void warn_of_unheld_tips(const StepBench& bench, const State& state, const Failure& failure) {
     int left = 3;
     for (const UnheldTip& tip : unheld_tips(bench.model, state)) {
         if (std::ranges::find(failure.moving, tip.block, &MovingBlock::block) == failure.moving.end()) continue;
+        if (!moves_into_ground(bench.model.system, tip, failure.moving)) continue;
         bench.journal.report().warnings.push_back(description(bench.model, tip) + "; rigid blocks may stand with more");
         if (--left == 0) return;
     }

@@ -164,7 +164,7 @@ TEST(TwoWedges, DoNotHoldTheFaceOfADamByTheEdgeOfTheGround) {
 }
 
 TEST(TwoWedges, NameTheTipThatIsNotHeld) {
-    EXPECT_THAT(run_dam({}).report.warnings, testing::Contains(testing::HasSubstr("the tip of block 1 at")));
+    EXPECT_THAT(run_dam({}).report.warnings, testing::ElementsAre(testing::HasSubstr("the tip of block 1 at")));
 }
 
 } // namespace
