@@ -551,15 +551,20 @@ private:
     [[nodiscard]] double share_of_first(int first, const Edge& face, const Corner& corner, int second,
                                         const Edge& other_face, const Corner& other_corner, bool begins) const {
         const double blunter = angle_of(corner) - angle_of(other_corner);
-        if (surfaces_.ground_holds_tips || !have_blocks_between(first, edge_beside(first, face, begins), second,
-                                                                edge_beside(second, other_face, !begins)))
-            return blunter;
-        const Vec2 along = begins ? corner.leaving : Vec2(-corner.arriving);
-        const Vec2 side = begins ? Vec2(-corner.arriving) : corner.leaving;
-        const Vec2 other_along = begins ? Vec2(-other_corner.arriving) : other_corner.leaving;
-        const Vec2 other_side = begins ? other_corner.leaving : Vec2(-other_corner.arriving);
-        const bool go_on_inside = is_between(-side, other_along, other_side) && is_between(-other_side, along, side);
-        return go_on_inside ? -blunter : blunter;
+        if (surfaces_.ground_holds_tips) return blunter;
+        const EdgeOfBlock side = side_of_corner(first, face, begins);
+        const EdgeOfBlock other_side = side_of_corner(second, other_face, !begins);
+        if (!have_blocks_between(side.block, *side.edge, other_side.block, *other_side.edge)) return blunter;
+        const auto whole = [&](const Corner& at, const Vec2& away, bool face_begins) {
+            return face_begins ? Corner{away, at.leaving} : Corner{at.arriving, away};
+        };
+        const Corner one = whole(corner, as_cut(*side.edge), begins);
+        const Corner other = whole(other_corner, as_cut(*other_side.edge), !begins);
+        const Corner& begun = begins ? one : other; // its face begins at the vertex
+        const Corner& ended = begins ? other : one;
+        const bool go_on_inside = is_between(begun.arriving, -ended.arriving, ended.leaving) &&
+                                  is_between(-ended.leaving, begun.leaving, -begun.arriving);
+        return (go_on_inside ? -1.0 : 1.0) * (angle_of(one) - angle_of(other));
     }
 
     /// Whether a vertex that is an end of the target's edge too has a void between the one and the other, as the toe of a dam that ends
@@ -636,12 +641,12 @@ private:
         if (surfaces_.ground_holds_tips || face.interface >= 0 || side.interface < 0) return std::nullopt;
         const bool at_start = face.start == side.start;
         if (!at_start && face.end != side.end) return std::nullopt;
-        const Edge& base = edge_beside(owner, face, at_start);
-        const Edge& top = edge_beside(target, side, at_start);
-        if (top.interface >= 0 || !have_blocks_between(owner, base, target, side)) return std::nullopt;
-        const double rise = turn_at_end(as_cut(base), as_cut(top));
+        const EdgeOfBlock base = side_of_corner(owner, face, at_start);
+        const EdgeOfBlock top = side_of_corner(target, side, at_start);
+        if (top.edge->interface >= 0 || !have_blocks_between(base.block, *base.edge, target, side)) return std::nullopt;
+        const double rise = turn_at_end(as_cut(*base.edge), as_cut(*top.edge));
         if (rise > flat || rise > turn_at_end(as_cut(side), as_cut(face)) + flush) return std::nullopt;
-        const double sunk = depth_below(target, top, owner, at_start ? face.start : face.end);
+        const double sunk = depth_below(top.block, *top.edge, owner, at_start ? face.start : face.end);
         const double smaller = std::min(system_.blocks[owner].size, system_.blocks[target].size);
         if (sunk > sunk_under_loads * smaller) return std::nullopt;
         return sunk;
@@ -677,11 +682,28 @@ private:
         return toe_beside_side(target, face, owner, side).has_value();
     }
 
-    /// The edge of a block that meets the given one at its start, or at its end.
-    [[nodiscard]] const Edge& edge_beside(int block, const Edge& edge, bool at_start) const {
-        const std::vector<Edge>& edges = system_.blocks[block].edges;
-        return at_start ? *std::ranges::find(edges, edge.start, &Edge::end)
-                        : *std::ranges::find(edges, edge.end, &Edge::start);
+    /// An edge of a block.
+    struct EdgeOfBlock {
+        int block = 0;
+        const Edge* edge = nullptr;
+    };
+
+    /// The other side of the corner that a block has at the start of an edge, or at its end; blocks that are bonded to each other have one corner together.
+    [[nodiscard]] EdgeOfBlock side_of_corner(int block, const Edge& from, bool at_start) const {
+        const auto beside = [&](int b, const Edge& edge) {
+            const std::vector<Edge>& edges = system_.blocks[b].edges;
+            return &(at_start ? *std::ranges::find(edges, edge.start, &Edge::end)
+                              : *std::ranges::find(edges, edge.end, &Edge::start));
+        };
+        EdgeOfBlock side{block, beside(block, from)};
+        while (side.edge->interface >= 0 && surfaces_.bonded[side.edge->interface] != 0) {
+            const Interface& bond = system_.interfaces[side.edge->interface];
+            const bool is_a = bond.block_a == side.block;
+            const int next = is_a ? bond.block_b : bond.block_a;
+            side = {next, beside(next, reference(next, is_a ? bond.edge_b : bond.edge_a))};
+            if (next == block) break; // all around the vertex
+        }
+        return side;
     }
 
     /// Whether a face has such a tip at one of its ends, and the target's edge is the ground before it, or one of the two slides past the other.
