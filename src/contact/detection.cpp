@@ -622,7 +622,9 @@ private:
         const Edge& sliding = at_end ? arriving : going_on;
         const Edge& other = at_end ? going_on : arriving;
         if (sliding.interface < 0) return false;
-        const bool is_below_others = have_blocks_between(owner, other, target, side);
+        const EdgeOfBlock beyond = side_of_corner(owner, sliding, !at_end);
+        const bool is_below_others =
+            surfaces_.bonded[sliding.interface] == 0 && have_blocks_between(beyond.block, *beyond.edge, target, side);
         if (!is_below_others && !are_outlines(side, other)) return false;
         const Vec2 before = (edge_start(system_, arriving) - tip).normalized();
         const Vec2 after = (edge_end(system_, going_on) - tip).normalized();
