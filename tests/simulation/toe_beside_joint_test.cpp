@@ -56,5 +56,47 @@ TEST(ToeBesideJoint, PushesTheBlockBesideWhichItHasSunk) {
         }
 }
 
+/// A block that leans out over ground that rises from its toe, on two wedges, pushed towards them; `net`: the key of a net in that block, or nothing.
+SceneRun leaning_block(const std::string& net) {
+    return run_scene(R"(kluft: 1
+analysis: {gravity: 9.81}
+materials:
+  concrete: {density: 2400, youngs_modulus: 20 GPa, poissons_ratio: 0.2}
+  rock: {density: 2600, youngs_modulus: 20 GPa, poissons_ratio: 0.2}
+interfaces:
+  base: {kind: fracture, normal_stiffness: 1000 GPa/m, shear_stiffness: 500 GPa/m, friction_angle: 34.0852 deg}
+  joint: {kind: fracture, normal_stiffness: 1000 GPa/m, shear_stiffness: 500 GPa/m, friction_angle: 50.3065 deg}
+  slip: {kind: fracture, normal_stiffness: 1000 GPa/m, shear_stiffness: 500 GPa/m, friction_angle: 44.7276 deg}
+  bond: {kind: potential_crack, cohesion: 1 GPa, friction_angle: 50, tensile_strength: 0.8 GPa, fails_to: slip}
+geometry:
+  material: rock
+  sets:
+    ground: {polygon: [[14.12435, -2.490504], [7.062175, -1.245252], [-10.512977, -3.14051], [-15.261537, 2.966542], [-29.342415, 5.703588], [-31.53232, -6.715979], [12.025034, -14.396316]], support: fixed}
+  regions: [{material: concrete, polygon: [[0, 0], [7.062175, -1.245252], [5.291505, 4.080647], [-0.358235, 5.076849]]}]
+  domain: {polygon: [[-31.53232, -6.715979], [12.025034, -14.396316], [14.12435, -2.490504], [7.062175, -1.245252], [5.291505, 4.080647], [-0.358235, 5.076849], [0, 0], [-15.261537, 2.966542], [-29.342415, 5.703588]]}
+  fractures:
+    - {trace: [[0, 0], [7.062175, -1.245252]], interface: base}
+    - {trace: [[0, 0], [-10.512977, -3.14051]], interface: joint}
+    - {trace: [[-10.512977, -3.14051], [7.062175, -1.245252]], interface: slip}
+    - {trace: [[-15.261537, 2.966542], [-10.512977, -3.14051]], interface: slip}
+)" + net + R"(
+stages:
+  - {steps: 10}
+  - {forces: {push: {point: [2.775876735, 0.5053386122], force: [-809472.15, -1000035.7]}}}
+  - {strength_reduction: {from: 0.7, to: 8}}
+)");
+}
+
+// Limit analysis of the rigid blocks by linear programming has 2.5576. Where an edge of a net ended in the toe, the corner of the ground held the block's face: none below 8.
+TEST(ToeBesideJoint, IsOneCornerThoughANetCutsIt) {
+    for (const std::string net :
+         {"", "  tessellation: {triangles: {spacing: 5, seed: 1}, interface: bond, region: [[5.291505, 4.080647], "
+              "[-0.358235, 5.076849], [0, 0], [7.062175, -1.245252]]}"}) {
+        const SceneRun run = leaning_block(net);
+        ASSERT_TRUE(run.report.results.factor_of_safety) << net << run.report.diagnosis;
+        EXPECT_NEAR(*run.report.results.factor_of_safety, 2.5576, 1e-3 * 2.5576) << net;
+    }
+}
+
 } // namespace
 } // namespace kluft
