@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <numbers>
@@ -668,7 +669,7 @@ private:
         return -right_normal(along.normalized()).dot(current_position(system_, q_, block, vertex) - start);
     }
 
-    /// The same of a vertex that is an end of the target's edge too.
+    /// How far the toe lies below the outline that it slides onto, where it is the vertex at which `leaving` begins, an end of the target's edge too.
     [[nodiscard]] std::optional<double> toe_beside_side(int owner, const CurrentEdge& leaving, int target,
                                                         const CurrentEdge& edge) const {
         const Edge& side = reference(target, edge.edge);
@@ -684,7 +685,18 @@ private:
         return toe_beside_side(target, face, owner, side).has_value();
     }
 
-    /// An edge of a block.
+    /// The edge before the given one in its loop, or after it.
+    [[nodiscard]] const Edge& edge_beside(int block, const Edge& edge, bool before) const {
+        const std::vector<Edge>& edges = system_.blocks[block].edges;
+        const std::vector<int>& starts = system_.blocks[block].loop_starts;
+        const int at = static_cast<int>(&edge - edges.data());
+        const auto next_loop = std::ranges::upper_bound(starts, at);
+        const int first = *std::prev(next_loop);
+        const int last = next_loop == starts.end() ? static_cast<int>(edges.size()) : *next_loop;
+        if (before) return edges[at > first ? at - 1 : last - 1];
+        return edges[at + 1 < last ? at + 1 : first];
+    }
+
     struct EdgeOfBlock {
         int block = 0;
         const Edge* edge = nullptr;
@@ -692,18 +704,14 @@ private:
 
     /// The other side of the corner that a block has at the start of an edge, or at its end; blocks that are bonded to each other have one corner together.
     [[nodiscard]] EdgeOfBlock side_of_corner(int block, const Edge& from, bool at_start) const {
-        const auto beside = [&](int b, const Edge& edge) {
-            const std::vector<Edge>& edges = system_.blocks[b].edges;
-            return &(at_start ? *std::ranges::find(edges, edge.start, &Edge::end)
-                              : *std::ranges::find(edges, edge.end, &Edge::start));
-        };
-        EdgeOfBlock side{block, beside(block, from)};
-        while (side.edge->interface >= 0 && surfaces_.bonded[side.edge->interface] != 0) {
+        EdgeOfBlock side{block, &edge_beside(block, from, at_start)};
+        while (is_bonded(surfaces_, *side.edge)) {
             const Interface& bond = system_.interfaces[side.edge->interface];
             const bool is_a = bond.block_a == side.block;
             const int next = is_a ? bond.block_b : bond.block_a;
-            side = {next, beside(next, reference(next, is_a ? bond.edge_b : bond.edge_a))};
-            if (next == block) break; // all around the vertex
+            const Edge& entered = reference(next, is_a ? bond.edge_b : bond.edge_a);
+            if (&entered == &from) break; // all around the vertex
+            side = {next, &edge_beside(next, entered, at_start)};
         }
         return side;
     }
